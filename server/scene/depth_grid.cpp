@@ -20,6 +20,7 @@ static_assert(std::endian::native == std::endian::little, "DepthGrid.points are 
 constexpr int kGridSideMinCount = 2;
 constexpr int kGridSideMaxCount = static_cast<int>(kImageSideMaxCount);
 constexpr double kDepthMax_m = 100.0;
+constexpr double kLandMax_m = 9000.0;
 constexpr std::size_t kPathEchoMaxBytes = 200;
 
 void setPoints(v1::DepthGrid& grid, std::size_t columns, std::size_t rows, const std::vector<float>& depths_m) {
@@ -50,9 +51,9 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
                           "; give every row as many");
     }
     for (const float depth_m : row) {
-      if (!(std::abs(depth_m) <= kDepthMax_m)) {
+      if (!(depth_m >= -kLandMax_m && depth_m <= kDepthMax_m)) {
         return addRange(issues, path,
-                        core::formatNumber(depth_m) + " is no depth; choose " + core::formatNumber(-kDepthMax_m) +
+                        core::formatNumber(depth_m) + " is no depth; choose " + core::formatNumber(-kLandMax_m) +
                             " to " + core::formatQuantity(kDepthMax_m, "m"));
       }
       depths_m.push_back(depth_m);

@@ -52,7 +52,7 @@ core::Absorption toCore(v1::Absorption absorption) {
     case v1::ABSORPTION_PML:
       return core::Absorption::kPml;
     default:
-      return core::Absorption::kByDispersion;
+      return core::Absorption::kByStencil;
   }
 }
 
@@ -353,7 +353,10 @@ core::Scene toCore(const v1::Scene& scene) {
   out.title = in.title();
   out.description = in.description();
   out.seed = in.seed();
-  out.gravity_mps2 = in.gravity_mps2();
+  // Below this, waves need hours to cross any water, and numbers that follow from their speed leave the range of
+  // floats.
+  constexpr double kLeastGravity_mps2 = 1e-6;
+  out.gravity_mps2 = in.gravity_mps2() < kLeastGravity_mps2 ? 0.0 : in.gravity_mps2();
   out.tick_rate_hz = in.tick_rate_hz();
   out.fixed_substeps_count = in.fixed_substeps_count();
   out.allow_unstable = in.allow_unstable();

@@ -10,8 +10,8 @@ void fillDefaults(v1::Scene& scene) {
   if (scene.seed() == 0) scene.set_seed(core::Scene{}.seed);
   // Enums whose defaults depend on other fields: absorption, and the setting below, which needs the numbers filled in.
   if (scene.has_wave() && scene.wave().absorption() == v1::ABSORPTION_UNSPECIFIED) {
-    scene.mutable_wave()->set_absorption(scene.wave().dispersion() == v1::DISPERSION_AIRY ? v1::ABSORPTION_PML
-                                                                                          : v1::ABSORPTION_SPONGE);
+    const bool nine = scene.wave().stencil() == v1::STENCIL_NINE_POINT;
+    scene.mutable_wave()->set_absorption(nine ? v1::ABSORPTION_SPONGE : v1::ABSORPTION_PML);
   }
   const v1::Setting named = scene.setting();
   fillMessageDefaults(scene);

@@ -22,6 +22,7 @@ void Checkpoints::save(std::uint64_t tick) {
   if (copy.is_filled) return;
   for (std::size_t k = 0; k < state_.size(); ++k) copy.buffers[k].copyFrom(*state_[k], 0, state_[k]->sizeBytes());
   copy.tick = tick;
+  copy.flow_ratio = 1.0;
   copy.is_filled = true;
 }
 
@@ -30,19 +31,29 @@ void Checkpoints::confirm(std::uint64_t tick) {
   if (!waiting.is_filled || waiting.tick > tick) return;
   good_ = 1 - good_;
   has_good_ = true;
+  is_tried_ = false;
   copies_[1 - good_].is_filled = false;
 }
 
-bool Checkpoints::restore() {
-  if (!has_good_) return false;
+std::optional<double> Checkpoints::restore() {
+  if (!has_good_ || is_tried_) {
+    forget();
+    return std::nullopt;
+  }
+  is_tried_ = true;
   for (std::size_t k = 0; k < state_.size(); ++k)
     state_[k]->copyFrom(copies_[good_].buffers[k], 0, state_[k]->sizeBytes());
   copies_[1 - good_].is_filled = false;
-  return true;
+  return copies_[good_].flow_ratio;
+}
+
+void Checkpoints::scaleFlow(double ratio) {
+  for (Copy& copy : copies_) copy.flow_ratio *= ratio;
 }
 
 void Checkpoints::forget() {
   has_good_ = false;
+  is_tried_ = false;
   for (Copy& copy : copies_) copy.is_filled = false;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -22,14 +23,19 @@ class Checkpoints {
   void save(std::uint64_t tick);
   /// Reports that the state at `tick` was good: confirms the copies made up to it.
   void confirm(std::uint64_t tick);
-  /// Restores the last good copy; returns false when there is none.
-  bool restore();
+  /// Restores the last good copy and returns the factor for its flow (see scaleFlow()); nullopt when there is none. A
+  /// copy is restored once: if the water needs another recovery before a later copy is confirmed, this one led to the
+  /// fault (parameters may have changed since it was made), and it is dropped.
+  std::optional<double> restore();
+  /// The flow of the water was multiplied by this ratio, because a parameter changed: copies made before need it, too.
+  void scaleFlow(double ratio);
   void forget();
 
  private:
   struct Copy {
     std::vector<gpu::Buffer> buffers;
     std::uint64_t tick = 0;
+    double flow_ratio = 1.0;
     bool is_filled = false;
   };
 
@@ -39,6 +45,7 @@ class Checkpoints {
   Copy copies_[2];
   int good_ = 0;  ///< the other copy waits for its health
   bool has_good_ = false;
+  bool is_tried_ = false;  ///< the good one was restored
 };
 
 }  // namespace spindrift::sim

@@ -49,9 +49,7 @@ core::Result<PreparedScene> prepareScene(const core::Scene& scene, const SceneBa
   PreparedScene out;
   out.scene = scene;
   out.revision = basis.revision;
-  // Removed water takes its flow with it; added water is at rest.
-  if (scene.wave && scene.wave->depth_m < basis.scene.wave->depth_m)
-    out.flow_ratio = scene.wave->depth_m / basis.scene.wave->depth_m;
+  out.flow_ratio = keptFlowRatio(basis.scene, scene);
   if (!asksForOtherCount(basis.scene, scene)) {
     out.derived = *std::move(fresh);
     return out;

@@ -39,7 +39,11 @@ core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
   if (parts_->breakers && !resampled.breaking.empty()) parts_->breakers->state().upload(resampled.breaking);
   if (parts_->foam && !resampled.foam.empty()) parts_->foam->field().upload(resampled.foam);
   parts_->effects = carried.effects;
-  if (parts_->wind_sea) parts_->wind_sea->takeOver(carried.sea);
+  if (const double ratio = keptFlowRatio(carried.scene, scene_); ratio != 1.0) parts_->wave->scaleFlow(ratio);
+  if (parts_->wind_sea) {
+    parts_->wind_sea->takeOver(carried.sea);
+    if (changesWaves(carried.scene, scene_)) parts_->wind_sea->continueIn(scene_, carried.time_s);
+  }
   if (parts_->follower) parts_->follower->goTo(carried.patch_x_m, carried.patch_z_m);
   if (parts_->boats) {
     parts_->boats->takeOver(carried.boats);

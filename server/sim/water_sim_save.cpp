@@ -101,6 +101,7 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   if (parts_->follower) parts_->follower->goTo(saved.patch_x_m, saved.patch_z_m);
   start_tick_ = tick_ - saved.run_tick;  // modulo 2^64
   careful_until_tick_ = tick_ + saved.careful_ticks.value_or(0);
+  ledger_units_.reset();
   abandoned_until_tick_ = tick_;  // health in flight belongs to the start
   parts_->checkpoints->forget();
   parts_->checkpoints->save(tick_);  // confirmed by the health of the next ticks

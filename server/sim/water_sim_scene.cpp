@@ -35,7 +35,11 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
   if (prepared.particles) {
     if (auto replaced = replaceParticles(prepared); !replaced) return replaced;
   }
-  if (prepared.flow_ratio != 1.0) parts_->wave->scaleFlow(prepared.flow_ratio);
+  if (prepared.flow_ratio != 1.0) {
+    parts_->wave->scaleFlow(prepared.flow_ratio);
+    parts_->checkpoints->scaleFlow(prepared.flow_ratio);
+  }
+  if (parts_->wind_sea && changesWaves(scene_, prepared.scene)) parts_->wind_sea->continueIn(prepared.scene, time_s());
   scene_ = std::move(prepared.scene);
   setCareful(is_careful_);
   if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // the water is shallower
@@ -92,6 +96,7 @@ void WaterSim::reset() {
   start_tick_ = tick_;
   abandoned_until_tick_ = tick_;
   health_ = {};
+  ledger_units_.reset();
   if (gauges_) gauges_->clear();
   setCareful(false);
   uploadStartingState();

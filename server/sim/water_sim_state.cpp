@@ -47,7 +47,8 @@ void WaterSim::watchHealth() {
           scene_.name, health.tick, health.crowded_count, derived_.uniforms.candidates_max_count);
     }
     crowded_count_ += health.crowded_count;
-    if (health.isGood()) {
+    if (health.isGood() && !ledger_units_) ledger_units_ = health.volume_error_units;
+    if (health.isGood() && health.volume_error_units == ledger_units_) {
       parts_->checkpoints->confirm(health.tick);
     } else {
       recover(health);
@@ -64,8 +65,15 @@ void WaterSim::saveCheckpoint() {
 
 void WaterSim::recover(const Health& breach) {
   ++recovered_count_;
-  const bool restored = parts_->checkpoints->restore();
-  if (!restored) uploadStartingState();
+  const std::int64_t lost_units = breach.volume_error_units - ledger_units_.value_or(breach.volume_error_units);
+  ledger_units_.reset();
+  const std::optional<double> flow_ratio = parts_->checkpoints->restore();
+  const bool restored = flow_ratio.has_value();
+  if (!restored) {
+    uploadStartingState();
+  } else if (*flow_ratio != 1.0) {
+    parts_->wave->scaleFlow(*flow_ratio);
+  }
   if (parts_->wave) parts_->wave->clearPressure();
   if (parts_->boats) parts_->boats->mend();
   parts_->effects.clear();
@@ -77,9 +85,9 @@ void WaterSim::recover(const Health& breach) {
   if (restored && parts_->wave) parts_->wave->fillUpToBed(scene_, *derived_.wave);
   if (recovered_count_ <= 10 || recovered_count_ % 100 == 0) {
     spdlog::warn(
-        "scene {}: tick {} has {} values out of range and {} escaped particles; went back to {} with half the step for "
-        "{} s (watchdog stepped in {} times)",
-        scene_.name, breach.tick, breach.nonfinite_count, breach.escaped_count,
+        "scene {}: tick {} has {} values out of range, {} escaped particles and a volume that is off by {} units; went "
+        "back to {} with half the step for {} s (watchdog stepped in {} times)",
+        scene_.name, breach.tick, breach.nonfinite_count, breach.escaped_count, lost_units,
         restored ? "the last good checkpoint" : "the start", kCareful_s, recovered_count_);
   }
 }
@@ -167,6 +175,8 @@ StateCopy WaterSim::copyState() {
 }
 
 void WaterSim::setState(const StateCopy& state) {
+  abandoned_until_tick_ = tick_;  // health in flight belongs to the state before
+  ledger_units_.reset();
   if (parts_->particles) {
     parts_->particles->position.upload(state.position);
     parts_->particles->velocity.upload(state.velocity);

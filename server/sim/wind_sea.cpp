@@ -99,6 +99,13 @@ void WindSea::fadeTo(SeaState sea) {
   wanted_ = std::move(sea);
 }
 
+void WindSea::continueIn(const core::Scene& scene, double time_s) {
+  shown_ = continued(std::move(shown_), scene, time_s);
+  next_ = continued(std::move(next_), scene, time_s);
+  if (shown_.waves.empty() && next_.waves.empty()) incident_.clear();
+  uploadTables();
+}
+
 CarriedSea WindSea::carried() const {
   return {.shown = shown_, .next = next_, .fade_begin_s = fade_begin_s_};
 }

@@ -30,6 +30,9 @@ class WindSea {
   /// The sea to fade to: from the next step on, or after a fade in progress.
   void fadeTo(SeaState sea);
 
+  /// The water's depth or gravity has changed at `time_s`: the waves that come in go on in the water that there is now.
+  void continueIn(const core::Scene& scene, double time_s);
+
   /// What carries on in another simulation of the same water, and its continuation there: call takeOver() after
   /// clear() and fadeTo(), with the scene's time going on.
   [[nodiscard]] CarriedSea carried() const;

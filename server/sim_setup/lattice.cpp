@@ -194,6 +194,9 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
   const double H = water.support_radius_m;
   const KernelSet set = water.kernel_set;
   const auto n = static_cast<std::size_t>(layers_count);
+  std::vector<double> y(n);
+  for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
+  if (water.gravity_mps2 <= 0) return y;  // nothing presses on the lattice
   constexpr int kMaxIterations = 20'000;
   constexpr double kVelocityKeep = 0.98;  // damps the fall within a few dozen steps
   constexpr double kToleranceOfGravity = 1e-3;
@@ -222,9 +225,7 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
     return water.rest_density_kgpm3 * water.flat_floor.share * 2 * u / water.flat_floor.reach_m;
   };
 
-  std::vector<double> y(n), v(n, 0.0), pressure(n), density(n);
-  for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
-
+  std::vector<double> v(n, 0.0), pressure(n), density(n);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     for (std::size_t k = 0; k < n; ++k) {
       double rho = floor_density_of(y[k]);

@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <cmath>
+
 #include <shared/side_bits.h>
 
 #include <spindrift/sim_setup/scene_parts.h>
@@ -58,12 +61,23 @@ bool exchangesWater(const core::Scene& scene) {
 
 bool hasMatchedLayer(const core::Scene& scene) {
   if (!scene.wave || !isOpen(scene)) return false;
-  const core::Absorption absorption = scene.wave->absorption;
-  return absorption == core::Absorption::kPml || (absorption == core::Absorption::kByDispersion && disperses(scene));
+  if (scene.wave->absorption != core::Absorption::kByStencil) return scene.wave->absorption == core::Absorption::kPml;
+  return scene.wave->stencil == core::Stencil::kFivePoint;
 }
 
 bool hasWindSea(const core::Scene& scene) {
   return scene.storm && disperses(scene) && isOpen(scene);
+}
+
+bool changesWaves(const core::Scene& before, const core::Scene& after) {
+  return before.gravity_mps2 != after.gravity_mps2 || before.wave->depth_m != after.wave->depth_m;
+}
+
+double keptFlowRatio(const core::Scene& before, const core::Scene& after) {
+  if (!before.wave || !after.wave) return 1.0;
+  double ratio = std::min(after.wave->depth_m / before.wave->depth_m, 1.0);
+  if (after.gravity_mps2 < before.gravity_mps2) ratio *= std::sqrt(after.gravity_mps2 / before.gravity_mps2);
+  return ratio;
 }
 
 bool isTwoWay(const core::Scene& scene) {

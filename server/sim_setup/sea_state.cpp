@@ -66,6 +66,12 @@ std::vector<int> mixedOrder(double begin) {
   return out;
 }
 
+/// Returns false for waves that the scene's damping ends within a turn: they creep back to the level instead of
+/// travelling.
+bool oscillates(double omega_radps, const core::WaveScene& wave) {
+  return 2 * omega_radps > wave.damping_per_s;
+}
+
 double groupSpeed(double k_radpm, double gravity_mps2, double depth_m) {
   const double kd = k_radpm * depth_m;
   const double ratio = kd > 300 ? 0.0 : 2 * kd / std::sinh(2 * kd);
@@ -116,6 +122,20 @@ double WindSeaSpectrum::density(double omega_radps) const {
   const double kd = waveNumber(omega_radps, gravity_mps2, depth_m) * depth_m;
   const double t = std::tanh(kd);
   return deep * t * t / (kd > 300 ? 1.0 : 1 + 2 * kd / std::sinh(2 * kd));
+}
+
+SeaState continued(SeaState sea, const core::Scene& scene, double time_s) {
+  const double d = scene.wave->depth_m;
+  const double share = std::min(1.0, kLargestHeightShare * d / std::max(sea.significant_height_m, 1e-9));
+  sea.significant_height_m *= share;
+  for (PlaneWave& wave : sea.waves) {
+    const double omega = waveFrequency(std::hypot(wave.kx_radpm, wave.kz_radpm), scene.gravity_mps2, d);
+    wave.phase_rad = std::fmod(wave.phase_rad + (omega - wave.omega_radps) * time_s, 2 * pi);
+    wave.omega_radps = omega;
+    wave.amplitude_m *= share;
+  }
+  std::erase_if(sea.waves, [&](const PlaneWave& wave) { return !oscillates(wave.omega_radps, *scene.wave); });
+  return sea;
 }
 
 std::uint64_t windSeaBytes(core::CellCounts cells) {
@@ -170,6 +190,7 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
     each.phase_rad = 2 * pi * random.unit();
     if (k <= 0) continue;
     each.omega_radps = waveFrequency(k, g, d);
+    if (!oscillates(each.omega_radps, wave)) continue;
     each.decay_pm = 0.5 * wave.damping_per_s / groupSpeed(k, g, d);
     each.sides = sides.of(each.kx_radpm, each.kz_radpm);
     out.waves.push_back(each);

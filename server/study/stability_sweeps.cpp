@@ -124,6 +124,7 @@ void addWaves(bool quick, std::vector<Sweep>& sweeps) {
                           core::Scene scene = waveScene(64, 8.0, 1.5, courant, stencil, side);
                           scene.wave->fixed_substeps_count = 1;
                           scene.wave->sponge_width_m = 0.5;
+                          scene.wave->absorption = core::Absorption::kSponge;
                           scene.allow_unstable = true;
                           return scene;
                         },

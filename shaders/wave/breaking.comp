@@ -58,10 +58,10 @@ void main() {
 #else
   const float depth_m = sim.wave_depth_m;
 #endif
-  const float speed_mps = sqrt(sim.gravity_mps2 * depth_m);
+  const float speed_mps = sqrt(sim.gravity_mps2 * max(depth_m, 0.0));
   vec4 state = vec4(0.0);
-  // There is no breaking below the lowest threshold or on dry ground.
-  if (rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
+  // There is no breaking below the lowest threshold, on dry ground, or without gravity.
+  if (speed_mps > 0.0 && rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
     // Distance that a crest travels in a tick.
     const ivec2 hop = min(ivec2(max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1)), n);
     const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop.x, n.x), row), ageAt(waveNeighbourX(cell.x + hop.x, n.x), row))),
@@ -74,7 +74,7 @@ void main() {
   }
   state.zw = depth_m > 0.02 * sim.wave_depth_m ? crownAt(waveCellCentre(cell)) : vec2(0.0);
   const float crown_mps = length(state.zw);
-  state.y = max(state.y, clamp(crown_mps / speed_mps, 0.0, 1.0));
+  state.y = max(state.y, clamp(crown_mps / max(speed_mps, 1e-3), 0.0, 1.0));
   breaking[i] = state;
 #if POOL_PARTICLES
   if (emits(cell, n.x, tick, state.y, max(rate_mps, crown_mps)) && canEmit(cell, n)) {

@@ -87,8 +87,9 @@ void main() {
       const vec2 loss_per_s = ground.yy;
 #endif
       vec2 parts = vec2(sums[k].w, sums[k].x - sums[k].w);
-      if (inflow_m2ps.x != 0.0) parts.x += inflow_m2ps.x * ELEVATION_UNITS_PER_M / (loss_per_s.x * sim.wave_cell_m);
-      if (inflow_m2ps.y != 0.0) parts.y += inflow_m2ps.y * ELEVATION_UNITS_PER_M / (loss_per_s.y * sim.wave_cell_m);
+      // Without gravity nothing is lost in the layer, and nothing comes in.
+      if (inflow_m2ps.x != 0.0 && loss_per_s.x > 0.0) parts.x += inflow_m2ps.x * ELEVATION_UNITS_PER_M / (loss_per_s.x * sim.wave_cell_m);
+      if (inflow_m2ps.y != 0.0 && loss_per_s.y > 0.0) parts.y += inflow_m2ps.y * ELEVATION_UNITS_PER_M / (loss_per_s.y * sim.wave_cell_m);
       const vec2 open = vec2(greaterThan(texelFetch(basin, i).xy, vec2(0.0)));
       incident[i] = seaShare(ground.z) * vec4(parts.x, open * sums[k].yz, parts.y);
     }

@@ -2,7 +2,7 @@
 // water that rises or falls faster below than a hydrostatic column would.
 // Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED, BASIN, BREAKING. Writes SURFACE_RISE
 // [nx x nz x 2, units per cell] at the faces toward +x and +z of each cell: the slopes times the share that disperses there.
-// Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h. The equations of Serre (1953; Green & Naghdi 1976) have
+// Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h, h of at most HEAD_CELLS cells. The equations of Serre (1953; Green & Naghdi 1976) have
 // this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
 // of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
 // Toward wave-makers the dynamic head fades out, within two depths of them.
@@ -22,11 +22,14 @@ layout(std430, binding = SURFACE_RISE) restrict writeonly buffer SurfaceRise { v
 /// The share of the water that its dynamic head can be. A solitary wave of 0.3 of the depth has 0.01. With 0.1, steep waves shorter
 /// than the depth drove each other after breakers on a slope, at 20 cells a depth.
 #define MAX_DYNAMIC_HEAD 0.02
+/// The same bound where a depth has more cells than this: as if it had this many. Waves much shorter than the depth have no such
+/// head, and one of several cells made them grow: to 0.09 of the depth, in water 1,000 cells deep to seven times the sea's height.
+#define HEAD_CELLS 20.0
 
 /// head_q of a cell, for velocities through its faces toward + and - x, + and - z. [units]
 float dynamicHead(Column water, vec4 u_mps) {
   const float stretch = water.water_m * (u_mps.x - u_mps.y + u_mps.z - u_mps.w) / sim.wave_cell_m;
-  return min(stretch * stretch / max(sim.gravity_mps2, 1e-6), MAX_DYNAMIC_HEAD * water.water_m) * ELEVATION_UNITS_PER_M;
+  return min(stretch * stretch / max(sim.gravity_mps2, 1e-6), MAX_DYNAMIC_HEAD * min(water.water_m, HEAD_CELLS * sim.wave_cell_m)) * ELEVATION_UNITS_PER_M;
 }
 
 #if MAKERS

@@ -9,43 +9,19 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <shared/fixed_point.h>
 
-#include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/sim_setup/basin.h>
 
-#include "stability_scene.h"
+#include "parameter_sweep.h"
 
 namespace spindrift {
 namespace {
-
-std::filesystem::path sceneFolder() {
-  return std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes";
-}
-
-enum class Which { kAll, kWithWave };
-
-/// Names of the shipped scenes, sorted. A file that is not a scene is included, so that its test reports the error.
-std::vector<std::string> sceneNames(Which which) {
-  std::set<std::string> names;
-  for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
-    if (entry.path().extension() != ".textproto") continue;
-    const auto scene = scene::loadSceneFile(entry.path());
-    if (which == Which::kAll || !scene || scene->has_wave()) names.insert(entry.path().stem().string());
-  }
-  // "splash_wave" is "splash" without the particles, so the wave alone would be tested twice.
-  if (which == Which::kWithWave)
-    std::erase_if(names, [&](const std::string& name) {
-      return name.ends_with("_wave") && names.contains(name.substr(0, name.size() - 5));
-    });
-  return {names.begin(), names.end()};
-}
 
 /// Both ends of a parameter's range, `between` values between them, and values that a scene adds for a path.
 std::vector<double> valuesOf(const v1::ParameterDescription& parameter, int between, const std::vector<double>& more) {
@@ -75,6 +51,7 @@ constexpr double kRebound_m = 0.75;
 constexpr double kReboundBegin_s = 0.7;
 /// Root mean square over the basin. A splash lifts a few cells, an unstable wave a large part of them.
 constexpr double kRoughest_m = 0.1;
+
 class Parameters : public Endurance, public ::testing::WithParamInterface<std::string> {
  protected:
   /// Runs the water from its start with a splash of at most 0.5 m.
@@ -148,17 +125,6 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
       ASSERT_TRUE(takes(path, parameter.value())) << "back from " << path;
       if (taken_count == 0) refused_.insert(path);
     }
-  }
-
-  /// Searches between a refused value and the scene's own, which is accepted.
-  static double nearestTaken(const v1::ParameterDescription& parameter, double refused, const auto& takes) {
-    double allowed = parameter.value();
-    for (int i = 0; i < 12; ++i) {
-      double middle = 0.5 * (allowed + refused);
-      if (parameter.step() >= 1) middle = std::round(middle);
-      (takes(parameter.path(), middle) ? allowed : refused) = middle;
-    }
-    return allowed;
   }
 
   int run_count_ = 0;

@@ -81,14 +81,17 @@ TEST(SceneDefaults, LeaveAbsentPartsAbsent) {
   EXPECT_FALSE(core_scene.wave || core_scene.particles || core_scene.coupling || core_scene.foam);
 }
 
-TEST(SceneDefaults, ChooseMatchedLayersForWavesThatDisperse) {
-  v1::Scene scene;
-  scene.mutable_wave();
-  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kSponge);
-  scene.mutable_wave()->set_dispersion(v1::DISPERSION_AIRY);
-  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kPml);
-  scene.mutable_wave()->set_absorption(v1::ABSORPTION_SPONGE);
-  EXPECT_EQ(toCore(scene).wave->absorption, core::Absorption::kSponge);
+TEST(SceneDefaults, ChooseMatchedLayersUnlessTheStencilHasNinePoints) {
+  const auto chosen = [](const std::string& wave) {
+    const auto scene = parseSceneText("wave { " + wave + " }", "scene");
+    EXPECT_TRUE(scene) << wave;
+    return toCore(*scene).wave->absorption;
+  };
+  EXPECT_EQ(chosen(""), core::Absorption::kPml);
+  EXPECT_EQ(chosen("dispersion: DISPERSION_AIRY"), core::Absorption::kPml);
+  EXPECT_EQ(chosen("stencil: STENCIL_NINE_POINT"), core::Absorption::kSponge);
+  EXPECT_EQ(chosen("absorption: ABSORPTION_SPONGE"), core::Absorption::kSponge);
+  EXPECT_EQ(chosen("dispersion: DISPERSION_AIRY absorption: ABSORPTION_SPONGE"), core::Absorption::kSponge);
 }
 
 TEST(SceneDefaults, FillOnlyWhatWasLeftOutAndTwiceIsTheSame) {

@@ -112,6 +112,8 @@ TEST_F(Rectangle, WaterTurnedByNinetyDegreesHasTheSameBits) {
   core::Scene scene = rectangle(61, 23);
   scene.wave->boundary_plus_x = core::WaveBoundary::kAbsorb;
   scene.wave->sponge_width_m = 2.0;
+  // A matched layer would take the elevation set here as water that came along z.
+  scene.wave->absorption = core::Absorption::kSponge;
   scene.obstacles.emplace_back(core::Rock{.x_m = 1.3, .z_m = -0.7, .radius_m = 0.6});
   scene.beaches.push_back({.side = core::Side::kMinusX, .width_m = 3.0, .shore_depth_m = 0.2});
   WaterSim& sim = make(scene);

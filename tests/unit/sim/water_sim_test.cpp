@@ -239,6 +239,26 @@ TEST_F(Water, GoesBackToTheLastGoodCheckpointWhenAValueIsNotFinite) {
   EXPECT_EQ(sim.recoveredCount(), recovered) << "and stays healthy";
 }
 
+TEST_F(Water, GoesBackToTheStartWhenTheCheckpointFailsToo) {
+  core::Scene scene = smallScene();
+  scene.wave->damping_per_s = 0.0;
+  WaterSim& sim = make(scene);
+  ASSERT_TRUE(sim.start(core::Splash{0.0, 0.0, 0.5, 0.2, 0.2}));
+  for (int i = 0; i < 130; ++i) sim.step();
+  const auto breakDown = [&] {
+    const auto before = sim.recoveredCount();
+    StateCopy broken = sim.copyState();
+    broken.flow_m2ps[3] = std::numeric_limits<float>::infinity();
+    sim.setState(broken);
+    while (sim.recoveredCount() == before && sim.tick() < 300) sim.step();
+    return std::ranges::any_of(sim.copyState().elevation_m, [](double eta_m) { return eta_m != 0.0; });
+  };
+  EXPECT_TRUE(breakDown()) << "the checkpoint, in which the water moves";
+  EXPECT_FALSE(breakDown()) << "it came before a later checkpoint was good";
+  for (int i = 0; i < 130; ++i) sim.step();
+  EXPECT_EQ(sim.recoveredCount(), 2u);
+}
+
 TEST_F(Water, ParametersTakeEffectWithoutARestart) {
   core::Scene scene = smallScene();
   WaterSim& sim = make(scene);

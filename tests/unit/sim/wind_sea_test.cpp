@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <tuple>
 
 #include <gtest/gtest.h>
 #include <shared/bindings.h>
@@ -246,6 +247,68 @@ TEST_F(WindSeaOnDevice, ChangesWithoutAJump) {
   }
   EXPECT_GT(usual_m, 0.0);
   EXPECT_LE(after_change_m, 1.3 * usual_m) << "largest change of an elevation per tick";
+}
+
+TEST_F(WindSeaOnDevice, DoesNotGrowInNonlinearWaterManyCellsDeep) {
+  core::Scene scene = openSea(32);
+  scene.tick_rate_hz = 10.0;
+  scene.wave->side_m = 3.2;
+  scene.wave->sponge_width_m = 0.5;
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  scene.storm->wave_height_m = 10.0;
+  scene.storm->wind_speed_mps = 60.0;
+  for (const double depth_m : {6.0, 50.0}) {
+    scene.wave->depth_m = depth_m;
+    WaterSim& sim = make(scene);
+    const double height_m = seaState(scene, *sim.derived().wave).significant_height_m;
+    for (int k = 0; k < 150; ++k) sim.step();
+    EXPECT_LE(sim.health().max_elevation_m, 3.0 * height_m) << depth_m << " m deep";
+    EXPECT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
+    EXPECT_EQ(sim.recoveredCount(), 0u);
+  }
+}
+
+TEST_F(WindSeaOnDevice, ContinuesUnderOtherGravityWithTheSameLevelsAndWavesThatFitIt) {
+  core::Scene scene = openSea();
+  const WaveLayout layout = *derive(scene)->wave;
+  const SeaState before = seaState(scene, layout);
+  for (const double gravity_mps2 : {50.0, 2.0, 0.01}) {
+    scene.gravity_mps2 = gravity_mps2;
+    const SeaState after = continued(before, scene, 12.5);
+    ASSERT_EQ(after.waves.size(), before.waves.size());
+    for (std::size_t k = 0; k < after.waves.size(); ++k) {
+      const PlaneWave& a = before.waves[k];
+      const PlaneWave& b = after.waves[k];
+      EXPECT_EQ(std::tuple(b.kx_radpm, b.kz_radpm, b.amplitude_m), std::tuple(a.kx_radpm, a.kz_radpm, a.amplitude_m));
+      EXPECT_NEAR(std::sin(b.phase_rad - b.omega_radps * 12.5), std::sin(a.phase_rad - a.omega_radps * 12.5), 1e-9);
+      EXPECT_NEAR(b.omega_radps, a.omega_radps * std::sqrt(gravity_mps2 / 9.81), 1e-9);
+    }
+  }
+  scene.gravity_mps2 = 0.0;
+  EXPECT_TRUE(continued(before, scene, 12.5).waves.empty());
+  scene.gravity_mps2 = 9.81;
+  scene.wave->depth_m = 0.05;
+  EXPECT_NEAR(continued(before, scene, 12.5).significant_height_m, 0.025, 1e-9) << "higher waves break";
+}
+
+TEST_F(WindSeaOnDevice, RaisesNoWaterWhenGravityFallsToNothingAndComesBack) {
+  for (const bool nonlinear : {false, true}) {
+    core::Scene scene = openSea();
+    if (nonlinear) scene.wave->bulk = core::Bulk::kNonlinear;
+    WaterSim& sim = make(scene);
+    for (int k = 0; k < 10 * 60; ++k) sim.step();
+    const double usual_m = sim.health().max_elevation_m;
+    for (const double gravity_mps2 : {0.01, 9.81, 0.0, 1e-4, 50.0, 9.81}) {
+      scene.gravity_mps2 = gravity_mps2;
+      ASSERT_TRUE(sim.setScene(scene));
+      for (int k = 0; k < 90; ++k) {
+        sim.step();
+        ASSERT_LE(sim.health().max_elevation_m, 1.5 * usual_m) << "under " << gravity_mps2;
+        ASSERT_EQ(sim.health().surface_units + sim.health().outflow_units, 0);
+      }
+      EXPECT_EQ(sim.recoveredCount(), 0u);
+    }
+  }
 }
 
 TEST_F(WindSeaOnDevice, StaysBoundedForEveryWindAndWater) {

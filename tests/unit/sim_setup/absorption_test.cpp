@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Absorption, ChoosesTheAbsorptionByTheDispersionUnlessTheSceneNamesIt) {
+TEST(Absorption, IsAMatchedLayerWithTheFivePointStencilUnlessTheSceneNamesIt) {
   core::Scene scene = smallScene();
   scene.wave->setBoundaries(core::WaveBoundary::kReflect);
   scene.wave->dispersion = core::Dispersion::kAiry;
@@ -30,12 +30,12 @@ TEST(Absorption, ChoosesTheAbsorptionByTheDispersionUnlessTheSceneNamesIt) {
   const std::uint64_t cells = std::uint64_t{scene.wave->resolution_count} * scene.wave->resolution_count;
   EXPECT_EQ(matched->device_bytes, sponge->device_bytes + 4 * cells);
   scene.wave->dispersion = core::Dispersion::kNone;
-  scene.wave->absorption = core::Absorption::kByDispersion;
-  EXPECT_FALSE(hasMatchedLayer(scene));
-  scene.wave->absorption = core::Absorption::kPml;
-  EXPECT_TRUE(hasMatchedLayer(scene));
-  EXPECT_TRUE(derive(scene));
+  scene.wave->absorption = core::Absorption::kByStencil;
+  EXPECT_TRUE(hasMatchedLayer(scene)) << "without dispersion, too";
   scene.wave->stencil = core::Stencil::kNinePoint;
+  EXPECT_FALSE(hasMatchedLayer(scene));
+  EXPECT_TRUE(derive(scene));
+  scene.wave->absorption = core::Absorption::kPml;
   EXPECT_THAT(derive(scene).error().message, HasSubstr("wave.absorption: ABSORPTION_PML needs STENCIL_FIVE_POINT"));
 }
 

@@ -76,6 +76,17 @@ TEST(Derive, RestingLayersLieAboveEachOtherAndCloserThanTheLattice) {
   EXPECT_GT(p.layer_heights_m.back(), 1.5 * p.spacing_m);
 }
 
+TEST(Derive, LayersWithoutGravityLieAsInTheLattice) {
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    core::Scene scene = smallScene();
+    scene.gravity_mps2 = 0.0;
+    scene.particles->solver = solver;
+    const ParticleLayout p = *layOutParticles(scene);
+    for (std::size_t k = 0; k < p.layer_heights_m.size(); ++k)
+      EXPECT_EQ(p.layer_heights_m[k], (static_cast<double>(k) + 0.5) * p.spacing_m);
+  }
+}
+
 TEST(Derive, RefusesAFixedStepThatBreaksARuleAndNamesFieldValueAndBound) {
   core::Scene scene = smallScene();
   scene.fixed_substeps_count = 1;

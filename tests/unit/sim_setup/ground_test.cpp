@@ -1,4 +1,5 @@
 // The ground: floor, beaches, grid, shapes and obstacles, as closed forms.
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <string>
@@ -9,6 +10,7 @@
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/fill_up.h>
 #include <spindrift/sim_setup/ground.h>
 
 namespace spindrift::sim {
@@ -78,11 +80,11 @@ TEST(Ground, OfAGridIsBilinearBetweenItsPoints) {
 }
 
 TEST(Ground, OfALongWaterHasItsGridAndBeachesAtItsOwnSides) {
-  core::Scene scene = waterOf(32, 2.0);
+  core::Scene scene = waterOf(32, 3.0);
   scene.wave->width_m = 4;
   scene.beaches = {{.side = core::Side::kPlusZ, .width_m = 1, .shore_depth_m = -1}};
   EXPECT_NEAR(groundDepth(scene, 15, 2), -1.0, kExact);
-  EXPECT_NEAR(groundDepth(scene, -15, 1), 2.0, kExact);
+  EXPECT_NEAR(groundDepth(scene, -15, 1), 3.0, kExact);
   scene.bed.emplace();
   scene.bed->grid = gridOf(2, 2, {0, 1, 2, 3});
   EXPECT_NEAR(groundDepth(scene, 16, 2), 3.0, kExact);
@@ -173,6 +175,26 @@ TEST(Ground, ThatIsTooDeepIsNamedWithItsPlaceAndTheRemedy) {
   ASSERT_FALSE(derived);
   EXPECT_THAT(derived.error().message, HasSubstr("2.5 m at x"));
   EXPECT_THAT(derived.error().message, HasSubstr("wave.depth_m of at least 2.5 m"));
+}
+
+TEST(Ground, ThatMissesTheDepthByTheRoundingOfItsNumbersCountsAsTheDepth) {
+  // A bar whose slopes are written with five digits: it ends 0.8 um below the floor.
+  const core::Scene scene =
+      withShapes(waterOf(40, 0.8), {core::BedSlope{.x_m = -14, .gradient_ratio = 0.049875, .length_m = 12.03},
+                                    core::BedSlope{.x_m = 1, .gradient_ratio = -0.099502, .length_m = 6.03}});
+  const auto derived = derive(scene);
+  ASSERT_TRUE(derived) << derived.error().message;
+  EXPECT_EQ(groundDepth(scene, 15, 0), 0.8);
+  EXPECT_NEAR(groundDepth(scene, -1, 0), 0.8 - 0.049875 * 12.03, kExact);
+}
+
+TEST(Ground, OfNonlinearWaterIsNoHigherThanItsUnits) {
+  core::Scene scene = withShapes(waterOf(40, 1.0), {core::BedSlope{.gradient_ratio = 10.0}});
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  EXPECT_NEAR(groundDepth(scene, 19, 0), -189.0, kExact) << "what people and the page see";
+  EXPECT_EQ(groundDepthWithObstacles(scene, 19, 0), -kHighestLand_m);
+  const Basin basin = layOutBasin(scene, *derive(scene)->wave);
+  EXPECT_EQ(std::ranges::max(restingElevation(basin)), bedUnits(kHighestLand_m));
 }
 
 TEST(Ground, WithoutPointsIsNoGrid) {

@@ -4,6 +4,9 @@ import type { ObstacleInfo, WaveInfo } from "../../codec/scene_info";
 import type { PlaneCounts } from "../frame_textures";
 import { bedOf, depthAtM, type Bed } from "../terrain";
 
+/** Higher land counts as this high, as on the server (`kHighestLand_m` in sim_setup/ground.h). */
+const kHighestLandM = 60;
+
 /** Heights over the still water at the centres of a frame's samples; x fastest, from the smallest x and z. */
 export interface ShoreCells extends PlaneCounts {
   /** With rocks and breakwaters: the elevation of a dry sample. */
@@ -59,7 +62,8 @@ export function shoreCells(bed: Bed, obstacles: readonly ObstacleInfo[], wave: P
       const [xM, zM] = [((i + 0.5) / resolutionCount - 0.5) * bed.sideM, ((k + 0.5) / countZ - 0.5) * bed.widthM];
       const at = i + resolutionCount * k;
       bedM[at] = -depthAtM(bed, xM, zM);
-      groundM[at] = obstacles.reduce((highest, obstacle) => Math.max(highest, obstacleRiseM(obstacle, xM, zM)), bedM[at]!);
+      const riseM = obstacles.reduce((highest, obstacle) => Math.max(highest, obstacleRiseM(obstacle, xM, zM)), bedM[at]!);
+      groundM[at] = Math.min(riseM, kHighestLandM);
     }
   if (counts.resolutionCount === resolutionCount && counts.countZ === countZ) return { ...counts, groundM, bedM };
   return { ...counts, groundM: meansOver(groundM, wave, counts), bedM: meansOver(bedM, wave, counts) };

@@ -32,8 +32,8 @@ enum class Dispersion { kNone, kAiry };
 /// and drying.
 enum class Bulk { kLinear, kNonlinear };
 
-/// What the layer along absorbing sides is. kByDispersion: kPml if the wave disperses, otherwise kSponge.
-enum class Absorption { kByDispersion, kSponge, kPml };
+/// What the layer along absorbing sides is. kByStencil: kPml with the 5-point stencil, kSponge with the 9-point one.
+enum class Absorption { kByStencil, kSponge, kPml };
 
 /// Kernels for density and pressure. kMuller (poly6 and spiky) is that of the thesis: its pressure is not the gradient
 /// of its density. The others use one kernel for both, so that pressure neither adds nor removes energy.
@@ -73,7 +73,7 @@ struct WaveScene {
   std::uint32_t fixed_substeps_count =
       Default::fixed_substeps_count;  ///< 0 = derive() chooses; otherwise this many wave steps per tick, checked
   Dispersion dispersion = Dispersion::kNone;
-  Absorption absorption = Absorption::kByDispersion;
+  Absorption absorption = Absorption::kByStencil;
   Bulk bulk = Bulk::kLinear;
   double manning_spm13 = Default::manning_spm13;  ///< roughness of the bed, nonlinear bulk only [s/m^(1/3)]
 

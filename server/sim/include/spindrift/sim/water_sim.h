@@ -220,6 +220,9 @@ class WaterSim {
   std::uint64_t escaped_count_ = 0;
   std::uint64_t recovered_count_ = 0;
   std::uint64_t crowded_count_ = 0;
+  /// Volume error of the first good health of this state: a later one that differs is a fault. Unset until there is
+  /// one.
+  std::optional<std::int64_t> ledger_units_;
   std::uint64_t abandoned_until_tick_ = 0;  ///< health of ticks up to this one belongs to an abandoned state
   std::uint64_t careful_until_tick_ = 0;    ///< after a recovery, twice the substeps are used until then
   bool is_careful_ = false;

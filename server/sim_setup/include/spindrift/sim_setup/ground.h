@@ -10,12 +10,17 @@
 namespace spindrift::sim {
 
 /// Returns the still depth of the ground at a place, without obstacles: floor, beaches, grid, then the shapes in order.
-/// Not above wave.depth_m if checkGround() found nothing. Precondition: the scene has a wave.
+/// At most wave.depth_m: what checkGround() allows beyond it is the rounding of numbers in a file. Precondition: the
+/// scene has a wave.
 double groundDepth(const core::Scene& scene, double x_m, double z_m);
+
+/// Water with BULK_NONLINEAR cannot stand higher than 64 m (shared/fixed_point.h), so it does not matter how far land
+/// rises above this: higher land counts as this high. The rest is for water on it.
+inline constexpr double kHighestLand_m = 60.0;
 
 /// Returns the still depth of the ground with obstacles as ground. A rock is a paraboloid of height_m over the still
 /// water, which it meets at radius_m, on a cone that goes on with its slope down to the bed; a breakwater is a vertical
-/// wall of height_m over the still water.
+/// wall of height_m over the still water. Land counts as at most kHighestLand_m high.
 double groundDepthWithObstacles(const core::Scene& scene, double x_m, double z_m);
 
 /// Returns the still depth where there is water at rest, 0 on land; without obstacles. [m]

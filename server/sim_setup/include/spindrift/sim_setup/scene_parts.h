@@ -32,6 +32,12 @@ bool hasWindSea(const core::Scene& scene);
 /// Returns whether particles or boats read the surface.
 bool isSampled(const core::Scene& scene);
 bool isTwoWay(const core::Scene& scene);
+/// Returns whether waves travel at other speeds in `after`.
+bool changesWaves(const core::Scene& before, const core::Scene& after);
+/// Returns the share of the wave's flow that remains when a scene changes to another depth or gravity; 1 unless one of
+/// them falls. Removed water takes its flow with it. Under less gravity waves keep their levels and become slower, and
+/// their flow with them; flow that stayed as fast would pile up more water than there was.
+double keptFlowRatio(const core::Scene& before, const core::Scene& after);
 /// Returns whether the surface has external pressure: from hulls or falling particles.
 bool hasPressureHead(const core::Scene& scene);
 /// Returns whether any part needs the breaking map of the wave.

@@ -69,6 +69,11 @@ struct WindSeaSpectrum {
 /// a storm, at level 0, and in scenes whose wind waves are gusts (hasWindSea() in scene_parts.h).
 [[nodiscard]] SeaState seaState(const core::Scene& scene, const WaveLayout& layout);
 
+/// Returns how a sea continues from `time_s` in water whose depth or gravity has changed: its waves keep their lengths
+/// and their levels at that time, and travel as the scene's water lets them. They become lower where they would break;
+/// waves that the damping ends within a turn are left out.
+[[nodiscard]] SeaState continued(SeaState sea, const core::Scene& scene, double time_s);
+
 /// Bytes of its buffers on the device, at most.
 [[nodiscard]] std::uint64_t windSeaBytes(core::CellCounts cells);
 
