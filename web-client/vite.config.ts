@@ -14,6 +14,8 @@ function programVersion(): string {
 
 export default defineConfig({
   define: { __PROGRAM_VERSION__: JSON.stringify(programVersion()) },
+  // Behind a proxy the page may be at any path.
+  base: "./",
   // The server's Content-Security-Policy allows only files of its own: nothing is inlined as data or script.
   build: { target: "es2022", assetsInlineLimit: 0, modulePreload: { polyfill: false }, chunkSizeWarningLimit: 900 },
   worker: { format: "es" },

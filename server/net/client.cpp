@@ -284,6 +284,19 @@ core::Result<ClientUrl> ClientUrl::parse(const std::string& url) {
   return out;
 }
 
+ClientUrl ClientUrl::inRoom(const std::string& room) const {
+  constexpr std::string_view kSocket = "/ws";
+  std::string_view base = std::string_view(path).substr(0, path.find('?'));
+  const std::string_view parent = base.substr(0, base.rfind('/'));
+  const bool is_socket = base.ends_with(kSocket) || parent.ends_with(kSocket);
+  if (is_socket && room.empty()) return *this;
+  if (is_socket) base = parent.ends_with(kSocket) ? parent.substr(0, parent.size() - kSocket.size()) : parent;
+  while (base.ends_with('/')) base.remove_suffix(1);
+  ClientUrl out = *this;
+  out.path = std::string(base) + std::string(kSocket) + (room.empty() ? "" : "/" + room);
+  return out;
+}
+
 std::unique_ptr<ClientPool> ClientPool::create(std::size_t thread_count, const std::string& ca_file) {
   return std::make_unique<ClientPoolImpl>(thread_count, ca_file);
 }

@@ -118,8 +118,16 @@ bool expectsContinue(const Request& request) {
 }
 
 RequestHead headOf(const Request& request) {
-  return {std::string(request.method_string()), std::string(request.target()),
-          std::string(request[http::field::if_none_match])};
+  const auto list = [&](http::field field) {
+    std::string joined;
+    const auto [first, end] = request.equal_range(field);
+    for (auto line = first; line != end; ++line) {
+      joined.append(joined.empty() ? "" : ", ").append(line->value().data(), line->value().size());
+    }
+    return joined;
+  };
+  return {std::string(request.method_string()), std::string(request.target()), list(http::field::if_none_match),
+          list(http::field::accept_encoding)};
 }
 
 HttpRequest questionOf(const Request& request, RequestTarget target, const std::string& peer) {

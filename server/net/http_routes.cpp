@@ -49,19 +49,21 @@ bool matchesEtag(std::string_view list, std::string_view etag) {
 }
 
 Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& files) {
-  const std::shared_ptr<const StaticFile> file = files.find(path);
+  const std::shared_ptr<const StaticFile> file = files.find(path, head.accept_encoding);
   if (!file && path == "/") {
     return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
   }
   if (!file) return textReply(404, "There is nothing at " + printable(path) + ".");
   Reply reply;
   reply.headers.emplace_back("ETag", file->etag);
+  reply.headers.emplace_back("Vary", "Accept-Encoding");
   reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
   if (matchesEtag(head.if_none_match, file->etag)) {
     reply.status = 304;
     reply.body = std::make_shared<const std::string>();
     return reply;
   }
+  if (!file->coding.empty()) reply.headers.emplace_back("Content-Encoding", file->coding);
   reply.content_type = file->content_type;
   reply.body = std::shared_ptr<const std::string>(file, &file->content);
   return reply;

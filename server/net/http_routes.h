@@ -22,6 +22,7 @@ struct RequestHead {
   std::string method;
   std::string target;  ///< undecoded
   std::string if_none_match;
+  std::string accept_encoding;
 };
 
 struct Reply {

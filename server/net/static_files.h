@@ -1,4 +1,5 @@
 // The built web client: each file is read from disc once and cached until its modification time or size changes.
+// Compressed files beside it (kContentCodings) are sent in its place to clients that take them.
 #pragma once
 
 #include <cstdint>
@@ -9,12 +10,16 @@
 #include <string_view>
 #include <unordered_map>
 
+#include "content_coding.h"
+
 namespace spindrift::net {
 
 struct StaticFile {
   std::string content;
   std::string content_type;
-  std::string etag;        ///< quoted; changes with the size or the modification time
+  std::string_view coding;  ///< of the content: a name in kContentCodings, or empty
+  std::string etag;         ///< quoted; another one for each coding, size and modification time
+  std::filesystem::file_time_type modified;
   bool immutable = false;  ///< under /assets/, where file names contain a hash of the content
 };
 
@@ -24,22 +29,20 @@ class StaticFiles {
   /// `web_root` empty or missing: no file is found.
   explicit StaticFiles(const std::string& web_root);
 
-  /// Returns the file for a decoded path ("/" = /index.html), or null if there is none that may be served.
-  std::shared_ptr<const StaticFile> find(std::string_view path);
+  /// Returns the file for a decoded path ("/" = /index.html), or null if there is none that may be served: in the
+  /// coding that this list of Accept-Encoding prefers, if there is such a file of this original.
+  std::shared_ptr<const StaticFile> find(std::string_view path, std::string_view accept_encoding = "");
 
   /// Larger files are not served: a web client has none.
   static constexpr std::uintmax_t kMaxFileBytes = 64U << 20U;
 
  private:
-  struct Entry {
-    std::shared_ptr<const StaticFile> file;
-    std::filesystem::file_time_type modified;
-    std::uintmax_t size_bytes = 0;
-  };
+  /// Returns a file in a coding, from the cache if it has not changed; null if there is none that may be served.
+  std::shared_ptr<const StaticFile> read(const std::string& relative, const ContentCoding& coding);
 
   std::filesystem::path root_;  ///< canonical; empty = no files
   std::mutex mutex_;
-  std::unordered_map<std::string, Entry> cache_;
+  std::unordered_map<std::string, std::shared_ptr<const StaticFile>> cache_;
   std::uintmax_t cached_bytes_ = 0;
 };
 

@@ -18,12 +18,8 @@ double since_s(ScriptClient::Clock::time_point begin) {
 
 }  // namespace
 
-ScriptClient::ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, net::ClientUrl url)
-    : setup_(setup), pool_(pool), url_([&] {
-        if (!setup.room().empty()) url.path = "/ws/" + setup.room();
-        if (url.path == "/") url.path = "/ws";
-        return std::move(url);
-      }()) {
+ScriptClient::ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url)
+    : setup_(setup), pool_(pool), url_(url.inRoom(setup.room())) {
   for (const v1::Subscribe& wanted : setup_.subscribe()) subscriptions_[wanted.layer()] = wanted;
 }
 

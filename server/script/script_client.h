@@ -36,7 +36,7 @@ class ScriptClient {
   };
 
   /// `setup` and the pool must outlive the client.
-  ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, net::ClientUrl url);
+  ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url);
 
   /// Call it often: after a Draining message it leaves and connects again when the time has come. A script does not see
   /// that as the end of a connection.

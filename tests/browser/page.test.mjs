@@ -153,7 +153,8 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const before_click = await shootWater(page);
     const box = await page.locator("canvas").first().boundingBox();
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
-    await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
+    const clicked = await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
+    assert.equal(clicked.view, "above");
     await newestIsDrawn(page);
     const picture = await measure(page, before_click, await shootWater(page));
     // A picture of this run for the report.

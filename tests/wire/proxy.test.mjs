@@ -1,4 +1,5 @@
-// The server behind nginx and behind Caddy with TLS, configured as docs/operations.md says. Skipped where the proxy or openssl is missing.
+// The server behind nginx and behind Caddy with TLS, at / and under a path, configured as docs/operations.md says. Skipped where the proxy
+// or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:net";
@@ -20,22 +21,28 @@ async function freePort() {
   return port;
 }
 
-/** Returns the block of documentation in this language with its texts replaced, each of which must be there. */
-function documented(language, replaced) {
+/** Returns the blocks of documentation in this language: for the host as a whole, and for a path. */
+function documented(language) {
   const page = readFileSync(`${repository}/docs/operations.md`, "utf8");
-  const block = new RegExp(`\`\`\`${language}\\n([^]*?)\`\`\``).exec(page)?.[1];
-  return replaced.reduce((text, [from, to]) => {
-    expect(text).toContain(from);
-    return text.replace(from, to);
-  }, block);
+  return [...page.matchAll(new RegExp(`\`\`\`${language}\\n([^]*?)\`\`\``, "g"))].map((match) => match[1]);
+}
+
+/** Replaces texts, each of which must be there. */
+function replaced(text, pairs) {
+  return pairs.reduce((before, [from, to]) => {
+    expect(before).toContain(from);
+    return before.replace(from, to);
+  }, text);
 }
 
 const environment = (folder) => ({ PATH: "/usr/sbin:/usr/bin:/bin", HOME: folder, XDG_DATA_HOME: folder, XDG_CONFIG_HOME: folder });
 
-/** Each starts a proxy on this port in front of the server, with chain.pem and key.pem of the folder. */
+/** Each returns the arguments of a proxy on this port in front of the server, with chain.pem and key.pem of the folder, at / or under /water/. */
 const starters = {
-  nginx(port, server_port, folder) {
-    const block = documented("nginx", [
+  nginx(port, server_port, folder, base) {
+    const [whole, location] = documented("nginx");
+    const root = /^ *location \/ \{\n.*\n/m.exec(whole)[0];
+    const block = replaced(base === "/" ? whole : whole.replace(root, location), [
       ["listen 443 ssl", `listen 127.0.0.1:${port} ssl`],
       ["/etc/letsencrypt/live/water.example.org/fullchain.pem", `${folder}/chain.pem`],
       ["/etc/letsencrypt/live/water.example.org/privkey.pem", `${folder}/key.pem`],
@@ -45,8 +52,9 @@ const starters = {
     writeFileSync(`${folder}/nginx.conf`, `pid ${folder}/pid; error_log stderr; events {} http { access_log off; ${temporary.join(" ")}\n${block} }`);
     return ["-p", folder, "-c", `${folder}/nginx.conf`, "-g", "daemon off;"];
   },
-  caddy(port, server_port, folder) {
-    const block = documented("caddy", [
+  caddy(port, server_port, folder, base) {
+    const [whole, location] = documented("caddy");
+    const block = replaced(base === "/" ? whole : location, [
       ["water.example.org {", `https://127.0.0.1:${port} {\n    bind 127.0.0.1\n    tls ${folder}/chain.pem ${folder}/key.pem`],
       ["127.0.0.1:8080", `127.0.0.1:${server_port}`],
     ]);
@@ -55,7 +63,8 @@ const starters = {
   },
 };
 
-describe.each(Object.keys(starters))("behind %s with TLS", (name) => {
+const kPlaces = Object.keys(starters).flatMap((name) => ["/", "/water/"].map((base) => [name, base]));
+describe.each(kPlaces)("behind %s with TLS at %s", (name, base) => {
   describe.skipIf(!has(name) || !has("openssl"))("where it is installed", () => {
     const folder = mkdtempSync(join(tmpdir(), `spindrift-${name}-`));
     let server;
@@ -70,11 +79,11 @@ describe.each(Object.keys(starters))("behind %s with TLS", (name) => {
       // One session per address.
       server = await startServer(0, ["--scene", `${repository}/tests/browser/tank.textproto`, "--trust-proxy", "127.0.0.1", "--address-share", "0"]);
       port = await freePort();
-      proxy = spawn(name, starters[name](port, server.port, folder), { env: environment(folder), stdio: ["ignore", "ignore", "pipe"] });
+      proxy = spawn(name, starters[name](port, server.port, folder, base), { env: environment(folder), stdio: ["ignore", "ignore", "pipe"] });
       let words = "";
       proxy.stderr.setEncoding("utf8").on("data", (text) => (words += text));
       const begin = Date.now();
-      while ((await status("/healthz").catch(() => 0)) !== 200) {
+      while ((await status("healthz").catch(() => 0)) !== 200) {
         if (proxy.exitCode !== null || Date.now() - begin > kStartLimitMs) throw new Error(`${name} does not serve: ${words}`);
         await new Promise((resolve) => setTimeout(resolve, 50));
       }
@@ -90,18 +99,21 @@ describe.each(Object.keys(starters))("behind %s with TLS", (name) => {
 
     const options = (from, more = {}) => ({ ca, localAddress: from, headers: more });
 
-    function status(path, headers = {}) {
+    /** `path`: relative to the page. */
+    function ask(path, headers = {}) {
       return new Promise((resolve, reject) => {
-        get({ host: "127.0.0.1", port, path, ...options("127.0.0.2", headers) }, (answer) => {
-          answer.resume();
-          resolve(answer.statusCode);
+        get({ host: "127.0.0.1", port, path: new URL(path, `https://host${base}`).pathname, ...options("127.0.0.2", headers) }, (answer) => {
+          let text = "";
+          answer.setEncoding("utf8").on("data", (more) => (text += more));
+          answer.on("end", () => resolve({ status: answer.statusCode, headers: answer.headers, text }));
         }).on("error", reject);
       });
     }
+    const status = async (path) => (await ask(path)).status;
 
     /** Opens a session from this address; resolves to the socket, or to the status of the refusal. */
     function open(from, headers = {}) {
-      const socket = new WebSocket(`wss://127.0.0.1:${port}/ws`, "spindrift.v1", options(from, headers));
+      const socket = new WebSocket(`wss://127.0.0.1:${port}${base}ws`, "spindrift.v1", options(from, headers));
       return new Promise((resolve, reject) => {
         socket.on("message", () => resolve(socket));
         socket.on("unexpected-response", (_, answer) => resolve(answer.statusCode));
@@ -110,11 +122,24 @@ describe.each(Object.keys(starters))("behind %s with TLS", (name) => {
     }
 
     it("serves the page and opens sessions for it", async () => {
-      expect(await status("/")).toBe(200);
+      const page = await ask("");
+      expect(page.status).toBe(200);
+      const parts = [...page.text.matchAll(/(?:href|src)="([^"]+)"/g)].map((match) => match[1]);
+      expect(parts.length).toBeGreaterThan(2);
+      for (const part of [...parts, "api/v1/rooms"]) expect(await status(part), part).toBe(200);
       const socket = await open("127.0.0.3", { Origin: `https://127.0.0.1:${port}` });
       expect(socket.protocol).toBe("spindrift.v1");
       socket.terminate();
       expect(await open("127.0.0.4", { Origin: "https://elsewhere.example" })).toBe(403);
+    });
+
+    it("sends the page compressed, with its tag and a time to keep it", async () => {
+      const script = /src="([^"]+\.js)"/.exec((await ask("")).text)[1];
+      for (const coding of ["br", "gzip"]) {
+        const { headers } = await ask(script, { "Accept-Encoding": coding });
+        expect(headers).toMatchObject({ "content-encoding": coding, vary: expect.stringContaining("Accept-Encoding"), "cache-control": expect.stringContaining("immutable"), etag: expect.stringContaining(coding) });
+        expect((await ask(script, { "Accept-Encoding": coding, "If-None-Match": headers.etag })).status).toBe(304);
+      }
     });
 
     it("gives every client limits of its own, whatever the client claims", async () => {

@@ -79,7 +79,7 @@ describe("the connection", () => {
     const rig = new Rig();
     rig.socket.open();
     rig.socket.deliver({ case: "refusal", value: { message: "unknown layer 9" } });
-    expect(rig.state).toEqual({ name: "refused", reason: "unknown layer 9" });
+    expect(rig.state).toEqual({ name: "refused", reason: "unknown layer 9", rooms: [] });
     expect(rig.socket.closed).toBe(true);
     rig.time.advance(60_000);
     expect(rig.sockets).toHaveLength(1);
@@ -202,6 +202,21 @@ describe("the connection", () => {
     expect(rig.eventsOf("reject").at(-1)).toMatchObject(notSent(3n, "no answer"));
   });
 
+  it("waits for another scene, and for a parameter that builds water, as long as the connection lives", () => {
+    const rig = liveRig();
+    rig.connection.command(1, { case: "changeScene", value: { name: "harbor" } });
+    rig.connection.command(2, { case: "setParameter", value: { path: "particles.count", value: 1e5 } });
+    for (let i = 0; i < 240; ++i) {
+      rig.time.advance(500);
+      rig.socket.deliver({ case: "roomState", value: { paused: false, speed: 1 } });
+    }
+    expect(rig.eventsOf("reject")).toEqual([]);
+    rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 9n } });
+    expect(rig.eventsOf("ack")).toMatchObject([{ commandId: 1n }]);
+    rig.socket.drop();
+    expect(rig.eventsOf("reject")).toMatchObject([notSent(2n, "lost")]);
+  });
+
   it("holds at most 64 unanswered commands, and sends none into a congested socket", () => {
     const rig = liveRig();
     for (let id = 1; id <= 65; ++id) rig.connection.command(id, splash);
@@ -256,7 +271,12 @@ describe("the connection", () => {
 
 describe("socketUrl", () => {
   it("takes the room from the address and the scheme from the page", () => {
-    expect(socketUrl({ protocol: "http:", host: "h:8080", search: "" })).toBe("ws://h:8080/ws");
-    expect(socketUrl({ protocol: "https:", host: "h", search: "?quality=low&room=big%20pool" })).toBe("wss://h/ws/big%20pool");
+    expect(socketUrl("http://h:8080/")).toBe("ws://h:8080/ws");
+    expect(socketUrl("https://h/?quality=low&room=big%20pool#x")).toBe("wss://h/ws/big%20pool");
+  });
+
+  it("is beside the page, whatever path a proxy has given it", () => {
+    expect(socketUrl("https://h/water/?room=pool")).toBe("wss://h/water/ws/pool");
+    expect(socketUrl("http://h/a/b/index.html")).toBe("ws://h/a/b/ws");
   });
 });

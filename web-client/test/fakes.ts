@@ -3,8 +3,10 @@ import { fromBinary } from "@bufbuild/protobuf";
 
 import type { PlainFrame } from "../src/codec/frame_types";
 import { ClientMessageSchema, type ClientMessage } from "../src/gen/spindrift/v1/wire_pb";
-import { Connection, type ConnectionSink, type ConnectionWorld, type SocketLike } from "../src/net/connection";
+import { Connection } from "../src/net/connection";
+import type { ConnectionSink, ConnectionWorld, SocketLike } from "../src/net/connection_world";
 import type { ConnectionEvent, ConnectionState, LinkStats } from "../src/net/messages";
+import type { MissingRoom } from "../src/net/missing_room";
 import { encode, type ServerBody } from "./wire";
 
 export class FakeSocket implements SocketLike {
@@ -85,6 +87,9 @@ export class Rig {
   readonly events: ConnectionEvent[] = [];
   readonly frames: PlainFrame[] = [];
   readonly connection: Connection;
+  /** What REST says about the room, and how often it was asked. */
+  missing: MissingRoom | undefined;
+  askedCount = 0;
   /** Time that the next message takes to read: the clock advances by this after it is next read. */
   slowReadMs = 0;
 
@@ -94,6 +99,10 @@ export class Rig {
         const socket = new FakeSocket(url, subprotocol);
         this.sockets.push(socket);
         return socket;
+      },
+      findMissingRoom: () => {
+        ++this.askedCount;
+        return Promise.resolve(this.missing);
       },
       nowMs: () => {
         const { nowMs } = this.time;

@@ -2,7 +2,7 @@
 import { describe, expect, it } from "vitest";
 
 import { colourMap, kColoursCount, type ColourMapName } from "../src/scene/looks/colour_map";
-import { kBeyondShare, kNarrowAfterS, niceAbove, RangeFollower, reachOf, ticksOf } from "../src/scene/looks/value_range";
+import { kNarrowAfterS, niceAbove, RangeFollower, reachOf, ticksOf } from "../src/scene/looks/value_range";
 
 /** Lightness L* of CIELAB, 0..100. */
 function lightnesses(name: ColourMapName): number[] {
@@ -78,8 +78,14 @@ describe("the range of the colours", () => {
 
   it("leaves out a small share of the values", () => {
     const magnitudes = Float64Array.from({ length: 1000 }, (_, i) => i + 1);
-    expect(reachOf(magnitudes)).toBe(1000 * (1 - kBeyondShare));
-    expect(reachOf(new Float64Array(0))).toBe(0);
+    expect(reachOf(magnitudes, 0, 0.01)).toBe(990);
+    expect(reachOf(new Float64Array(0), 0, 0.01)).toBe(0);
+  });
+
+  it("follows what moves: a small splash in still water counts, the still water does not", () => {
+    const magnitudes = Float64Array.from({ length: 4096 }, (_, i) => (i < 40 ? 0.3 : 1e-4));
+    expect(reachOf(magnitudes, 0.01, 0.1)).toBe(0.3);
+    expect(reachOf(new Float64Array(100).fill(1e-4), 0.01, 0.1)).toBe(0);
   });
 
   it("widens at once, and narrows only after values have been smaller for a while", () => {

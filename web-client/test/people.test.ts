@@ -51,7 +51,7 @@ describe("the identity of the page", () => {
     rig.socket.open();
     rig.socket.deliver(welcome);
     rig.socket.deliver({ case: "refusal", value: { message: "the token has expired" } });
-    expect(rig.state).toEqual({ name: "refused", reason: "the token has expired" });
+    expect(rig.state).toEqual({ name: "refused", reason: "the token has expired", rooms: [] });
     rig.connection.introduce("Ada", "secret");
     rig.socket.open();
     expect(rig.socket.sent[0]).toMatchObject({ value: { name: "Ada", token: "secret", resumeKey: "key" } });

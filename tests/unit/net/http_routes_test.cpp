@@ -13,15 +13,16 @@ namespace {
 struct HttpRoutesTest : testing::Test {
   test::TemporaryFolder folder;
 
-  Reply route(const std::string& method, const std::string& target, const std::string& if_none_match = "") {
+  Reply route(const std::string& method, const std::string& target, const std::string& if_none_match = "",
+              const std::string& accept_encoding = "") {
     StaticFiles files(folder.path().string());
-    auto routed = routeRequest({method, target, if_none_match}, files);
+    auto routed = routeRequest({method, target, if_none_match, accept_encoding}, files);
     return std::holds_alternative<Reply>(routed) ? std::get<Reply>(std::move(routed)) : Reply{};
   }
   /// The request that would go to the application.
   std::optional<RequestTarget> target(const std::string& method, const std::string& text) {
     StaticFiles files(folder.path().string());
-    auto routed = routeRequest({method, text, ""}, files);
+    auto routed = routeRequest({method, text, "", ""}, files);
     return std::holds_alternative<RequestTarget>(routed) ? std::optional(std::get<RequestTarget>(std::move(routed)))
                                                          : std::nullopt;
   }
@@ -45,6 +46,26 @@ TEST_F(HttpRoutesTest, LetsBrowsersCacheHashedAssetsAndRevalidateTheRest) {
   folder.write("assets/main-abc.js", "run()");
   EXPECT_EQ(header(route("GET", "/assets/main-abc.js"), "Cache-Control"), "public, max-age=31536000, immutable");
   EXPECT_EQ(header(route("GET", "/?room=pool"), "Cache-Control"), "no-cache");
+}
+
+TEST_F(HttpRoutesTest, SendsCompressedFilesWithTheirOwnTag) {
+  folder.write("assets/main-abc.js", "run()");
+  folder.write("assets/main-abc.js.gz", "gzipped");
+  const Reply plain = route("GET", "/assets/main-abc.js");
+  const Reply gzip = route("GET", "/assets/main-abc.js", "", "gzip");
+  EXPECT_EQ(*gzip.body, "gzipped");
+  EXPECT_EQ(gzip.content_type, "text/javascript; charset=utf-8");
+  EXPECT_EQ(header(gzip, "Content-Encoding"), "gzip");
+  EXPECT_EQ(header(gzip, "Cache-Control"), "public, max-age=31536000, immutable");
+  EXPECT_EQ(*plain.body, "run()");
+  EXPECT_EQ(header(plain, "Content-Encoding"), "(none)");
+  EXPECT_NE(header(plain, "ETag"), header(gzip, "ETag"));
+  for (const Reply* reply : {&plain, &gzip}) EXPECT_EQ(header(*reply, "Vary"), "Accept-Encoding");
+
+  const Reply known = route("GET", "/assets/main-abc.js", header(gzip, "ETag"), "gzip");
+  EXPECT_EQ(known.status, 304U);
+  EXPECT_EQ(header(known, "Vary"), "Accept-Encoding");
+  EXPECT_EQ(route("GET", "/assets/main-abc.js", header(gzip, "ETag")).status, 200U);
 }
 
 TEST_F(HttpRoutesTest, AnswersNotModifiedForAKnownTag) {

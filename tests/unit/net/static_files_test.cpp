@@ -56,6 +56,38 @@ TEST_F(StaticFilesTest, SeesThatAFileChanged) {
   EXPECT_NE(before->etag, after->etag);
 }
 
+TEST_F(StaticFilesTest, PrefersTheSmallestCodingThatTheClientTakes) {
+  folder.write("web/index.html.gz", "gzip");
+  folder.write("web/index.html.br", "br");
+  folder.write("web/sub/page.html.gz", "gzip");
+  StaticFiles files(root());
+  const auto coding = [&](const char* path, const char* accepted) { return files.find(path, accepted)->coding; };
+  EXPECT_EQ(coding("/", ""), "");
+  EXPECT_EQ(coding("/", "gzip, deflate"), "gzip");
+  EXPECT_EQ(coding("/", "gzip, deflate, br, zstd"), "br");
+  EXPECT_EQ(coding("/", "*"), "br");
+  EXPECT_EQ(coding("/", "br;q=0.5, gzip"), "gzip");
+  EXPECT_EQ(coding("/", "identity, gzip;q=0.5"), "");
+  EXPECT_EQ(coding("/", "gzip;q=0"), "");
+  EXPECT_EQ(coding("/sub/page.html", "br, gzip"), "gzip");
+  EXPECT_EQ(coding("/assets/main-abc123.js", "br, gzip"), "");
+  EXPECT_EQ(files.find("/", "br"), files.find("/index.html", "br")) << "from memory, both times the same file";
+  EXPECT_EQ(files.find("/index.html.br")->content_type, "application/octet-stream");
+}
+
+TEST_F(StaticFilesTest, ServesNoCompressedFileThatIsOlderThanTheOriginal) {
+  folder.write("web/index.html.gz", "old");
+  fs::last_write_time(folder.path() / "web/index.html.gz",
+                      fs::last_write_time(folder.path() / "web/index.html") - std::chrono::minutes(2));
+  StaticFiles files(root());
+  EXPECT_EQ(files.find("/", "gzip")->content, "<h1>water</h1>");
+}
+
+TEST_F(StaticFilesTest, ServesNoCompressedFileFromOutsideTheRoot) {
+  fs::create_symlink(folder.path() / "secret.txt", folder.path() / "web/index.html.gz");
+  EXPECT_EQ(StaticFiles(root()).find("/", "gzip")->content, "<h1>water</h1>");
+}
+
 TEST_F(StaticFilesTest, ServesNothingWithoutARoot) {
   EXPECT_FALSE(StaticFiles("").find("/"));
   EXPECT_FALSE(StaticFiles((folder.path() / "missing").string()).find("/"));

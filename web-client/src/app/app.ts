@@ -68,7 +68,7 @@ export class App {
     },
     (message) => this.toast.show(message, "bad"),
   );
-  private readonly url = socketUrl(location);
+  private readonly url = socketUrl(location.href);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load();
   /** The last greeting. */

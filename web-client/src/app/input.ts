@@ -28,8 +28,6 @@ function connectPointer(app: App): void {
   });
   canvas.addEventListener("pointercancel", (event) => taps.cancelled(event.pointerId));
   canvas.addEventListener("pointerup", (event) => {
-    // A drag may have left the view of the pressed button.
-    app.viewButtons.refresh();
     if (taps.released(sampleOf(event))) splashUnder(app, event);
   });
 }

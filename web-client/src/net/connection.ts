@@ -11,10 +11,11 @@ import { coarserLevel, kFinestLevel, wireLevel, type LevelName } from "../codec/
 import { parse } from "../codec/parse";
 import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
+import type { ConnectionSink, ConnectionWorld, SocketLike } from "./connection_world";
 import { LinkMeter } from "./link_meter";
 import { LoadGovernor } from "./load_governor";
 import { planMove, type MovePlan } from "./move_plan";
-import type { CommandAction, ConnectionCalls, ConnectionEvent, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import type { CommandAction, ConnectionCalls, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
 
@@ -29,6 +30,8 @@ const kHousekeepingEveryMs = 500;
 /** Without a greeting, or without any message, for this long the connection counts as lost. */
 const kSilenceMs = 10_000;
 const kAnswerTimeoutMs = 10_000;
+/** The server builds water for these, as long as that takes; meanwhile everything else goes on, and a lost connection ends the wait. */
+const kSlowActions: readonly CommandAction["case"][] = ["changeScene", "setParameter"];
 const kMaxUnsentBytes = 256 * 1024;
 const kDiagnosticsRateHz = 10;
 /** Shortest interval between two requests for a keyframe. */
@@ -37,34 +40,6 @@ const kKeyframeEveryMs = 1000;
 const kSettledMs = 5000;
 
 type ClientBody = Exclude<NonNullable<MessageInitShape<typeof ClientMessageSchema>["message"]>, { case: undefined }>;
-
-/** The part of WebSocket that is used. */
-export interface SocketLike {
-  binaryType: string;
-  readonly bufferedAmount: number;
-  onopen: ((event: never) => void) | null;
-  onmessage: ((event: { data: unknown }) => void) | null;
-  onclose: ((event: { code: number; reason: string }) => void) | null;
-  onerror: ((event: never) => void) | null;
-  send(bytes: Uint8Array<ArrayBuffer>): void;
-  close(code?: number, reason?: string): void;
-}
-
-export interface ConnectionWorld {
-  openSocket(url: string, subprotocol: string): SocketLike;
-  /** Unix time in the browser, so that the page can convert what is derived from it. */
-  nowMs(): number;
-  /** In [0, 1). */
-  random(): number;
-  setTimer(callback: () => void, ms: number): number;
-  clearTimer(timer: number): void;
-}
-
-export interface ConnectionSink {
-  event(event: ConnectionEvent): void;
-  /** The payload is valid until the call returns. */
-  frame(frame: PlainFrame): void;
-}
 
 export class Connection implements ConnectionCalls {
   private socket: SocketLike | undefined;
@@ -158,7 +133,7 @@ export class Connection implements ConnectionCalls {
       return this.rejectHere(commandId, `${kMaxPendingCount} commands are waiting for an answer already; try again in a moment`);
     if (this.socket!.bufferedAmount > kMaxUnsentBytes)
       return this.rejectHere(commandId, "the link to the server is congested; try again in a moment");
-    this.pending.add(commandId, this.world.nowMs());
+    this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + kAnswerTimeoutMs);
     this.send({ case: "command", value: { commandId: BigInt(commandId), action } });
   }
 
@@ -174,17 +149,22 @@ export class Connection implements ConnectionCalls {
     try {
       socket = this.world.openSocket(this.url, kSubprotocol);
     } catch (error) {
-      this.setState({ name: "refused", reason: error instanceof Error ? error.message : String(error) });
+      this.setState({ name: "refused", reason: error instanceof Error ? error.message : String(error), rooms: [] });
       return;
     }
     this.socket = socket;
     socket.binaryType = "arraybuffer";
+    let isOpen = false;
     socket.onopen = () => {
+      isOpen = true;
       const version = { major: kWireMajor, minor: kWireMinor };
       this.send({ case: "hello", value: { version, client: kClientName, ...this.identity } });
     };
     socket.onmessage = (event) => this.receive(event.data);
-    socket.onclose = (event) => this.lost(event.reason || `closed by the server or the network (code ${event.code})`);
+    socket.onclose = (event) => {
+      this.lost(event.reason || `closed by the server or the network (code ${event.code})`);
+      if (!isOpen) void this.askForRoom();
+    };
     // A close follows every error and carries the reason.
     socket.onerror = () => {};
   }
@@ -330,7 +310,7 @@ export class Connection implements ConnectionCalls {
     const nowMs = this.world.nowMs();
     this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...this.currentLevel() } });
     if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
-    for (const commandId of this.pending.takeOverdue(nowMs, kAnswerTimeoutMs))
+    for (const commandId of this.pending.takeOverdue(nowMs))
       this.rejectHere(commandId, `no answer for ${kAnswerTimeoutMs / 1000} s`);
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
     if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no message from the server for ${kSilenceMs / 1000} s`);
@@ -361,10 +341,19 @@ export class Connection implements ConnectionCalls {
     this.retryTimer = this.world.setTimer(() => this.connect(), inS * 1000);
   }
 
-  private refuse(reason: string): void {
+  /** Tries no more to enter a room that does not exist. */
+  private async askForRoom(): Promise<void> {
+    const attempt = this.failedCount;
+    const missing = await this.world.findMissingRoom(this.url, this.identity.token);
+    if (!missing || this.state.name !== "retrying" || this.failedCount !== attempt) return;
+    if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
+    this.refuse(`there is no room ${missing.name}`, missing.rooms);
+  }
+
+  private refuse(reason: string, rooms: string[] = []): void {
     this.dropSocket();
     this.failPending("the server refused the connection");
-    this.setState({ name: "refused", reason });
+    this.setState({ name: "refused", reason, rooms });
   }
 
   private dropSocket(): void {

@@ -29,7 +29,8 @@ export type ConnectionState =
   | { name: "connecting" }
   | { name: "live" }
   | { name: "retrying"; inS: number; why: string }
-  | { name: "refused"; reason: string };
+  /** `rooms`: those that there are, if the page's room does not exist. */
+  | { name: "refused"; reason: string; rooms: string[] };
 
 /** The user's choice: a level of detail, or automatic. */
 export type DetailChoice = "auto" | LevelName;

@@ -3,31 +3,32 @@
 export const kMaxPendingCount = 64;
 
 export class PendingCommands {
-  private readonly sinceMs = new Map<number, number>();
+  private readonly untilMs = new Map<number, number>();
 
   get isFull(): boolean {
-    return this.sinceMs.size >= kMaxPendingCount;
+    return this.untilMs.size >= kMaxPendingCount;
   }
 
-  add(commandId: number, nowMs: number): void {
-    this.sinceMs.set(commandId, nowMs);
+  /** `untilMs`: when it is overdue; Infinity for a command that may take as long as it needs. */
+  add(commandId: number, untilMs: number): void {
+    this.untilMs.set(commandId, untilMs);
   }
 
   /** True for the first answer to a command of this connection. */
   answered(commandId: number): boolean {
-    return this.sinceMs.delete(commandId);
+    return this.untilMs.delete(commandId);
   }
 
-  /** Removes and returns the commands that have waited for at least `limitMs`. */
-  takeOverdue(nowMs: number, limitMs: number): number[] {
-    const overdue = [...this.sinceMs].filter(([, sinceMs]) => nowMs - sinceMs >= limitMs).map(([commandId]) => commandId);
-    for (const commandId of overdue) this.sinceMs.delete(commandId);
+  /** Removes and returns the commands that have waited for too long. */
+  takeOverdue(nowMs: number): number[] {
+    const overdue = [...this.untilMs].filter(([, untilMs]) => nowMs >= untilMs).map(([commandId]) => commandId);
+    for (const commandId of overdue) this.untilMs.delete(commandId);
     return overdue;
   }
 
   takeAll(): number[] {
-    const all = [...this.sinceMs.keys()];
-    this.sinceMs.clear();
+    const all = [...this.untilMs.keys()];
+    this.untilMs.clear();
     return all;
   }
 }

@@ -37,9 +37,10 @@ export class WaterClient {
   }
 }
 
-/** Returns ws://HOST/ws, or /ws/ROOM for the page's ?room=ROOM; wss for an https page. */
-export function socketUrl(location: { protocol: string; host: string; search: string }): string {
-  const room = new URLSearchParams(location.search).get("room");
-  const scheme = location.protocol === "https:" ? "wss:" : "ws:";
-  return `${scheme}//${location.host}/ws${room ? `/${encodeURIComponent(room)}` : ""}`;
+/** Returns the address of the socket beside the page: ws, or ws/ROOM for the page's ?room=ROOM; wss for an https page. */
+export function socketUrl(page: string): string {
+  const room = new URL(page).searchParams.get("room");
+  const url = new URL(room ? `ws/${encodeURIComponent(room)}` : "ws", page);
+  url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
+  return url.href;
 }

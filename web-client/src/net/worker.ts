@@ -2,9 +2,11 @@
 // message into an aligned buffer, which travels to the page and back by transfer.
 import { readerFault } from "../codec/frame_reader";
 import type { FrameLayer } from "../codec/layers";
-import { Connection, type ConnectionWorld, type SocketLike } from "./connection";
+import { Connection } from "./connection";
+import type { ConnectionWorld, SocketLike } from "./connection_world";
 import { FrameHandover } from "./handover";
 import type { ConnectionEvent, Frame, Identity, PageEvent, WorkerRequest } from "./messages";
+import { findMissingRoom } from "./missing_room";
 
 /** The page's ring holds five; one more may be on its way. */
 const kMaxFramesUnderWay = 6;
@@ -27,6 +29,7 @@ const handovers: Record<FrameLayer, FrameHandover<Frame>> = {
 
 const world: ConnectionWorld = {
   openSocket: (url, subprotocol) => new WebSocket(url, subprotocol) as unknown as SocketLike,
+  findMissingRoom: (socketUrl, token) => findMissingRoom(socketUrl, token, (url, init) => self.fetch(url, init)),
   // Unlike Date.now() it does not jump.
   nowMs: () => performance.timeOrigin + performance.now(),
   random: () => Math.random(),
@@ -39,7 +42,7 @@ let connection: Connection | undefined;
 function start(url: string, identity: Identity): void {
   connection?.stop();
   const fault = readerFault();
-  if (fault) return post({ kind: "state", state: { name: "refused", reason: fault } });
+  if (fault) return post({ kind: "state", state: { name: "refused", reason: fault, rooms: [] } });
   connection = new Connection(url, world, {
     event: passOn,
     frame: ({ kind, header, payload }) => {

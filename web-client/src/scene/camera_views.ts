@@ -3,6 +3,7 @@ import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { wrapAngle } from "./bodies";
+import { CameraHand } from "./camera_hand";
 import { diveView, keepClear, type DiveWater } from "./dive";
 import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
@@ -46,14 +47,17 @@ function fovOf(view: ViewName | undefined): number {
 }
 
 export class CameraViews {
+  /** Called when the user has left a view by moving the camera. */
+  left: () => void = () => {};
   private readonly controls: OrbitControls;
+  private readonly hand: CameraHand;
   /** Undefined: the camera stays above the still water. */
   private water: DiveWater | undefined;
   private extent: ViewedBox = { sideM: 16, minYM: -1, maxYM: 1 };
   private free: PixelRect = { leftPx: 0, topPx: 0, rightPx: 1, bottomPx: 1 };
   private widthPx = 1;
   private heightPx = 1;
-  /** The view shown or travelled to; undefined after the user turned the camera. */
+  /** The view shown or travelled to; undefined after the user moved the camera. */
   private framed: ViewName | undefined = "above";
   /** In the boat's view: the smoothed heading, and whether the user has turned the camera since. */
   private following: { headingRad: number; byHand: boolean; lastS: number } | undefined;
@@ -71,10 +75,7 @@ export class CameraViews {
     this.controls.dampingFactor = 0.09;
     this.controls.minPolarAngle = kSteepestRad;
     this.controls.listenToKeyEvents(canvas);
-    this.controls.addEventListener("start", () => {
-      if (this.following) this.following.byHand = true;
-      else this.framed = this.travel = undefined;
-    });
+    this.hand = new CameraHand(this.controls, () => this.movedByHand());
   }
 
   /** New water: back to the first view. `water` undefined: it is not deep enough for a camera. */
@@ -117,6 +118,7 @@ export class CameraViews {
   }
 
   go(name: ViewName, nowS: number): void {
+    this.hand.release();
     if (name === "boat") {
       this.framed = name;
       this.setFov(fovOf(name));
@@ -144,7 +146,8 @@ export class CameraViews {
     this.controls.minDistance = 0;
     this.camera.position.set(...eyeM);
     this.controls.target.set(...targetM);
-    this.controls.update();
+    this.hand.release();
+    this.hand.update();
   }
 
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
@@ -158,8 +161,22 @@ export class CameraViews {
       this.setFov(this.travel.fromFovDegrees + (fovOf(this.framed) - this.travel.fromFovDegrees) * eased);
       if (done >= 1) this.travel = undefined;
     }
-    this.controls.update();
-    if (this.water && !this.travel && keepClear(this.water, this.camera.position)) this.camera.lookAt(this.controls.target);
+    this.hand.update();
+    if (this.water && !this.travel && keepClear(this.water, this.camera.position)) {
+      this.camera.lookAt(this.controls.target);
+      this.hand.placed();
+    }
+  }
+
+  /** The boat's view goes on following the boat, from where the user looks at it. */
+  private movedByHand(): void {
+    if (this.following) {
+      this.following.byHand = true;
+      return;
+    }
+    if (!this.framed) return;
+    this.framed = this.travel = undefined;
+    this.left();
   }
 
   private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
@@ -208,7 +225,8 @@ export class CameraViews {
     this.camera.position.copy(positionM);
     this.controls.target.copy(targetM);
     this.setFov(fovOf(name));
-    this.controls.update();
+    this.hand.release();
+    this.hand.update();
   }
 
   private setFov(degrees: number): void {

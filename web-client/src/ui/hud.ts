@@ -3,6 +3,7 @@ import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { ConnectionState, LinkStats } from "../net/messages";
 import { byId, make, setText } from "./dom";
+import { showRooms } from "./room_links";
 
 export function describeState(state: ConnectionState): string {
   switch (state.name) {
@@ -96,6 +97,7 @@ export class Hud {
     this.state.dataset["state"] = state.name;
     this.state.title = state.name === "retrying" ? state.why : "";
     this.retry.hidden = state.name !== "retrying" && state.name !== "refused";
+    showRooms(byId("other-rooms"), state.name === "refused" ? state.rooms : [], location.href);
   }
 
   acked(commandId: number, appliedTick: number): void {

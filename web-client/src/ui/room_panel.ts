@@ -2,7 +2,7 @@
 import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { CommandAction } from "../net/messages";
-import { byId, setText } from "./dom";
+import { byId, make, setText } from "./dom";
 import { speedRange } from "./effect_limits";
 import { FidelityRow } from "./fidelity_row";
 import { SelectRow } from "./select_row";
@@ -21,6 +21,8 @@ export class RoomPanel {
   private readonly speedRow: SliderRow;
   private readonly speed: SliderModel;
   private readonly scenes: SelectRow;
+  /** While the server builds another scene. */
+  private readonly opening = make("p", { class: "hint", "data-testid": "opening", hidden: "" });
   private readonly fidelity: FidelityRow;
 
   constructor(send: (action: CommandAction, label: string) => number) {
@@ -39,9 +41,11 @@ export class RoomPanel {
     });
     this.scenes = new SelectRow("scene", "Scene", "Changes the scene for everybody in the room.", (name) => {
       this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
+      setText(this.opening, `Building the water of ${name}: until then this one goes on.`);
+      this.opening.hidden = false;
     });
     this.fidelity = new FidelityRow(send);
-    byId("room").append(this.scenes.element, this.fidelity.element, this.speedRow.element);
+    byId("room").append(this.scenes.element, this.opening, this.fidelity.element, this.speedRow.element);
   }
 
   enter(greeting: GreetingInfo): void {
@@ -90,11 +94,14 @@ export class RoomPanel {
   ack(commandId: number): void {
     this.speed.ack(commandId);
     this.fidelity.ack(commandId);
+    if (commandId === this.changeId) this.opening.hidden = true;
   }
 
   reject(commandId: number, message: string): void {
     this.speed.reject(commandId, message);
     this.fidelity.reject(commandId, message);
-    if (commandId === this.changeId) this.scenes.value = this.sceneName;
+    if (commandId !== this.changeId) return;
+    this.scenes.value = this.sceneName;
+    this.opening.hidden = true;
   }
 }

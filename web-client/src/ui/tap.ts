@@ -1,4 +1,5 @@
 // Distinguishes a click or tap from a drag.
+import { kClickRadiusPx } from "../scene/camera_hand";
 
 export interface PointerSample {
   id: number;
@@ -7,7 +8,6 @@ export interface PointerSample {
   timeMs: number;
 }
 
-const kTapRadiusPx = 6;
 const kTapMs = 600;
 
 export class TapDetector {
@@ -27,7 +27,7 @@ export class TapDetector {
     this.down = undefined;
     if (!down || down.id !== sample.id) return false;
     const distancePx = Math.hypot(sample.xPx - down.xPx, sample.yPx - down.yPx);
-    return distancePx <= kTapRadiusPx && sample.timeMs - down.timeMs <= kTapMs;
+    return distancePx <= kClickRadiusPx && sample.timeMs - down.timeMs <= kTapMs;
   }
 
   cancelled(id: number): void {

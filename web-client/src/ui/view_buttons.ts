@@ -15,6 +15,7 @@ export class ViewButtons {
     private readonly myBoatId: () => number,
   ) {
     for (const name of kViewNames) byId(`view-${name}`).addEventListener("click", () => this.show(name));
+    views.left = () => this.refresh();
   }
 
   set hasBoats(hasBoats: boolean) {

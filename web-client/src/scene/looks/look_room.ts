@@ -25,11 +25,11 @@ import { LookValuePass } from "./look_value_pass";
 import { kLooks, type LookName, type Quantity } from "./looks";
 import { densityRatio, kDensityRatios, pickParticle, placeM, speedMps } from "./particle_values";
 import { breakingCriterion, foamAt, ShownSurface, type Rectangle } from "./surface_values";
-import { reachOf, ticksOf, type ValueRange } from "./value_range";
+import { kBeyondShares, reachOf, ticksOf, type ValueRange } from "./value_range";
+import { waterMagnitudes } from "./water_magnitudes";
 
 /** How often the range is measured, on how many values, and what it spans at least: so many steps of a surface's values, or so fast. */
 const kMeasureEveryS = 0.5;
-const kMeasuredPerSide = 64;
 const kMeasuredParticles = 4096;
 const kLeastSteps = 10;
 const kLeastMps = 0.1;
@@ -146,15 +146,10 @@ export class LookRoom {
   private measureSurface(): { reach: number; least: number } | undefined {
     const surface = this.surface();
     if (!surface) return undefined;
-    const magnitudes = new Float64Array(kMeasuredPerSide ** 2);
-    const place = (i: number, alongM: number): number => ((i + 0.5) / kMeasuredPerSide - 0.5) * alongM;
-    const { sideM, widthM } = this.rectangle;
-    for (let at = 0; at < magnitudes.length; ++at) {
-      const [xM, zM] = [place(at % kMeasuredPerSide, sideM), place(Math.floor(at / kMeasuredPerSide), widthM)];
-      magnitudes[at] = Math.abs(this.name === "height" ? surface.elevationM(xM, zM) : surface.rateMps(xM, zM));
-    }
+    const magnitudes = waterMagnitudes(surface, this.greeting, this.name === "height" ? "elevation" : "rate");
     const step = this.name === "height" ? surface.quantumM : surface.rateQuantumMps;
-    return { reach: reachOf(magnitudes), least: kLeastSteps * step || kLeastMps };
+    const least = kLeastSteps * step || kLeastMps;
+    return { reach: reachOf(magnitudes, least, kBeyondShares.surface), least };
   }
 
   private measureParticles(): { reach: number; least: number } | undefined {
@@ -164,7 +159,7 @@ export class LookRoom {
     const every = Math.max(Math.ceil(count / kMeasuredParticles), 1);
     const magnitudes = new Float64Array(Math.ceil(count / every));
     for (let i = 0; i < magnitudes.length; ++i) magnitudes[i] = speedMps(values, i * every);
-    return { reach: reachOf(magnitudes), least: kLeastMps };
+    return { reach: reachOf(magnitudes, kLeastMps, kBeyondShares.particles), least: kLeastMps };
   }
 
   private probeSurface(ray: Ray, quantity: Quantity, shownS: number): Reading | undefined {

@@ -7,8 +7,8 @@ export interface ValueRange {
 
 /** A range that follows the water narrows after this long with smaller values; it widens at once. */
 export const kNarrowAfterS = 5;
-/** It spans all but this share of the values. */
-export const kBeyondShare = 0.01;
+/** It spans all but this share of the values that differ from rest. A crest is a small part of the water, and much higher than the rest. */
+export const kBeyondShares = { surface: 0.1, particles: 0.01 } as const;
 const kMostTicks = 6;
 
 /** Returns the smallest of 1, 2, 5, 10, ... times a power of ten that is not below `value`. */
@@ -29,10 +29,12 @@ export function ticksOf({ low, high }: ValueRange): number[] {
   return Array.from({ length: last - first + 1 }, (_, i) => Number(((first + i) * step).toPrecision(12)));
 }
 
-/** Returns the magnitude that all but kBeyondShare of the magnitudes stay below. Sorts `magnitudes`. */
-export function reachOf(magnitudes: Float64Array): number {
+/** Returns the magnitude that all but the share `beyond` of those above `least` stay below; 0 if none is above it. Sorts `magnitudes`. */
+export function reachOf(magnitudes: Float64Array, least: number, beyond: number): number {
   magnitudes.sort();
-  return magnitudes[Math.max(Math.ceil((1 - kBeyondShare) * magnitudes.length) - 1, 0)] ?? 0;
+  const restCount = magnitudes.findIndex((magnitude) => magnitude > least);
+  if (restCount < 0) return 0;
+  return magnitudes[restCount + Math.ceil((1 - beyond) * (magnitudes.length - restCount)) - 1]!;
 }
 
 /** A range in steps of 1, 2 and 5: from -limit or 0 to limit. */

@@ -21,6 +21,10 @@ struct ClientUrl {
 
   /// Parses the URL; kInvalidInput says what is wrong.
   static core::Result<ClientUrl> parse(const std::string& url);
+
+  /// Returns the address of a room's socket. The path may be that of a server ("/", or "/water/" behind a proxy), or of
+  /// a socket ("/ws", "/ws/ROOM"), which stays as it is unless `room` names another room.
+  [[nodiscard]] ClientUrl inRoom(const std::string& room) const;
 };
 
 struct ClientOptions {

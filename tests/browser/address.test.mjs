@@ -1,0 +1,80 @@
+// The page at other addresses than the root: under a path behind a proxy, and with a room that does not exist.
+import assert from "node:assert/strict";
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { after, before, describe, it } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { startPathProxy } from "./path_proxy.mjs";
+import { repository, startServer } from "./server.mjs";
+
+const WAIT_MS = 60_000;
+const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
+const slow = { timeout: 4 * WAIT_MS };
+
+describe("the page's address", { skip, concurrency: 1 }, () => {
+  const folder = mkdtempSync(join(tmpdir(), "spindrift-address-"));
+  let server;
+  let proxy;
+  let browser;
+  let page;
+  let complaints;
+
+  before(async () => {
+    // With a bed, which the page asks for by REST.
+    writeFileSync(join(folder, "mound.textproto"), "wave { resolution_count: 64 side_m: 8 depth_m: 1 }\nbed { shapes { cone { toe_radius_m: 3 crest_radius_m: 1 height_m: 1.2 } } }\n");
+    server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--room", `mound=${join(folder, "mound.textproto")}`]);
+    proxy = await startPathProxy(server.port, "/water/");
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+  }, slow);
+  after(async () => {
+    await browser?.close();
+    proxy?.close();
+    await server?.stop("SIGTERM");
+    rmSync(folder, { recursive: true });
+  });
+
+  async function open(address) {
+    page = await browser.newPage();
+    complaints = [];
+    page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+    page.on("pageerror", (error) => complaints.push(error.message));
+    await page.goto(address, { timeout: WAIT_MS });
+  }
+
+  async function waitFor(what, accept) {
+    let stats;
+    for (const begin = Date.now(); Date.now() - begin < WAIT_MS; await sleep(100)) {
+      stats = await page.evaluate(() => window.spindrift?.stats());
+      if (stats && accept(stats)) return;
+    }
+    assert.fail(`waited ${WAIT_MS / 1000} s for ${what}: ${JSON.stringify(stats)}`);
+  }
+
+  it("under a path asks for nothing outside it, and shows water and ground of a room", slow, async () => {
+    await open("about:blank");
+    const ground = page.waitForResponse((answer) => answer.url().endsWith("/ground"), { timeout: WAIT_MS });
+    await page.goto(`${proxy.url}?quality=minimal&room=mound`, { timeout: WAIT_MS });
+    await waitFor("frames", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2);
+    assert.equal((await ground).status(), 200);
+    assert.deepEqual(proxy.outside, []);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  });
+
+  it("with a room that does not exist says so, and leads to the rooms that there are", slow, async () => {
+    await open(`${server.url}?quality=minimal&room=nope`);
+    await waitFor("a refusal", (stats) => stats.connectionState === "refused: there is no room nope");
+    assert.deepEqual(await page.getByTestId("other-rooms").locator("a").allInnerTexts(), ["main", "mound"]);
+    assert.ok(await page.getByTestId("retry").isVisible());
+    await page.getByRole("link", { name: "mound" }).click();
+    await waitFor("the room's water", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2);
+    assert.equal(new URL(page.url()).search, "?quality=minimal&room=mound");
+    assert.ok(await page.getByTestId("other-rooms").isHidden());
+    await page.close();
+  });
+});

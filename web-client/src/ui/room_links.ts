@@ -1,0 +1,14 @@
+// Links to the rooms of the server, for a page whose room does not exist.
+import { make } from "./dom";
+
+/** `page`: the address, whose other choices the links keep. */
+export function showRooms(list: HTMLElement, rooms: readonly string[], page: string): void {
+  list.hidden = rooms.length === 0;
+  list.replaceChildren(...rooms.map((name) => make("li", {}, [make("a", { href: addressOfRoom(page, name) }, [name])])));
+}
+
+function addressOfRoom(page: string, room: string): string {
+  const url = new URL(page);
+  url.searchParams.set("room", room);
+  return url.href;
+}
