@@ -76,6 +76,11 @@ core::Result<access::Access> loadAccess(const FrontOptions& options) {
                  "--jwt-issuer and --jwt-audience without a key accept no JWT: give --jwt-key FILE or --jwt-keys FILE"};
   }
   std::optional<core::Role> guest = has_tokens || has_keys ? core::Role::kViewer : core::Role::kOperator;
+  if (!options.operator_token.empty()) {
+    guest = core::Role::kPlayer;
+    text = "operator " + options.operator_token;
+    label = "operator's link";
+  }
   if (!options.guest_role.empty()) guest = core::parseRole(options.guest_role);  // "none" is not a role
   auto access = access::Access::parse(text, label, guest);
   if (!access) return access;

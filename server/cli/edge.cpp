@@ -9,20 +9,21 @@
 
 #include "commands.h"
 #include "front.h"
+#include "operator_link.h"
 #include "serve_options.h"
 
 namespace spindrift::cli {
 namespace {
 
-int runEdge(const FrontOptions& options) {
+int runEdge(FrontOptions options) {
   StopSignals signals;
   if (options.nats_url.empty()) {
     return fail(
         {core::ErrorCode::kInvalidInput, "an edge needs the NATS server of its cluster: --nats nats://HOST:4222"});
   }
+  makeOperatorToken(options);
   auto access = accessOptions(options);
   if (!access) return fail(access.error());
-  const bool is_open_to_all = isOpenToAll(options, access->access);
   const auto audit_file = access->audit_file;
   cluster::EdgeOptions edge_options;
   edge_options.node = nodeOptions(options, false);
@@ -32,7 +33,7 @@ int runEdge(const FrontOptions& options) {
   auto edge = cluster::EdgeServer::start(std::move(edge_options));
   if (!edge) return fail(edge.error());
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  if (is_open_to_all) warnOpenToAll(options);
+  warnIfOpenToAll(options);
   sayReady(options, (*edge)->port());
   const int signal = signals.wait([&] {
     (*edge)->reloadCertificate();

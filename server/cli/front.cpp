@@ -16,6 +16,7 @@
 #include "access_files.h"
 #include "commands.h"
 #include "config_file.h"
+#include "operator_link.h"
 
 namespace spindrift::cli {
 
@@ -90,11 +91,12 @@ void drain(const FrontOptions& options, StopSignals& signals, const std::functio
 }
 
 void sayReady(const FrontOptions& options, std::uint16_t port) {
-  const std::string& address = options.address;
-  const std::string host = address.find(':') != std::string::npos ? "[" + address + "]" : address;
-  std::printf("Spindrift is ready: %s://%s:%u/\n", options.tls_cert_file.empty() ? "http" : "https", host.c_str(),
-              port);
+  std::fputs(readyText(options, port).c_str(), stdout);
   std::fflush(stdout);
+  if (options.operator_token.empty()) return;
+  spdlog::info(
+      "no roles are configured and other machines can reach this server: clients without a token are players; the link "
+      "of the operator is on standard output and is valid until this process ends; --tokens-file gives lasting roles");
 }
 
 net::ServerOptions networkOptions(const FrontOptions& options) {
@@ -111,14 +113,11 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   return out;
 }
 
-bool isOpenToAll(const FrontOptions& options, const access::Access& access) {
-  return access.guest() == core::Role::kOperator && !options.address.starts_with("127.") && options.address != "::1";
-}
-
-void warnOpenToAll(const FrontOptions& options) {
+void warnIfOpenToAll(const FrontOptions& options) {
+  if (!isReachable(options) || options.guest_role != "operator") return;
   spdlog::warn(
-      "every client that can reach {} is an operator and may even close rooms: give --tokens-file or --guests player "
-      "to restrict this",
+      "every client that can reach {} is an operator and may even close rooms, because of --guests operator: leave it "
+      "out, or give --tokens-file",
       options.address);
 }
 

@@ -46,15 +46,14 @@ void endThisProcess();
 void drain(const FrontOptions& options, StopSignals& signals, const std::function<std::uint64_t()>& session_count,
            const std::function<void(std::chrono::milliseconds)>& begin);
 
-/// Prints the URL of the page.
+/// Prints readyText().
 void sayReady(const FrontOptions& options, std::uint16_t port);
 
 /// Options of the network; the address may be that of an inherited socket.
 net::ServerOptions networkOptions(const FrontOptions& options);
 
-/// Whether anybody who can reach the address is an operator.
-bool isOpenToAll(const FrontOptions& options, const access::Access& access);
-void warnOpenToAll(const FrontOptions& options);
+/// Warns if others can reach the server and every client is an operator.
+void warnIfOpenToAll(const FrontOptions& options);
 
 /// `runs_rooms`: a server. The name of the node is made if it is not given.
 cluster::NodeOptions nodeOptions(const FrontOptions& options, bool runs_rooms);

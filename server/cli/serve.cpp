@@ -17,6 +17,7 @@
 #include "commands.h"
 #include "front.h"
 #include "inherited_socket.h"
+#include "operator_link.h"
 #include "serve_options.h"
 
 namespace spindrift::cli {
@@ -119,6 +120,7 @@ int serve(ServeOptions options) {
     spdlog::info("a listening socket was passed on: {} port {}; --address and --port have no effect", options.address,
                  options.port);
   }
+  makeOperatorToken(options);
   std::unique_ptr<cluster::Node> node;
   if (!options.nats_url.empty()) {
     cluster::NodeOptions node_options = nodeOptions(options, true);
@@ -130,7 +132,6 @@ int serve(ServeOptions options) {
   auto server_options = serverOptions(options, node.get());
   if (!server_options) return fail(server_options.error());
   if (*inherited) server_options->network.listening_socket = (*inherited)->descriptor;
-  const bool is_open_to_all = isOpenToAll(options, server_options->access.access);
   const auto audit_file = server_options->access.audit_file;
   const bool has_page = !server_options->network.web_root.empty();
   auto server = service::WaterServer::start(*std::move(server_options));
@@ -145,7 +146,7 @@ int serve(ServeOptions options) {
   }
 
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  if (is_open_to_all) warnOpenToAll(options);
+  warnIfOpenToAll(options);
   sayReady(options, (*server)->port());
   const int signal = signals.wait([&] {
     (*server)->reloadCertificate();

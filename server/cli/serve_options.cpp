@@ -51,8 +51,10 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
                   "File with lines ROLE TOKEN (default: the environment variable SPINDRIFT_TOKENS)")
       ->check(isNotEmpty());
   command
-      .add_option("--guests", options.guest_role,
-                  "Role of clients without a token (default: operator without tokens, viewer with tokens)")
+      .add_option(
+          "--guests", options.guest_role,
+          "Role of clients without a token (default: viewer where tokens or keys are given; otherwise operator on the "
+          "loopback, and player where other machines can reach the server)")
       ->check(CLI::IsMember({"none", "viewer", "player", "operator"}));
   command
       .add_option("--jwt-key", options.jwt_keys,

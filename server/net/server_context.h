@@ -7,6 +7,7 @@
 #include <map>
 #include <mutex>
 
+#include <spindrift/net/network_text.h>
 #include <spindrift/net/server.h>
 
 #include "address_limits.h"
@@ -63,11 +64,6 @@ inline constexpr std::size_t kSpareConnectionCount = 512;
 
 /// Name of the subprotocol defined in proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";
-
-/// `address`: ServerOptions::address.
-inline bool isLoopback(std::string_view address) {
-  return address.starts_with("127.") || address == "::1";
-}
 
 struct ServerContext {
   ServerContext(const ServerOptions& chosen, TrustedNetworks trusted, std::unique_ptr<TlsCredentials> tls_credentials,

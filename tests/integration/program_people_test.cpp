@@ -93,6 +93,35 @@ TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
   stop();
 }
 
+TEST_F(People, GuestsOfAServerThatOthersReachArePlayersAndTheLinkMakesAnOperator) {
+  const auto statusOf = [this](const std::string& action, const std::string& token) {
+    const std::string headers = "Content-Type: application/json\r\n";
+    return httpRequest(static_cast<std::uint16_t>(std::stoi(port_)), "POST", "/api/v1/rooms/main/commands",
+                       headers + (token.empty() ? "" : "Authorization: Bearer " + token + "\r\n"), action)
+        .status;
+  };
+  const std::string splash = R"({"splash": {}})";
+  const std::string pause = R"({"setPaused": {"paused": true}})";
+  if (serve().empty()) GTEST_SKIP() << "no device";
+  EXPECT_EQ(statusOf(pause, ""), 200U) << "on the loopback without a proxy";
+  stop();
+
+  ASSERT_FALSE(serve({"--trust-proxy", "127.0.0.1"}).empty());
+  const auto line = child_->waitForLine("Link of the operator: ");
+  ASSERT_TRUE(line);
+  const std::string start = "Link of the operator: http://127.0.0.1:" + port_ + "/#token=";
+  ASSERT_THAT(*line, testing::StartsWith(start));
+  const std::string token = line->substr(start.size());
+  EXPECT_EQ(statusOf(splash, ""), 200U);
+  EXPECT_EQ(statusOf(pause, ""), 403U);
+  child_->signal(SIGHUP);
+  EXPECT_EQ(statusOf(pause, token), 200U);
+  EXPECT_EQ(statusOf(pause, ""), 403U);
+  stop();
+  EXPECT_THAT(child_->err(), HasSubstr("SIGHUP: 1 tokens"));
+  EXPECT_THAT(child_->err(), Not(HasSubstr(token))) << "the log has no tokens";
+}
+
 TEST_F(People, TokensThatCannotBeReadAreReported) {
   const auto refused = [&](std::vector<std::string> more, const std::vector<std::string>& words) {
     std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};

@@ -15,6 +15,8 @@ if (made) {
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
   app.start(!isStepped);
+  // A link with a token was opened in this tab; without it the browser would load nothing.
+  window.addEventListener("hashchange", () => location.reload());
 } else {
   showNotice(
     "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",

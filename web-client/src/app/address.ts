@@ -1,9 +1,27 @@
 // The page's address holds what was chosen by hand, so that a reload and a copied address keep it.
 
+const kTokenField = "token=";
+
 /** `value` undefined: the default, which the address leaves out. */
 export function setAddressParameter(name: string, value: string | undefined): void {
   const url = new URL(location.href);
   if (value === undefined) url.searchParams.delete(name);
   else url.searchParams.set(name, value);
   history.replaceState(null, "", url);
+}
+
+/** Returns the token of a link, `#token=…`, and removes it from the address, so that it gets into no bookmark and no copied address; undefined
+ *  without one. Browsers send the fragment of an address to nobody. */
+export function takeLinkToken(location: Pick<Location, "href">, history: Pick<History, "replaceState">): string | undefined {
+  const url = new URL(location.href);
+  const parts = url.hash.slice(1).split("&");
+  const token = parts.find((part) => part.startsWith(kTokenField))?.slice(kTokenField.length);
+  if (!token) return undefined;
+  url.hash = parts.filter((part) => !part.startsWith(kTokenField)).join("&");
+  history.replaceState(null, "", url);
+  try {
+    return decodeURIComponent(token);
+  } catch {
+    return token; // A "%" that is no escape: the server says what it thinks of it.
+  }
 }

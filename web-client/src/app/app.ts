@@ -21,7 +21,7 @@ import { QualityRow } from "../ui/quality_row";
 import { RoomPanel } from "../ui/room_panel";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { setAddressParameter } from "./address";
+import { setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { LookControls } from "./look_controls";
@@ -70,7 +70,7 @@ export class App {
   );
   private readonly url = socketUrl(location.href);
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
-  private identity = this.identities.load();
+  private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
   private entered: GreetingInfo | undefined;
 

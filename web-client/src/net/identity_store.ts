@@ -1,5 +1,5 @@
 // Keeps name, token and resume key for the life of the tab, so that a reload within the server's grace time gets its boat back.
-// They are never in the address, which ends up in histories and logs. The resume key is stored only while no page uses it: a browser
+// They are never in the address, which ends up in histories and logs; the token of a link is removed from it. The resume key is stored only while no page uses it: a browser
 // that duplicates a tab copies the store, and two pages with the same key would disconnect each other.
 import type { Identity } from "./messages";
 
@@ -28,9 +28,10 @@ export class IdentityStore {
     private readonly url: string,
   ) {}
 
-  /** Returns the stored identity and removes the resume key from the store. */
-  load(): Identity {
-    const identity = this.read();
+  /** Returns the stored identity and removes the resume key from the store. `linkToken`: replaces the stored token. */
+  load(linkToken?: string): Identity {
+    const stored = this.read();
+    const identity = { ...stored, token: linkToken ?? stored.token };
     this.save(identity);
     return identity;
   }

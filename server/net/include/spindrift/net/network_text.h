@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <spindrift/core/result.h>
 
@@ -19,5 +20,10 @@ core::Result<void> checkListenAddress(const std::string& text);
 /// scheme's default port, "null", or "*" for any. kInvalidInput says what was meant: a URL with a path, a host without
 /// a scheme, a pattern.
 core::Result<void> checkOrigin(const std::string& text);
+
+/// Returns whether only this machine can reach a server that listens on `address`.
+inline bool isLoopback(std::string_view address) {
+  return address.starts_with("127.") || address == "::1";
+}
 
 }  // namespace spindrift::net

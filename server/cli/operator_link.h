@@ -1,0 +1,22 @@
+// Who is the operator of a server that others can reach and for which no roles are configured.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "serve_options.h"
+
+namespace spindrift::cli {
+
+/// Returns whether clients on other machines can reach the server, directly or through a proxy.
+bool isReachable(const FrontOptions& options);
+
+/// Where others can reach the server and neither tokens, keys nor a role of the guests are given, makes a token for the
+/// one who starts it; loadAccess() then makes guests players. Call it once, before loadAccess().
+void makeOperatorToken(FrontOptions& options);
+
+/// Returns the lines for standard output at the start: the URL of the page, and if makeOperatorToken() made a token, a
+/// link with it. Browsers do not send the fragment of a link to anybody.
+std::string readyText(const FrontOptions& options, std::uint16_t port);
+
+}  // namespace spindrift::cli
