@@ -82,28 +82,29 @@ std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double 
   return out;
 }
 
-/// DispersionLevel::spread of grid k, a coarse one. In a flat basin, whose only closed faces are its sides, all cells
-/// have the same; except cells that are in part beyond the water, which count as cut along an axis: waves along a
-/// channel must be equally fast in all of its width. In other basins the cells beside closed faces have none: the
-/// fitted resistances there stand for the flow as it is.
-std::vector<Four> layOutSpread(const DispersionLevel& level, std::size_t k, bool is_flat, bool is_exact) {
+/// DispersionLevel::spread of grid k, a coarse one. Sides of the water count for nothing: a wave along a channel must be
+/// equally fast in all of its width. Cells that are in part beyond a side count along each axis by itself. Cells beside
+/// faces that walls or ground close have none: the fitted resistances there stand for the flow as it is.
+std::vector<Four> layOutSpread(const DispersionLevel& level, const DispersionGrid& grid, std::size_t k,
+                               const WaveLayout& layout) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
+  const std::array is_periodic{layout.is_periodic_x, layout.is_periodic_z};
   std::vector<Four> out(level.stiffness.size());
-  const int nx = static_cast<int>(level.count.x);
-  const int nz = static_cast<int>(level.count.z);
-  const auto massOf = [&](int x, int z, int axis) {
-    const double mass = level.stiffness[level.index(x, z)][axis];
-    return is_flat && mass == 0.0 ? kNone : mass;
+  const auto massOf = [&](std::size_t cell, int axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double mass = level.stiffness[cell][a];
+    return mass == 0.0 && grid.isAtSide(cell, axis) && !is_periodic[a] ? kNone : mass;
   };
-  for (int z = 0; z < nz; ++z) {
-    for (int x = 0; x < nx; ++x) {
-      std::array<double, 2> smallest{std::min(massOf(x, z, 0), massOf(x - 1, z, 0)),
-                                     std::min(massOf(x, z, 1), massOf(x, z - 1, 1))};
-      if (!is_flat || is_exact) smallest[0] = smallest[1] = std::min(smallest[0], smallest[1]);
+  for (int z = 0; z < grid.nz; ++z) {
+    for (int x = 0; x < grid.nx; ++x) {
+      const std::size_t i = grid.at(x, z);
+      std::array<double, 2> smallest{std::min(massOf(i, 0), massOf(grid.at(x - 1, z), 0)),
+                                     std::min(massOf(i, 1), massOf(grid.at(x, z - 1), 1))};
+      const double both = std::min(smallest[0], smallest[1]);
+      if (both == 0.0 || (grid.shareInside(i, 0) == 1.0 && grid.shareInside(i, 1) == 1.0)) smallest = {both, both};
       for (std::size_t axis = 0; axis < 2; ++axis) {
         if (smallest[axis] == kNone) continue;  // nothing flows along this axis
-        for (std::size_t j = 0; j < kPoleCount; ++j)
-          out[level.index(x, z)][2 * axis + j] = spreadOf(k)[j] * smallest[axis];
+        for (std::size_t j = 0; j < kPoleCount; ++j) out[i][2 * axis + j] = spreadOf(k)[j] * smallest[axis];
       }
     }
   }
@@ -203,7 +204,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   out.depth_m = layout.dispersing_depth_m;
   out.cell_m = layout.cell_m;
   out.water = layout.counts();
-  DispersionGrid grid(counts[0]);
+  DispersionGrid grid(counts[0], {static_cast<double>(layout.count_x), static_cast<double>(layout.count_z)});
   out.root_c.resize(grid.wet.size());
   for (std::size_t cell = 0; cell < basin.depth_m.size(); ++cell) {
     const double depth_m = basin.depth_m[cell];
@@ -241,7 +242,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
     }
     if (k == 0) continue;
-    level.spread = layOutSpread(level, k, basin.is_flat, out.is_flat);
+    level.spread = layOutSpread(level, grids[k], k, layout);
     if (!out.is_flat) roundToHalves(level.spread);
   }
   return out;

@@ -240,9 +240,7 @@ Motion coarser(const DispersionGrid& fine, const DispersionGrid& coarse, const C
 
 /// Whether a face is at least partly closed by something else than a side of the water.
 bool isObstructed(const DispersionGrid& grid, std::size_t cell, int axis) {
-  const int n = axis == 0 ? grid.nx : grid.nz;
-  const int along = axis == 0 ? static_cast<int>(cell) % grid.nx : static_cast<int>(cell) / grid.nx;
-  return grid.open[cell][static_cast<std::size_t>(axis)] < 1.0 && along != n - 1;
+  return !grid.isAtSide(cell, axis) && grid.open[cell][static_cast<std::size_t>(axis)] < grid.shareInside(cell, 1 - axis);
 }
 
 /// Cells at an obstructed face, and those beside them along it.

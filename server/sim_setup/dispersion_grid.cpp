@@ -273,7 +273,8 @@ void fillInside(const DispersionGrid& fine, int x, int z, Coarsened& out) {
 
 }  // namespace
 
-DispersionGrid::DispersionGrid(CellCounts counts) : nx(static_cast<int>(counts.x)), nz(static_cast<int>(counts.z)) {
+DispersionGrid::DispersionGrid(CellCounts counts, std::array<double, 2> water)
+    : nx(static_cast<int>(counts.x)), nz(static_cast<int>(counts.z)), extent(water) {
   const auto cells = static_cast<std::size_t>(nx) * static_cast<std::size_t>(nz);
   open.resize(cells);
   resistance_pm.resize(cells);
@@ -282,7 +283,8 @@ DispersionGrid::DispersionGrid(CellCounts counts) : nx(static_cast<int>(counts.x
 }
 
 Coarsened coarsen(const DispersionGrid& fine, CellCounts counts) {
-  Coarsened out{DispersionGrid(counts), findOwners(fine, static_cast<int>(counts.x)), {}, {}};
+  Coarsened out{DispersionGrid(counts, {fine.extent[0] / 2, fine.extent[1] / 2}),
+                findOwners(fine, static_cast<int>(counts.x)), {}, {}};
   out.from_coarse_x.assign(fine.wet.size(), Four{});
   out.from_coarse_z.assign(fine.wet.size(), Four{});
   coverFaces(fine, out);

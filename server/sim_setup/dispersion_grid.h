@@ -2,6 +2,7 @@
 // flux passes the faces of the finer grid.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <optional>
@@ -19,8 +20,22 @@ struct DispersionGrid {
   std::vector<std::array<double, 2>> resistance_pm;  ///< mean of 1/d over the open part [1/m]
   std::vector<double> wet;      ///< wet area over that of a cell; above 1 with a strip of a neighbour
   std::vector<double> depth_m;  ///< mean over the wet area; 0 where dry
+  /// How far the water reaches along x and z [cells of this grid]: the rest of the storage is beyond its sides.
+  std::array<double, 2> extent;
 
-  explicit DispersionGrid(CellCounts counts);
+  DispersionGrid(CellCounts counts, std::array<double, 2> extent);
+  /// Number of a cell along an axis.
+  [[nodiscard]] int along(std::size_t cell, int axis) const {
+    return axis == 0 ? static_cast<int>(cell) % nx : static_cast<int>(cell) / nx;
+  }
+  /// Returns which share of a cell's width lies between the sides of the water.
+  [[nodiscard]] double shareInside(std::size_t cell, int axis) const {
+    return std::clamp(extent[static_cast<std::size_t>(axis)] - along(cell, axis), 0.0, 1.0);
+  }
+  /// Returns whether the face that a cell owns leads out of the water, or is beyond it.
+  [[nodiscard]] bool isAtSide(std::size_t cell, int axis) const {
+    return along(cell, axis) + 1 >= extent[static_cast<std::size_t>(axis)];
+  }
   [[nodiscard]] std::size_t at(int x, int z) const {
     return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
   }

@@ -15,7 +15,7 @@ constexpr int kSide = 32;
 
 /// Water of depth 1 between four walls, dry where `is_dry` says so.
 DispersionGrid basinWith(const std::function<bool(int x, int z)>& is_dry) {
-  DispersionGrid grid({kSide, kSide});
+  DispersionGrid grid({kSide, kSide}, {kSide, kSide});
   for (int z = 0; z < kSide; ++z) {
     for (int x = 0; x < kSide; ++x) {
       if (is_dry(x, z)) continue;

@@ -129,6 +129,29 @@ TEST(Dispersion, WavesAlongAChannelAreAsFastAsInASquare) {
   }
 }
 
+TEST(Dispersion, WavesAlongAChannelOverAnUnevenBedAreAsFastAsOverALevelOne) {
+  for (const std::uint32_t across : {1u, 4u, 5u, 8u, 10u, 13u, 32u, 37u}) {
+    const Laid level_bed(channel(256, across));
+    // The same depths, laid out as over an uneven bed.
+    Basin uneven = level_bed.basin;
+    uneven.is_flat = false;
+    const DispersionReference operator_f(layOutDispersion(level_bed.wave, uneven));
+    for (const int m : {1, 4, 16, 32, 64}) {
+      std::vector<double> level(level_bed.basin.depth_m.size());
+      for (std::size_t i = 0; i < level.size(); ++i)
+        level[i] = std::cos(std::numbers::pi * m * (static_cast<double>(i % 256) + 0.5) / 256);
+      const auto faces = operator_f.apply(level);
+      const auto expected = level_bed.operator_f.apply(level);
+      double worst = 0.0, largest = 0.0;
+      for (std::size_t i = 0; i < faces.size(); ++i) {
+        worst = std::max({worst, std::abs(faces[i][0] - expected[i][0]), std::abs(faces[i][1] - expected[i][1])});
+        largest = std::max(largest, std::abs(expected[i][0]));
+      }
+      EXPECT_LT(worst / largest, 1e-3) << across << " wide, " << m << " half periods";  // tables of 16 bits
+    }
+  }
+}
+
 TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
   const Laid laid(harborLike());
   for (std::uint32_t seed = 1; seed < 4; ++seed) {
