@@ -144,6 +144,8 @@ int serve(ServeOptions options) {
                                      }});
   }
 
+  if (const std::string device = (*server)->simulation().deviceLine(); !device.empty())
+    spdlog::info("simulation runs on {}", device);
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   if (is_open_to_all) warnOpenToAll(options);
   sayReady(options, (*server)->port());
