@@ -145,6 +145,8 @@ int serve(ServeOptions options) {
                                      }});
   }
 
+  if (const std::string device = (*server)->simulation().deviceLine(); !device.empty())
+    spdlog::info("simulation runs on {}", device);
   if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   warnIfOpenToAll(options);
   sayReady(options, (*server)->port());

@@ -290,11 +290,8 @@ core::Result<std::shared_ptr<Room>> SimulationThread::begin(std::string name, Wa
   {
     const std::lock_guard lock(rooms_mutex_);
     const gpu::Context& context = (*water)->context();
-    if (device_line_.empty() && context.device().advice.empty()) {
-      spdlog::info("simulation runs on {}", context.why());
-    } else if (device_line_.empty()) {
+    if (device_line_.empty() && !context.device().advice.empty())
       spdlog::warn("simulation runs on {}; {}", context.why(), context.device().advice);
-    }
     device_line_ = context.device().name;
   }
   return Room::begin(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place),
