@@ -278,12 +278,12 @@ std::string metric(const char* name, const char* type, const char* help, double 
 
 std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
                         const AccessControl& access, const MetricsSources& sources) {
+  const rooms::EncoderThread* const encoder = sources.encoder;
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
-    samples.push_back(
-        {fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
-         room->roster().people().people_size(), room->snapshot(), room->vitals(),
-         sources.encoder ? sources.encoder->frameCounts(room->name()) : rooms::EncoderThread::FrameCounts{}});
+    samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
+                       room->roster().people().people_size(), room->snapshot(), room->vitals(),
+                       encoder ? encoder->frameCounts(room->name()) : rooms::EncoderThread::FrameCounts{}});
   }
   Page page;
   writeRooms(page, samples);
@@ -291,7 +291,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   writeKept(page, rooms.rooms());
   writeFaults(page, rooms);
   if (const net::Server* network = sources.network) writeNetwork(page, network->stats());
-  if (const rooms::EncoderThread* encoder = sources.encoder) writeEncoder(page, *encoder);
+  if (encoder) writeEncoder(page, *encoder);
   writeCommands(page, commands);
   writeAccess(page, access);
   return page.take();
