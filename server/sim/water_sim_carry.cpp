@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include <shared/bindings.h>
-
 #include "carry_state.h"
 #include "water_sim_parts.h"
 
@@ -48,10 +46,8 @@ core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
   if (parts_->boats) {
     parts_->boats->takeOver(carried.boats);
     first_boat_id_ = carried.boats.first_id;
-    // The tick before has set the pressure of the hulls for the next one.
-    parts_->uniforms.bindUniform(SIM_UNIFORMS);
-    if (parts_->wave) parts_->boats->press(parts_->wave->pressureHead());
   }
+  parts_->pressAgain();
   start_tick_ = tick_ - static_cast<std::uint64_t>(std::llround(carried.time_s / derived_.tick_s));  // modulo 2^64
   abandoned_until_tick_ = tick_;  // health in flight belongs to the start
   parts_->checkpoints->forget();

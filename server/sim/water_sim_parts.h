@@ -85,6 +85,9 @@ struct WaterSim::Parts {
   core::Result<void> makeCheckpoints(gpu::Context& ctx);
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
   /// Call it after resize() failed; `derived` is that of the old size.
+  /// Sets the pressure of the hulls for the next tick, and no other: what the tick before has set belongs to another
+  /// gravity or grid.
+  void pressAgain();
   core::Result<void> resizeBack(const Derived& derived);
 };
 

@@ -1,5 +1,6 @@
 // WaterSim: changes of its scene, and its start.
-#include <bit>
+
+#include <shared/bindings.h>
 
 #include "starting_state.h"
 #include "water_sim_parts.h"
@@ -40,8 +41,11 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
     parts_->checkpoints->scaleFlow(prepared.flow_ratio);
   }
   if (parts_->wind_sea && changesWaves(scene_, prepared.scene)) parts_->wind_sea->continueIn(prepared.scene, time_s());
+  const bool changes_gravity = prepared.scene.gravity_mps2 != scene_.gravity_mps2;
   scene_ = std::move(prepared.scene);
   setCareful(is_careful_);
+  // Water that lands presses as high a column as gives its momentum under the gravity before.
+  if (changes_gravity) parts_->pressAgain();
   if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // the water is shallower
   ++revision_;
   return {};
@@ -59,6 +63,13 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   parts_->particles->setDensity(prepared.scene.particles->rest_density_kgpm3);
   abandoned_until_tick_ = tick_;  // health in flight belongs to the old particles
   return {};
+}
+
+void WaterSim::Parts::pressAgain() {
+  if (!wave) return;
+  wave->clearPressure();
+  uniforms.bindUniform(SIM_UNIFORMS);
+  if (boats) boats->press(wave->pressureHead());
 }
 
 // The start

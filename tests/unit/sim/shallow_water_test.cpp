@@ -72,6 +72,20 @@ TEST_P(ShallowWater, AtRestAtTwoLevelsDoesNotMoveByOneUnit) {
   EXPECT_TRUE(std::ranges::all_of(after.flow_m2ps, [](float v) { return v == 0.0f; }));
 }
 
+TEST_P(ShallowWater, BesideLandOfAnyHeightRunsWithoutTheWatchdog) {
+  for (const double land_m : {65.0, 70.0, 9000.0}) {
+    core::Scene scene = shore(GetParam());
+    scene.beaches = {core::Beach{core::Side::kPlusX, 5.0, -land_m}};
+    WaterSim& water = make(scene);
+    ASSERT_TRUE(water.start(core::Splash{.x_m = 0, .z_m = 0, .radius_m = 1.5, .depth_m = 0.5, .duration_s = 0.1}));
+    for (int k = 0; k < 60; ++k) water.step();
+    EXPECT_EQ(water.recoveredCount(), 0u) << land_m;
+    EXPECT_EQ(water.health().volume_error_units, 0) << land_m;
+    EXPECT_GT(water.health().max_elevation_m, 0.0) << land_m;
+    EXPECT_LT(water.health().max_elevation_m, 1.0) << land_m << ": water, not land";
+  }
+}
+
 TEST_P(ShallowWater, NeverHoldsLessThanNothingAndKeepsItsVolume) {
   WaterSim& water = make(shore(GetParam()));
   for (int k = 0; k < 400; ++k) {
