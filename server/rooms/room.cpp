@@ -222,6 +222,7 @@ void Room::step(TimePoint now) {
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
+  restartIfOver();
   if (isFrameDue(end)) requestFrame(end);
   watchRealTime(end);
   adaptFidelity(end);

@@ -227,7 +227,7 @@ TEST(ClientMessages, CommandsLeftEmptyTakeTheDefaultsOfCore) {
   EXPECT_EQ(splash.depth_m(), core::Splash{}.depth_m);
   const v1::BreakingWave wave = expectCommand([](v1::Command& c) { c.mutable_breaking_wave(); }).breaking_wave();
   EXPECT_EQ(scene::toCore(wave).side, core::BreakingWave{}.side);
-  EXPECT_NE(wave.side(), v1::SIDE_UNSPECIFIED);
+  EXPECT_FALSE(wave.has_side()) << "the water decides";
   EXPECT_EQ(wave.amplitude_m(), core::BreakingWave{}.amplitude_m);
 }
 
