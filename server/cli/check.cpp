@@ -13,6 +13,7 @@
 #include <spindrift/scene/setting.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/ground.h>
+#include <spindrift/sim_setup/open_side.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
@@ -76,7 +77,7 @@ void printWave(const core::Scene& scene) {
       [](core::WaveBoundary b) { return b == core::WaveBoundary::kAbsorb; });
   if (absorbs)
     fmt::print(", {} of {:.3g} m", sim::hasMatchedLayer(scene) ? "matched layer" : "sponge", wave.sponge_width_m);
-  fmt::print("\n");
+  fmt::print("\n  open side  {}: where waves come from if none is named\n", nameOf(sim::openSide(scene)));
   if (wave.steepening_ratio > 0) fmt::print("  steepening {:.3g}\n", wave.steepening_ratio);
   if (!scene.obstacles.empty()) fmt::print("  obstacles  {}\n", scene.obstacles.size());
   for (const core::Beach& beach : scene.beaches) {

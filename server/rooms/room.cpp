@@ -239,6 +239,7 @@ void Room::step(TimePoint now) {
   unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
   last_run_ = end;
   clock_.ticked(end);
+  restartIfOver();
   const auto levels = frames_.afterTick({.time_s = water_->sim().time_s(),
                                          .scheduled = scheduled,
                                          .end = end,

@@ -134,6 +134,7 @@ void Room::abandonCommands() {
 void Room::apply(Batch batch) {
   const CommandKind& kind = kindOf(batch.front().message);
   if (kind.begin) return (this->*kind.begin)(std::move(batch));
+  water_->fillIn(batch.front().message);
   Outcome outcome = checkAgain(batch.front());
   if (!outcome) outcome = kind.in_room ? (this->*kind.in_room)(batch.front()) : applyToWater(batch.front());
   answer(std::move(batch), outcome, std::exchange(new_boat_id_, 0));
@@ -170,6 +171,14 @@ Room::Outcome Room::reset(const Command& command) {
   news_.reset = true;
   boatsChanged();
   return {};
+}
+
+void Room::restartIfOver() {
+  const double after_s = water_->scene().restart_after_s();
+  if (after_s <= 0 || water_->sim().time_s() < after_s) return;
+  Command again;
+  again.message.mutable_reset();
+  (void)reset(again);  // refused while the disk is full: tried again at the next tick
 }
 
 Room::Outcome Room::setPaused(const Command& command) {

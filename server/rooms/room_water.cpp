@@ -9,6 +9,7 @@
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
+#include <spindrift/sim_setup/open_side.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -44,6 +45,11 @@ RoomWater::RoomWater(std::unique_ptr<Water> water) : water_(std::move(water)), t
 
 bool RoomWater::takes(const v1::Command& command) {
   return handlerOf(command) != nullptr;
+}
+
+void RoomWater::fillIn(v1::Command& command) const {
+  if (!command.has_breaking_wave() || command.breaking_wave().side() != v1::SIDE_UNSPECIFIED) return;
+  command.mutable_breaking_wave()->set_side(toMessage(sim::openSide(sim().scene())));
 }
 
 RoomWater::Outcome RoomWater::apply(const v1::Command& command) {

@@ -28,7 +28,7 @@ constexpr auto kFramePatience = 5s;
 double warmUp(gpu::Context& context, sim::WaterSim& sim) {
   // A scene without waves has no program to compile for an effect, and refuses it.
   (void)sim.start(core::Splash{.depth_m = 0.01, .duration_s = kWarmUpEffect_s});
-  (void)sim.start(core::BreakingWave{.amplitude_m = 0.01, .duration_s = kWarmUpEffect_s});
+  (void)sim.start(core::BreakingWave{.side = core::Side::kPlusX, .amplitude_m = 0.01, .duration_s = kWarmUpEffect_s});
   double tick_ms = std::numeric_limits<double>::infinity();
   for (int i = 0; i < kWarmUpTickCount; ++i) {
     const auto begin = std::chrono::steady_clock::now();

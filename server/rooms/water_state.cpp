@@ -25,22 +25,6 @@ bool readWords(const std::string& bytes, std::vector<std::uint32_t>& words) {
   return true;
 }
 
-v1::Side sideOf(core::Side side) {
-  switch (side) {
-    case core::Side::kPlusX:
-      return v1::SIDE_PLUS_X;
-    case core::Side::kMinusX:
-      return v1::SIDE_MINUS_X;
-    case core::Side::kPlusZ:
-      return v1::SIDE_PLUS_Z;
-    case core::Side::kMinusZ:
-      return v1::SIDE_MINUS_Z;
-    case core::Side::kDirection:
-      break;
-  }
-  return v1::SIDE_DIRECTION;
-}
-
 void fill(v1::ActiveEffect& out, const core::Splash& splash) {
   v1::Splash& message = *out.mutable_splash();
   message.set_x_m(splash.x_m);
@@ -52,7 +36,7 @@ void fill(v1::ActiveEffect& out, const core::Splash& splash) {
 
 void fill(v1::ActiveEffect& out, const core::BreakingWave& wave) {
   v1::BreakingWave& message = *out.mutable_breaking_wave();
-  message.set_side(sideOf(wave.side));
+  message.set_side(toMessage(wave.side.value()));  // an active one has a side
   message.set_amplitude_m(wave.amplitude_m);
   message.set_length_m(wave.length_m);
   message.set_duration_s(wave.duration_s);
@@ -165,6 +149,22 @@ std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
 
 }  // namespace
 
+v1::Side toMessage(core::Side side) {
+  switch (side) {
+    case core::Side::kPlusX:
+      return v1::SIDE_PLUS_X;
+    case core::Side::kMinusX:
+      return v1::SIDE_MINUS_X;
+    case core::Side::kPlusZ:
+      return v1::SIDE_PLUS_Z;
+    case core::Side::kMinusZ:
+      return v1::SIDE_MINUS_Z;
+    case core::Side::kDirection:
+      break;
+  }
+  return v1::SIDE_DIRECTION;
+}
+
 v1::WaterState toMessage(const sim::SavedState& state) {
   v1::WaterState out;
   out.set_run_tick(state.run_tick);
@@ -218,6 +218,7 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
     if (effect.has_splash()) {
       active.push_back({scene::toCore(effect.splash()), effect.start_s()});
     } else if (effect.has_breaking_wave()) {
+      if (effect.breaking_wave().side() == v1::SIDE_UNSPECIFIED) return invalid("an active wave has no side");
       active.push_back({scene::toCore(effect.breaking_wave()), effect.start_s()});
     } else {
       return invalid("an effect is neither splash nor wave");

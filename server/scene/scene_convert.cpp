@@ -319,7 +319,7 @@ core::BreakingWave toCore(const v1::BreakingWave& wave) {
   v1::BreakingWave in = wave;
   fillMessageDefaults(in);
   core::BreakingWave out;
-  out.side = toCore(in.side());
+  if (in.side() != v1::SIDE_UNSPECIFIED) out.side = toCore(in.side());
   out.amplitude_m = in.amplitude_m();
   out.length_m = in.length_m();
   out.duration_s = in.duration_s();

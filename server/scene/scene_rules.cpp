@@ -152,8 +152,9 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
   }
 }
 
-/// Returns the side length of the water along which a wave from there runs. A wave in a direction may run along either.
-double sideAlong(core::Side side, const WaterExtents& water) {
+/// Returns the side length of the water along which a wave from there runs. A wave in a direction, or from the side
+/// that the water decides, may run along either.
+double sideAlong(std::optional<core::Side> side, const WaterExtents& water) {
   if (side == core::Side::kPlusX || side == core::Side::kMinusX) return water.side_x_m;
   if (side == core::Side::kPlusZ || side == core::Side::kMinusZ) return water.side_z_m;
   return water.shorterSide_m();
@@ -241,6 +242,12 @@ std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
     const double side_z_m = scene.has_wave() ? waveCellsOf(scene.wave()).width_m : particles.box_side_m();
     checkPatch(particles.patch_shift_x_m(), particles.patch_scale(), side_x_m, "particles.patch_shift_x_m", issues);
     checkPatch(particles.patch_shift_z_m(), particles.patch_scale(), side_z_m, "particles.patch_shift_z_m", issues);
+  }
+  constexpr double kLeastRestart_s = 1.0;
+  if (scene.restart_after_s() > 0 && scene.restart_after_s() < kLeastRestart_s) {
+    addRange(issues, "restart_after_s",
+             core::formatQuantity(scene.restart_after_s(), "s") + " is too short; choose 0 (never) or at least " +
+                 core::formatQuantity(kLeastRestart_s, "s"));
   }
   for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
   for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);

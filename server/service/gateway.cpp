@@ -86,8 +86,7 @@ void Gateway::peopleChanged(const rooms::Room& room, const v1::People& people) {
 }
 
 void Gateway::wasReset(const rooms::Room& room) {
-  tell(room, topic::kReset,
-       wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "somebody started the scene again"));
+  tell(room, topic::kReset, wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "the scene has started again"));
 }
 
 void Gateway::hasRecovered(const rooms::Room& room, const std::string& how) {

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <spindrift/sim_setup/open_side.h>
 #include <spindrift/sim_setup/storm.h>
 
 #include "water_sim_parts.h"
@@ -20,7 +21,9 @@ constexpr double kLargestDepthShare = 0.9;
 }  // namespace
 
 core::Result<void> WaterSim::start(const core::Effect& effect) {
-  auto started = parts_->effects.start(effect, time_s());
+  core::Effect complete = effect;
+  if (auto* wave = std::get_if<core::BreakingWave>(&complete); wave && !wave->side) wave->side = openSide(scene_);
+  auto started = parts_->effects.start(complete, time_s());
   const auto* splash = std::get_if<core::Splash>(&effect);
   if (started && splash && parts_->follower) parts_->follower->goTo(splash->x_m, splash->z_m);
   return started;

@@ -1,5 +1,6 @@
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -49,7 +50,7 @@ shared::EventUniform uniformOf(const core::Splash& splash, double gain, double s
 
 /// Direction of travel, as a unit vector (x, z).
 std::pair<double, double> directionOf(const core::BreakingWave& wave) {
-  switch (wave.side) {
+  switch (wave.side.value()) {
     case core::Side::kPlusX:
       return {-1, 0};
     case core::Side::kMinusX:
@@ -115,6 +116,7 @@ double pulse(double phase) {
 
 core::Result<void> Effects::start(const core::Effect& effect, double time_s, std::size_t spare) {
   const bool splash = isSplash(effect);
+  assert(splash || std::get<core::BreakingWave>(effect).side);
   const auto most = static_cast<std::size_t>(splash ? MAX_SPLASHES : MAX_CRESTS);
   const auto active = static_cast<std::size_t>(
       std::ranges::count_if(active_, [&](const Active& a) { return isSplash(a.effect) == splash; }));

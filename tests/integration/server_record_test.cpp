@@ -104,6 +104,46 @@ TEST_F(RecordedPool, RunsAgainBitForBitWhenItsParticlesAreLaidOutAnew) {
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
 }
 
+/// A scene that starts again every second, with a beach at +x.
+class RecordedRepeating : public Recorded {
+ protected:
+  std::vector<RoomText> rooms() const override {
+    return {{"main", R"(
+      restart_after_s: 1
+      wave { resolution_count: 32 side_m: 8 depth_m: 1 boundary_plus_x: WAVE_BOUNDARY_REFLECT boundary_minus_x: WAVE_BOUNDARY_ABSORB }
+      beaches { side: SIDE_PLUS_X width_m: 3 }
+    )"}};
+  }
+};
+
+TEST_F(RecordedRepeating, RestartsByItselfAndRunsAgainBitForBit) {
+  ScriptedClient one = client();
+  one.subscribe(v1::LAYER_SURFACE);
+  v1::Command wave;
+  wave.mutable_breaking_wave();
+  ASSERT_TRUE(one.apply(wave));
+  constexpr int kRestarts = 2;
+  for (int k = 0; k < kRestarts; ++k) {
+    ASSERT_TRUE(one.waitFor([](const v1::ServerMessage& message) {
+      return message.has_room_event() && message.room_event().kind() == v1::ROOM_EVENT_KIND_RESET;
+    }));
+  }
+  server().stop();
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_GE(outcome->command_count, 1U + kRestarts) << "the wave and the restarts";
+  EXPECT_GE(outcome->hash_count, 20U);
+  EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
+
+  auto log = rooms::CommandLogReader::open(logFile());
+  ASSERT_TRUE(log);
+  std::vector<v1::Side> sides;
+  while (const auto record = (*log)->next()) {
+    if (record->command().has_breaking_wave()) sides.push_back(record->command().breaking_wave().side());
+  }
+  EXPECT_THAT(sides, testing::ElementsAre(v1::SIDE_MINUS_X)) << "the log holds the side that the water decided";
+}
+
 TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndReported) {
   live();
   fs::resize_file(logFile(), fs::file_size(logFile()) - 3);

@@ -44,6 +44,20 @@ TEST(ShippedScenes, TheDefaultHasEveryPartAndKeepsSomethingHappening) {
   EXPECT_TRUE(repeating_wave);
 }
 
+TEST(ShippedScenes, ThatShowOneEventRepeatIt) {
+  const auto scene = loadSceneFile(sceneFolder() / "dam_break.textproto");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_GT(scene->restart_after_s(), 0.0);
+  for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
+    const auto shipped = loadSceneFile(entry.path());
+    ASSERT_TRUE(shipped) << shipped.error().message;
+    for (const v1::TimedEvent& event : shipped->events()) {
+      EXPECT_TRUE(event.every_s() > 0 || shipped->restart_after_s() > 0)
+          << entry.path() << " has an event that is over";
+    }
+  }
+}
+
 TEST(ShippedScenes, TheSinglePartScenesHaveASinglePart) {
   const auto waves = loadSceneFile(sceneFolder() / "wave_only.textproto");
   ASSERT_TRUE(waves) << waves.error().message;

@@ -97,6 +97,8 @@ const BrokenRule kBrokenRules[] = {
      {"coupling.patch_follow: PATCH_FOLLOW_BOAT needs boats"}},
     {"TwoWayWithoutParticles", "wave {}\ncoupling { mode: COUPLING_MODE_TWO_WAY }", {"coupling: needs particles"}},
     {"BoatSpeedOutOfRange", "wave {}\nboats { boats { max_speed_mps: 31 } }", {"boats.boats[0].max_speed_mps: 31 m/s"}},
+    {"RestartTooSoon", "wave {}\nrestart_after_s: 0.5", {"restart_after_s: 0.5 s", "choose 0 (never) or at least 1 s"}},
+    {"RestartOutOfRange", "wave {}\nrestart_after_s: 3601", {"restart_after_s: 3601 s", "3600"}},
     {"StormOutOfRange", "wave {}\nstorm { level_ratio: 1.5 }", {"storm.level_ratio: 1.5", "maximum of 1"}},
     {"UnknownShape",
      "wave {}\nevents { effect { breaking_wave { shape: 9 } } }",

@@ -45,7 +45,7 @@ TEST(Effects, RefuseMoreThanTheirBound) {
   const auto refused = effects.start(core::Splash{}, 0);
   ASSERT_FALSE(refused);
   EXPECT_EQ(refused.error().code, core::ErrorCode::kUnavailable);
-  EXPECT_TRUE(effects.start(core::BreakingWave{}, 0)) << "waves have their own places";
+  EXPECT_TRUE(effects.start(core::BreakingWave{.side = core::Side::kMinusX}, 0)) << "waves have their own places";
 }
 
 TEST(Effects, AShortCrestIsAsSlowAsTheWavesThatItConsistsOf) {

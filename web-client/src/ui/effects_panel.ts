@@ -16,7 +16,10 @@ const kHelp: Record<EffectKey, string> = {
   waveLengthM: "Width of the crest at the start.",
   waveDirectionDeg: "Direction in which the wave travels: 0 is +x, 90 is +z.",
 };
+/** The server decides. */
+const kOpenSide: Choice = { value: String(Side.UNSPECIFIED), label: "the open side" };
 const kSides: readonly Choice[] = [
+  kOpenSide,
   { value: String(Side.PLUS_X), label: "right side (+x)" },
   { value: String(Side.MINUS_X), label: "left side (−x)" },
   { value: String(Side.PLUS_Z), label: "near side (+z)" },
@@ -32,11 +35,11 @@ export class EffectsPanel {
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
   private readonly buttons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
-  private readonly side = new SelectRow("wave-side", "Wave from", "Side at which the wave starts.", () => this.showDirection());
+  private readonly side = new SelectRow("wave-side", "Wave from", "Side at which the wave starts. The open side is the one with the deepest water.", () => this.showDirection());
   private readonly shape = new SelectRow("wave-shape", "Wave shape", "Breaking: a steep front. Swell: a symmetric crest.", () => {});
 
   constructor(private readonly root: HTMLElement) {
-    this.side.setChoices(kSides, kSides[0]!.value);
+    this.side.setChoices(kSides, kOpenSide.value);
     this.shape.setChoices(kShapes, kShapes[0]!.value);
   }
 
@@ -89,7 +92,7 @@ export class EffectsPanel {
     const { waveAmplitudeM: amplitudeM, waveLengthM: lengthM, waveDirectionDeg: directionDeg } = this.values;
     const side = Number(this.side.value) as Side;
     const shape = Number(this.shape.value) as WaveShape;
-    return { case: "breakingWave", value: { side, shape, amplitudeM, lengthM, ...(side === Side.DIRECTION ? { directionDeg } : {}) } };
+    return { case: "breakingWave", value: { ...(side === Side.UNSPECIFIED ? {} : { side }), shape, amplitudeM, lengthM, ...(side === Side.DIRECTION ? { directionDeg } : {}) } };
   }
 
   private showDirection(): void {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <variant>
 
 #include <spindrift/core/scene_defaults.h>
@@ -27,7 +28,7 @@ enum class WaveShape { kBreaking, kSwell };
 /// A crest released along a side or in a direction, travelling across the water.
 struct BreakingWave {
   using Default = defaults::BreakingWave;
-  Side side = Side::kPlusX;
+  std::optional<Side> side;  ///< left out: where the water is deepest and open (sim::openSide)
   double amplitude_m = Default::amplitude_m;
   double length_m = Default::length_m;      ///< full width of the crest at half height
   double duration_s = Default::duration_s;  ///< length of the smooth pulse

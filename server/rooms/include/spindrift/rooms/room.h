@@ -223,6 +223,8 @@ class Room {
   Outcome applyToWater(const Command& command);
   void recordCommand(const Command& command);
   Outcome reset(const Command& command);
+  /// Resets a scene that repeats itself, as a command would: logs hold it.
+  void restartIfOver();
   Outcome spawnBoat(const Command& command);
   Outcome controlBoat(const Command& command);
   Outcome removeBoat(const Command& command);

@@ -34,6 +34,9 @@ class RoomWater {
 
   /// Returns whether the command changes the water and belongs to apply(). The room handles time, scenes and ownership.
   static bool takes(const v1::Command& command);
+  /// Fills in what a command leaves to the present water: the side of a wave. Logs then hold the value that was in
+  /// force.
+  void fillIn(v1::Command& command) const;
   /// Applies a command that wire::completeCommand() accepted, between two ticks; a rejected one changes nothing.
   Outcome apply(const v1::Command& command);
 

@@ -1,12 +1,14 @@
 // The state of a simulation as a message, and back.
 #pragma once
 
+#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
 #include <spindrift/sim/saved_state.h>
 #include <spindrift/v1/kept_state.pb.h>
 
 namespace spindrift::rooms {
 
+v1::Side toMessage(core::Side side);
 v1::WaterState toMessage(const sim::SavedState& state);
 
 /// Error: kInvalidInput for a message that no simulation can have made.

@@ -30,8 +30,8 @@ EffectDomain domainOf(const WaveLayout& wave);
 /// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests.
 class Effects {
  public:
-  /// Starts an effect at time_s. kUnavailable when the most effects of its kind are active: try again when one has
-  /// ended. `spare`: places that must stay free, so that rain and wind leave some for clients.
+  /// Starts an effect at time_s; a wave must have a side. kUnavailable when the most effects of its kind are active:
+  /// try again when one has ended. `spare`: places that must stay free, so that rain and wind leave some for clients.
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
   /// Returns what the active effects add at time_s, after a step of dt_s, and removes those that have ended.
