@@ -163,8 +163,9 @@ int serve(ServeOptions options) {
     service::Gateway& gateway = (*server)->gateway();
     node->serve(gateway.sessions(), {.simulation = &(*server)->simulation(),
                                      .outlets = &gateway,
-                                     .answer = [&gateway](const net::HttpRequest& request, net::HttpResponder respond) {
-                                       gateway.rest().answer(request, std::move(respond));
+                                     .answer = [&gateway](const net::HttpRequest& request, net::HttpResponder respond,
+                                                          const std::optional<access::Grant>& decided) {
+                                       gateway.rest().answer(request, std::move(respond), decided);
                                      }});
   }
 
