@@ -36,13 +36,17 @@ AuditFile::AuditFile(std::filesystem::path file, int descriptor) : file_(std::mo
 }
 
 AuditFile::~AuditFile() {
+  finish();
+  ::close(descriptor_);
+}
+
+void AuditFile::finish() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
   wake_.notify_one();
-  thread_.join();
-  ::close(descriptor_);
+  if (thread_.joinable()) thread_.join();
 }
 
 void AuditFile::add(std::string line) {

@@ -137,7 +137,8 @@ cluster::NodeOptions nodeOptions(const FrontOptions& options, bool runs_rooms) {
           .ca_file = options.nats_ca_file,
           .cluster = options.cluster,
           .name = std::move(name),
-          .runs_rooms = runs_rooms};
+          .runs_rooms = runs_rooms,
+          .on_name_lost = endThisProcess};
 }
 
 int printConfig(const OptionSources& sources) {

@@ -1,8 +1,11 @@
+#include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -110,6 +113,24 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
   return out;
 }
 
+/// Ends the program if a room's water is still being built a while after the end of everything else. A build cannot be
+/// interrupted, and at its low priority it takes minutes on a busy machine; nothing of it is kept anyway.
+void leaveBuilds(const service::WaterServer& server, access::AuditFile* audit_file) {
+  constexpr std::chrono::seconds kPatience{2};
+  constexpr std::chrono::milliseconds kLook{10};
+  for (const auto end = std::chrono::steady_clock::now() + kPatience; server.isBuilding();) {
+    if (std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(kLook);
+      continue;
+    }
+    spdlog::warn("the water of a room was still being built: the program ends without it");
+    if (audit_file != nullptr) audit_file->finish();
+    spdlog::shutdown();
+    std::fflush(nullptr);
+    std::_Exit(0);  // the thread that builds still uses what exit() would destroy
+  }
+}
+
 int serve(ServeOptions options) {
   StopSignals signals;
   auto inherited = takeInheritedSocket();
@@ -140,8 +161,9 @@ int serve(ServeOptions options) {
     service::Gateway& gateway = (*server)->gateway();
     node->serve(gateway.sessions(), {.simulation = &(*server)->simulation(),
                                      .outlets = &gateway,
-                                     .answer = [&gateway](const net::HttpRequest& request, net::HttpResponder respond) {
-                                       gateway.rest().answer(request, std::move(respond));
+                                     .answer = [&gateway](const net::HttpRequest& request, net::HttpResponder respond,
+                                                          const std::optional<access::Grant>& decided) {
+                                       gateway.rest().answer(request, std::move(respond), decided);
                                      }});
   }
 
@@ -164,6 +186,7 @@ int serve(ServeOptions options) {
   node.reset();  // it uses the server
   for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
   logNetwork((*server)->networkStats());
+  leaveBuilds(**server, audit_file.get());
   return 0;
 }
 

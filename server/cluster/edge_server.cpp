@@ -45,9 +45,7 @@ void EdgeServer::serverStarts(net::Hub& hub) {
 }
 
 core::Result<void> EdgeServer::acceptSession(const std::string& room) {
-  if (node_->find(room)) return {};
-  return core::Error{core::ErrorCode::kInvalidInput,
-                     "room '" + room + "' does not exist; rooms are: " + node_->names()};
+  return node_->accept(room);
 }
 
 void EdgeServer::sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) {

@@ -21,11 +21,6 @@ constexpr std::size_t kArrivedMaxCount = 4096;
 /// The count of people who only watch changes in the list of people at most this often.
 constexpr std::chrono::seconds kUnlistedInterval{1};
 
-core::Role roleOf(v1::Role role) {
-  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
-  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
-}
-
 core::SessionId sessionOf(std::uint32_t prefix, std::uint64_t session) {
   return (core::SessionId{prefix} << kPrefixShift) | session;
 }
@@ -36,6 +31,11 @@ std::uint64_t newRun() {
 }
 
 }  // namespace
+
+core::Role roleOf(v1::Role role) {
+  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
+  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
+}
 
 void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
                   Clock::time_point now) {

@@ -30,6 +30,9 @@ inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.
 inline constexpr std::chrono::milliseconds kPulseInterval{200};
 
+/// Returns the role that a message of another process names; kViewer for one that does not exist.
+core::Role roleOf(v1::Role role);
+
 struct FeedStats {
   std::size_t link_count = 0;
   std::size_t session_count = 0;

@@ -15,6 +15,7 @@
 
 #include "directory.h"
 #include "feed.h"
+#include "node_name.h"
 #include "placement.h"
 #include "remote_room.h"
 #include "requests.h"
@@ -33,6 +34,7 @@ constexpr auto kDirectoryInterval = 250ms;
 constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
 constexpr std::size_t kPulsesWaitingMaxBytes = 4u << 20;
 constexpr std::string_view kApi = "/api/v1/";
+constexpr const char* kNotHeardAll = "not all servers of the cluster were heard yet: try again";
 
 template <typename Message>
 std::optional<Message> parse(core::ByteView bytes) {
@@ -45,6 +47,12 @@ net::HttpReply problem(unsigned status, std::string line) {
   v1::Problem out;
   out.set_message(std::move(line));
   return {.status = status, .content_type = "application/json", .body = wire::toJson(out) + "\n"};
+}
+
+net::HttpReply tryAgain(std::string line) {
+  net::HttpReply out = problem(503, std::move(line));
+  out.headers.emplace_back("Retry-After", "1");
+  return out;
 }
 
 class NodeImpl final : public Node {
@@ -61,7 +69,6 @@ class NodeImpl final : public Node {
   core::Result<void> start();
 
   core::Result<std::vector<rooms::RoomSetup>> claim(std::vector<rooms::RoomSetup> rooms) override {
-    std::this_thread::sleep_for(kListenTime);
     return directory_->claim(std::move(rooms));
   }
   service::ClusterHooks hooks() override {
@@ -79,11 +86,11 @@ class NodeImpl final : public Node {
 
   // service::Cluster
   std::shared_ptr<service::Venue> find(const std::string& room) override;
+  core::Result<void> accept(const std::string& room) override;
   bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) override;
   void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) override {
     directory_->open(std::move(setup), done);
   }
-  [[nodiscard]] std::string names() const override;
 
  private:
   void stop();
@@ -91,7 +98,12 @@ class NodeImpl final : public Node {
   void round(Clock::time_point now);
   void sendPulse(Clock::time_point now);
   void takeMail(core::ByteView message);
+  /// Returns whether all servers that are alive were heard, so that a room that none of them runs does not exist.
+  [[nodiscard]] bool hasHeardAll() const;
+  /// Returns what the client of a request that goes to another server may. Nullopt: the request was refused.
+  std::optional<Requests::Grant> admit(const net::HttpRequest& request, const net::HttpResponder& respond);
   [[nodiscard]] std::string metrics() const;
+  [[nodiscard]] std::string nameTaken(const std::string& process) const;
   [[nodiscard]] Servers servers() const {
     const std::lock_guard lock(mutex_);
     return servers_;
@@ -111,6 +123,7 @@ class NodeImpl final : public Node {
   std::atomic<bool> serving_{false};
   mutable std::mutex mutex_;
   Servers servers_;
+  Clock::time_point heard_all_{};  ///< guarded by mutex_: hasHeardAll() from then on
   std::map<std::string, std::shared_ptr<RemoteRoom>> remote_;
   LinkStats ended_;  ///< of links that are gone
   Clock::time_point next_pulse_{};
@@ -122,6 +135,7 @@ class NodeImpl final : public Node {
   std::unique_ptr<bus::Subscription> inbox_;
   std::unique_ptr<bus::Subscription> pulses_;
   std::unique_ptr<bus::Subscription> forwards_;
+  std::unique_ptr<NodeName> name_;
 };
 
 core::Result<void> NodeImpl::start() {
@@ -160,7 +174,20 @@ core::Result<void> NodeImpl::start() {
   inbox_ = bus_->subscribe(subjects_.node(options_.name), kInboxWaitingMaxBytes,
                            [this](core::ByteView message) { takeMail(message); });
   if (!pulses_ || !inbox_) return Error{ErrorCode::kUnavailable, "NATS: the node's subjects cannot be subscribed to"};
+  name_ = std::make_unique<NodeName>(*bus_, subjects_.name(options_.name), [this](const std::string& process) {
+    spdlog::error("{}, and goes on with it: this process ends", nameTaken(process));
+    if (options_.on_name_lost) options_.on_name_lost();
+  });
+  if (const std::string process = name_->claim(kListenTime); !process.empty()) {
+    return Error{
+        ErrorCode::kInvalidInput,
+        nameTaken(process) + ": give each process a name of its own; a name is free when its process has ended"};
+  }
   return {};
+}
+
+std::string NodeImpl::nameTaken(const std::string& process) const {
+  return "--node '" + options_.name + "': " + process + " has this name in cluster '" + options_.cluster + "'";
 }
 
 void NodeImpl::serve(service::Sessions& sessions, const ServerParts& server) {
@@ -185,6 +212,7 @@ void NodeImpl::stop() {
   }
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
+  name_.reset();
   inbox_.reset();
   pulses_.reset();
   forwards_.reset();
@@ -211,6 +239,7 @@ void NodeImpl::round(Clock::time_point now) {
   std::vector<std::shared_ptr<RemoteRoom>> idle;
   {
     const std::lock_guard lock(mutex_);
+    if (!bus_->isConnected()) heard_all_ = now + kListenTime;
     servers_.review(now);
     for (auto it = remote_.begin(); it != remote_.end();) {
       // A reference here, one in `remote_`: no session has it.
@@ -234,12 +263,13 @@ void NodeImpl::round(Clock::time_point now) {
   }
   for (const auto& room : rooms) room->review(now);
   requests_.review(now);
-  if (!simulation_) return;
-  feed_->review(simulation_->rooms(), *simulation_, now);
   if (now >= next_pulse_) {
     next_pulse_ = now + kPulseInterval;
-    sendPulse(now);
+    name_->pulse();
+    if (simulation_) sendPulse(now);
   }
+  if (!simulation_) return;
+  feed_->review(simulation_->rooms(), *simulation_, now);
   if (now >= next_review_) {
     next_review_ = now + kDirectoryInterval;
     directory_->review();
@@ -274,6 +304,7 @@ void NodeImpl::takeMail(core::ByteView message) {
 }
 
 core::Result<void> NodeImpl::ready() const {
+  if (!serving_) return Error{ErrorCode::kUnavailable, "this process is starting"};
   if (!bus_->isConnected()) return Error{ErrorCode::kUnavailable, "there is no connection to NATS"};
   const std::lock_guard lock(mutex_);
   if (!options_.runs_rooms && servers_.alive(Clock::now()).empty())
@@ -293,10 +324,29 @@ std::shared_ptr<service::Venue> NodeImpl::find(const std::string& asked) {
   return room;
 }
 
-std::string NodeImpl::names() const {
-  std::string out;
-  for (const std::string& room : servers().rooms()) out += (out.empty() ? "" : ", ") + room;
-  return out;
+core::Result<void> NodeImpl::accept(const std::string& room) {
+  if (auto can = ready(); !can) return can;
+  if (find(room)) return {};
+  if (!hasHeardAll()) return Error{ErrorCode::kUnavailable, kNotHeardAll};
+  std::string names;
+  for (const std::string& known : servers().rooms()) names += (names.empty() ? "" : ", ") + known;
+  return Error{ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
+}
+
+bool NodeImpl::hasHeardAll() const {
+  const std::lock_guard lock(mutex_);
+  return Clock::now() >= heard_all_;
+}
+
+std::optional<Requests::Grant> NodeImpl::admit(const net::HttpRequest& request, const net::HttpResponder& respond) {
+  service::AccessControl& access = sessions_->access();
+  auto grant = access.resolveForwarded(request.authorization, std::chrono::system_clock::now());
+  if (grant) return *std::move(grant);
+  access.audit().refused({.peer = request.peer}, grant.error().message);
+  net::HttpReply refusal = problem(401, grant.error().message);
+  refusal.headers.emplace_back("WWW-Authenticate", "Bearer");
+  respond(std::move(refusal));
+  return std::nullopt;
 }
 
 bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) {
@@ -305,19 +355,26 @@ bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpRespo
   const auto now = Clock::now();
   const Servers known = servers();
   const std::string& self = options_.name;
+  if (!simulation_) {
+    if (const auto can = ready(); !can) {
+      respond(tryAgain(can.error().message));
+      return true;
+    }
+  }
   if (rest == "rooms" && request.method == "GET") {
     std::vector<std::string> others = known.alive(now);
     std::erase(others, self);
-    if (!simulation_) {
-      requests_.askForRooms(others, request, "", respond);
-      return true;
-    }
     std::optional<net::HttpReply> own;
-    answer_(request, [&own](std::optional<net::HttpReply> reply) { own = std::move(reply); });
-    if (!own || own->status != 200)
-      respond(std::move(own));
-    else
-      requests_.askForRooms(others, request, std::move(own->body), respond);
+    if (simulation_) {
+      answer_(
+          request, [&own](std::optional<net::HttpReply> reply) { own = std::move(reply); }, std::nullopt);
+      if (!own || own->status != 200) {
+        respond(std::move(own));
+        return true;
+      }
+    }
+    if (const auto grant = admit(request, respond))
+      requests_.askForRooms(others, request, *grant, own ? std::move(own->body) : "", respond);
     return true;
   }
   std::string target;
@@ -327,7 +384,11 @@ bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpRespo
     if (simulation_ && simulation_->find(room)) return false;
     target = known.serverOf(room);
     if (!target.empty() && !known.isAlive(target, now)) {
-      respond(problem(503, "the server of room '" + room + "' has failed; the room starts elsewhere: try again"));
+      respond(tryAgain("the server of room '" + room + "' has failed; the room starts elsewhere: try again"));
+      return true;
+    }
+    if (target.empty() && !hasHeardAll()) {
+      respond(tryAgain(kNotHeardAll));
       return true;
     }
   } else {
@@ -337,19 +398,15 @@ bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpRespo
     if (target.empty() && rest == "rooms" && request.method == "POST" && simulation_) return false;
   }
   if (target == self || (target.empty() && simulation_)) return false;
-  if (target.empty()) {
-    const bool is_alone = known.alive(now).empty();
-    if (!is_alone && rest.starts_with("rooms/")) target = known.alive(now).front();  // it says that there is none
-    if (is_alone) {
-      respond(problem(503, "no server of the cluster is alive"));
-      return true;
-    }
-    if (target.empty()) {
-      respond(problem(503, "no server of the cluster has a place for a room: close one, or add a server"));
-      return true;
-    }
+  if (target.empty() && rest != "rooms") {
+    const std::vector<std::string> alive = known.alive(now);
+    if (!alive.empty()) target = alive.front();  // of a room it says that there is none
   }
-  requests_.ask(target, request, respond);
+  if (target.empty()) {
+    respond(problem(503, "no server of the cluster has a place for a room: close one, or add a server"));
+    return true;
+  }
+  if (const auto grant = admit(request, respond)) requests_.ask(target, request, *grant, respond);
   return true;
 }
 

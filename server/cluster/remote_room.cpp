@@ -37,6 +37,10 @@ std::uint64_t newLinkNumber() {
   return static_cast<std::uint64_t>(std::chrono::system_clock::now().time_since_epoch().count());
 }
 
+core::Error unreachable() {
+  return {core::ErrorCode::kUnavailable, "the room cannot be reached now: try again later"};
+}
+
 wire::CommandRejection unreachable(std::uint64_t command_id, const std::string& why) {
   return {.command_id = command_id, .reason = v1::REJECT_REASON_BUSY, .field = "", .message = why};
 }
@@ -122,8 +126,7 @@ void RemoteRoom::review(Clock::time_point now) {
     if (attached_) reviewStreams(now, now - told_ >= kPulseInterval, dropped);
   }
   reject(refused);
-  for (const Arrived& arrived : hopeless)
-    arrived(core::Error{core::ErrorCode::kUnavailable, "the room cannot be reached now: try again later"});
+  for (const Arrived& arrived : hopeless) arrived(unreachable());
 }
 
 std::vector<RemoteRoom::Refused> RemoteRoom::loseLink(const std::string& why) {
@@ -170,6 +173,8 @@ bool RemoteRoom::isOpen() const {
 // From the sessions
 
 void RemoteRoom::arrive(const rooms::Arrival& arrival, Arrived arrived) {
+  // Without NATS nobody answers: the client hears it now, not after kArrivalPatience.
+  if (!bus_.isConnected()) return arrived(unreachable());
   rooms::Admission unlisted;
   {
     const std::lock_guard lock(mutex_);

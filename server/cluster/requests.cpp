@@ -6,6 +6,9 @@
 
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
+#include <spindrift/wire/client_message.h>
+
+#include "feed.h"
 
 namespace spindrift::cluster {
 namespace {
@@ -28,6 +31,22 @@ net::HttpReply problem(unsigned status, std::string line) {
   return {.status = status, .content_type = "application/json", .body = wire::toJson(out) + "\n"};
 }
 
+v1::Grant toMessage(const access::Grant& grant) {
+  v1::Grant out;
+  out.set_role(wire::toWire(grant.role));
+  out.set_subject(grant.subject);
+  out.set_is_person(grant.is_person);
+  out.set_is_for_all_rooms(!grant.rooms);
+  if (grant.rooms) out.mutable_rooms()->Assign(grant.rooms->begin(), grant.rooms->end());
+  return out;
+}
+
+access::Grant fromMessage(const v1::Grant& grant) {
+  access::Grant out{.role = roleOf(grant.role()), .subject = grant.subject(), .is_person = grant.is_person()};
+  if (!grant.is_for_all_rooms()) out.rooms.emplace(grant.rooms().begin(), grant.rooms().end());
+  return out;
+}
+
 std::optional<net::HttpReply> toReply(const v1::HttpAnswer& answer) {
   if (answer.status() == 0) return std::nullopt;
   net::HttpReply out{.status = answer.status(), .content_type = answer.content_type(), .body = answer.body()};
@@ -37,8 +56,8 @@ std::optional<net::HttpReply> toReply(const v1::HttpAnswer& answer) {
 
 }  // namespace
 
-void Requests::send(const std::string& server, const net::HttpRequest& request, std::chrono::milliseconds patience,
-                    Taken taken) {
+void Requests::send(const std::string& server, const net::HttpRequest& request, const Grant& grant,
+                    std::chrono::milliseconds patience, Taken taken) {
   v1::HttpForward message;
   message.set_node(node_);
   message.set_method(request.method);
@@ -48,6 +67,7 @@ void Requests::send(const std::string& server, const net::HttpRequest& request, 
   message.set_authorization(request.authorization);
   message.set_content_type(request.content_type);
   message.set_peer(request.peer);
+  if (grant) *message.mutable_grant() = toMessage(*grant);
   {
     const std::lock_guard lock(mutex_);
     message.set_request(++last_request_);
@@ -56,15 +76,16 @@ void Requests::send(const std::string& server, const net::HttpRequest& request, 
   bus_.publish(subjects_.server(server), serialize(message));
 }
 
-void Requests::ask(const std::string& server, const net::HttpRequest& request, net::HttpResponder respond) {
-  send(server, request, kAnswerPatience, [server, respond = std::move(respond)](const v1::HttpAnswer* answer) {
+void Requests::ask(const std::string& server, const net::HttpRequest& request, const Grant& grant,
+                   net::HttpResponder respond) {
+  send(server, request, grant, kAnswerPatience, [server, respond = std::move(respond)](const v1::HttpAnswer* answer) {
     if (answer) return respond(toReply(*answer));
     respond(problem(504, "server " + server + " of the cluster did not answer; what was asked for may still happen"));
   });
 }
 
-void Requests::askForRooms(const std::vector<std::string>& servers, const net::HttpRequest& request, std::string own,
-                           const net::HttpResponder& respond) {
+void Requests::askForRooms(const std::vector<std::string>& servers, const net::HttpRequest& request, const Grant& grant,
+                           std::string own, const net::HttpResponder& respond) {
   struct Joined {
     std::mutex mutex;
     std::size_t missing_count;
@@ -88,7 +109,7 @@ void Requests::askForRooms(const std::vector<std::string>& servers, const net::H
     joined->respond(
         net::HttpReply{.status = 200, .content_type = "application/json", .body = wire::toJson(joined->list) + "\n"});
   };
-  for (const std::string& server : servers) send(server, request, kListPatience, add);
+  for (const std::string& server : servers) send(server, request, grant, kListPatience, add);
   if (own.empty()) return add(nullptr);
   v1::HttpAnswer here;
   here.set_status(200);
@@ -122,7 +143,7 @@ void Requests::review(Clock::time_point now) {
 }
 
 void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& forward,
-                   const std::function<void(const net::HttpRequest&, net::HttpResponder)>& answer) {
+                   const Node::Answer& answer) {
   const std::string& body = forward.body();
   const net::HttpRequest request{.method = forward.method(),
                                  .path = forward.path(),
@@ -131,8 +152,8 @@ void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForwar
                                  .authorization = forward.authorization(),
                                  .content_type = forward.content_type(),
                                  .peer = forward.peer()};
-  answer(request, [&bus, subject = subjects.node(forward.node()),
-                   number = forward.request()](std::optional<net::HttpReply> reply) {
+  const auto respond = [&bus, subject = subjects.node(forward.node()),
+                        number = forward.request()](std::optional<net::HttpReply> reply) {
     v1::ToNode message;
     v1::HttpAnswer& out = *message.mutable_http_answer();
     out.set_request(number);
@@ -147,7 +168,8 @@ void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForwar
       }
     }
     bus.publish(subject, serialize(message));
-  });
+  };
+  answer(request, respond, forward.has_grant() ? std::optional(fromMessage(forward.grant())) : std::nullopt);
 }
 
 }  // namespace spindrift::cluster

@@ -6,10 +6,13 @@
 #include <functional>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include <spindrift/access/grant.h>
 #include <spindrift/bus/bus.h>
+#include <spindrift/cluster/node.h>
 #include <spindrift/net/server.h>
 #include <spindrift/v1/cluster.pb.h>
 
@@ -25,12 +28,15 @@ class Requests {
   Requests(bus::Bus& bus, const Subjects& subjects, std::string node)
       : bus_(bus), subjects_(subjects), node_(std::move(node)) {}
 
+  /// What the client may; nullopt: the asked server decides.
+  using Grant = std::optional<access::Grant>;
+
   /// Asks one server; 504 if it does not answer.
-  void ask(const std::string& server, const net::HttpRequest& request, net::HttpResponder respond);
+  void ask(const std::string& server, const net::HttpRequest& request, const Grant& grant, net::HttpResponder respond);
   /// Asks several and joins their lists of rooms. `own`: the list of this process, or empty. Servers that do not answer
   /// are left out.
-  void askForRooms(const std::vector<std::string>& servers, const net::HttpRequest& request, std::string own,
-                   const net::HttpResponder& respond);
+  void askForRooms(const std::vector<std::string>& servers, const net::HttpRequest& request, const Grant& grant,
+                   std::string own, const net::HttpResponder& respond);
   void take(const v1::HttpAnswer& answer);
   /// Answers what waited too long.
   void review(Clock::time_point now);
@@ -41,8 +47,8 @@ class Requests {
     Taken taken;
     Clock::time_point until{};
   };
-  void send(const std::string& server, const net::HttpRequest& request, std::chrono::milliseconds patience,
-            Taken taken);
+  void send(const std::string& server, const net::HttpRequest& request, const Grant& grant,
+            std::chrono::milliseconds patience, Taken taken);
 
   bus::Bus& bus_;
   const Subjects& subjects_;
@@ -53,7 +59,6 @@ class Requests {
 };
 
 /// Sends the answer of this server to the node that passed the request on.
-void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& request,
-                   const std::function<void(const net::HttpRequest&, net::HttpResponder)>& answer);
+void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& request, const Node::Answer& answer);
 
 }  // namespace spindrift::cluster

@@ -18,6 +18,8 @@ class Subjects {
   [[nodiscard]] std::string room(const std::string& room) const { return cluster_ + ".room." + room; }
   /// ToNode messages.
   [[nodiscard]] std::string node(const std::string& node) const { return cluster_ + ".node." + node; }
+  /// NamePulse messages.
+  [[nodiscard]] std::string name(const std::string& node) const { return cluster_ + ".name." + node; }
   /// HttpForward messages.
   [[nodiscard]] std::string server(const std::string& server) const { return cluster_ + ".server." + server; }
   /// ServerPulse messages.

@@ -104,9 +104,10 @@ void Connection::shutDown() {
     self->stopping_ = true;
     if (self->session_) {
       self->session_->close(CloseCode::kGoingAway, "server is shutting down");
-    } else {
+    } else if (self->pending_) {
+      self->pending_->cancel();  // run() tells the client
+    } else if (!self->is_sending_) {
       self->stream_.close();
-      if (self->pending_) self->pending_->cancel();
     }
   });
 }
@@ -142,9 +143,7 @@ asio::awaitable<void> Connection::run() {
     if (isPreflight(request)) {
       reply = preflightReply();
     } else if (auto* target = std::get_if<RequestTarget>(&routed)) {
-      std::optional<Reply> answer = co_await ask(questionOf(request, *std::move(target), peer_));
-      if (!answer) break;
-      reply = *std::move(answer);
+      reply = co_await ask(questionOf(request, *std::move(target), peer_));
     } else {
       reply = std::get<Reply>(std::move(routed));
     }
@@ -290,7 +289,7 @@ std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
                             printable({origin.data(), origin.size()}) + " to allow them.");
 }
 
-asio::awaitable<std::optional<Reply>> Connection::ask(const HttpRequest& request) {
+asio::awaitable<Reply> Connection::ask(const HttpRequest& request) {
   constexpr const char* kFailed = "The server failed on this request; its log says why.";
   PendingAnswer pending(strand_);
   try {
@@ -310,8 +309,11 @@ asio::awaitable<std::optional<Reply>> Connection::ask(const HttpRequest& request
     case PendingAnswer::End::kDropped:
       spdlog::error("{} {} was never answered", request.method, request.path);
       co_return textReply(500, kFailed);
-    case PendingAnswer::End::kCancelled:
-      co_return std::nullopt;
+    case PendingAnswer::End::kCancelled: {
+      Reply reply = textReply(503, "The server ends before it has the answer; what was asked for may have been done.");
+      reply.headers.emplace_back("Retry-After", "1");
+      co_return reply;
+    }
     case PendingAnswer::End::kTimeout:
       break;
   }
@@ -372,6 +374,7 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
   const auto status = static_cast<http::status>(reply.status);
   stream_.expires_after(context_.options.write_stall_timeout +
                         std::chrono::seconds(reply.body->size() / kSlowestBytesPerSecond));
+  is_sending_ = true;
   boost::system::error_code error;
   if (head_only || reply.status == 304) {
     http::response<http::empty_body> response(status, version);
@@ -383,6 +386,7 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
     fillHead(response, reply, keep_alive);
     std::tie(error, std::ignore) = co_await http::async_write(stream_, response, kToken);
   }
+  is_sending_ = false;
   if (error) spdlog::debug("{}: the reply could not be sent: {}", peer_, error.message());
   co_return !error;
 }

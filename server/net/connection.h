@@ -37,8 +37,8 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   boost::asio::awaitable<bool> secure();
   /// Ends this side of the stream: with TLS by close_notify, which waits for the peer's until the deadline.
   boost::asio::awaitable<void> finish();
-  /// Asks the application. Returns nullopt if the connection was closed meanwhile.
-  boost::asio::awaitable<std::optional<Reply>> ask(const HttpRequest& request);
+  /// Asks the application; 503 if the server ends meanwhile.
+  boost::asio::awaitable<Reply> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
   /// Adapts the reply to this request's target and origin: see asProblem() and allowOrigin().
   Reply fitted(const UpgradeRequest& request, Reply reply) const;
@@ -65,6 +65,7 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<Session> session_;  ///< owns the stream after the upgrade
   PendingAnswer* pending_ = nullptr;  ///< while a request waits for the application
+  bool is_sending_ = false;           ///< a reply, which shutDown() lets go out
   bool stopping_ = false;
 };
 

@@ -201,7 +201,12 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   }
   try {
     const core::Result<void> accepted = application.acceptSession(decision.room);
-    if (!accepted) return {textReply(404, accepted.error().message), Refused::kRoom};
+    if (!accepted) {
+      const bool is_temporary = accepted.error().code == core::ErrorCode::kUnavailable;
+      Reply reply = textReply(is_temporary ? 503 : 404, accepted.error().message);
+      if (is_temporary) reply.headers.emplace_back("Retry-After", "1");
+      return {std::move(reply), Refused::kRoom};
+    }
   } catch (const std::exception& error) {
     spdlog::error("acceptSession failed: {}", error.what());
     return {textReply(500, "The server failed on this request; its log says why.")};

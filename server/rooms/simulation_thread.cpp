@@ -157,6 +157,7 @@ void SimulationThread::stop() {
   }
   wake_.notify_one();
   if (thread_.joinable()) thread_.join();
+  builder_->end();
 }
 
 std::vector<std::shared_ptr<Room>> SimulationThread::rooms() const {

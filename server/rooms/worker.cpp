@@ -12,10 +12,15 @@ Worker::Worker(int niceness, std::function<void()> done)
 Worker::~Worker() {
   {
     const std::lock_guard lock(mutex_);
-    stopping_ = true;
+    stopping_ = is_ending_ = true;
   }
   wake_.notify_one();
   thread_.join();
+}
+
+void Worker::end() {
+  const std::lock_guard lock(mutex_);
+  is_ending_ = true;
 }
 
 void Worker::push(Work work) {
@@ -35,7 +40,7 @@ void Worker::loop() {
     if (work_.empty()) return;
     Work work = std::move(work_.front());
     work_.pop_front();
-    const bool runs = !stopping_;
+    const bool runs = !is_ending_;
     lock.unlock();
     work(runs);
     work = nullptr;

@@ -56,6 +56,16 @@ core::Result<access::Grant> AccessControl::resolve(std::string_view token, const
   return grant;
 }
 
+core::Result<std::optional<access::Grant>> AccessControl::resolveForwarded(
+    std::string_view authorization, std::chrono::system_clock::time_point now) const {
+  const auto token = access::Access::bearerToken(authorization);
+  if (!token) return token.error();
+  auto grant = access_.get()->resolve(*token, now);
+  if (grant) return std::optional(*std::move(grant));
+  if (grant.error().message == access::kUnknownToken) return std::optional<access::Grant>();
+  return grant.error();
+}
+
 bool AccessControl::takeCommand(const std::string& person) {
   return person.empty() || people_.take(person, std::chrono::steady_clock::now());
 }

@@ -37,13 +37,10 @@ std::shared_ptr<Venue> Gateway::find(const std::string& room) {
 }
 
 core::Result<void> Gateway::acceptSession(const std::string& room) {
-  if (find(room)) return {};
+  if (simulation().find(room)) return {};
+  if (cluster_.cluster) return cluster_.cluster->accept(room);
   std::string names;
-  if (cluster_.cluster) {
-    names = cluster_.cluster->names();
-  } else {
-    for (const auto& known : simulation().rooms()) names += (names.empty() ? "" : ", ") + known->name();
-  }
+  for (const auto& known : simulation().rooms()) names += (names.empty() ? "" : ", ") + known->name();
   return core::Error{core::ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
 }
 

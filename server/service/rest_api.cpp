@@ -101,7 +101,8 @@ unsigned httpStatusOf(v1::RejectReason reason) {
 RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests)
     : access_(access), counters_(counters), sources_(sources), requests_(std::move(requests)) {}
 
-void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond) {
+void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond,
+                     const std::optional<access::Grant>& decided) {
   /// Far longer than any tick that a room allows while people are connected.
   constexpr double kStuck_s = 5.0;
   const bool is_probe = request.path == "/healthz" || request.path == "/readyz" || request.path == "/metrics";
@@ -126,9 +127,7 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   }
   if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
 
-  const auto token = access::Access::bearerToken(request.authorization);
-  const auto grant = token ? access_.resolve(*token, roomTokens(), std::chrono::system_clock::now())
-                           : core::Result<access::Grant>(token.error());
+  const auto grant = decided ? core::Result<access::Grant>(*decided) : resolve(request.authorization);
   if (!grant) {
     access_.audit().refused({.peer = request.peer}, grant.error().message);
     return respond(unauthorized(grant.error().message));
@@ -147,10 +146,12 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
   room(call, std::move(respond));
 }
 
-std::vector<RoomTokens> RestApi::roomTokens() const {
-  std::vector<RoomTokens> out;
-  for (const auto& room : rooms_->rooms()) out.push_back({room->name(), room->access()});
-  return out;
+core::Result<access::Grant> RestApi::resolve(const std::string& authorization) const {
+  const auto token = access::Access::bearerToken(authorization);
+  if (!token) return token.error();
+  std::vector<RoomTokens> of_rooms;
+  for (const auto& room : rooms_->rooms()) of_rooms.push_back({room->name(), room->access()});
+  return access_.resolve(*token, of_rooms, std::chrono::system_clock::now());
 }
 
 void RestApi::rooms(const Call& call, net::HttpResponder respond) {

@@ -172,6 +172,83 @@ TEST_F(ClusterTest, RolesAreCheckedWhereTheClientConnects) {
   EXPECT_EQ(post(e1.port, "/api/v1/rooms", R"({"name": "r", "scene": "pool"})").status, 403u);
 }
 
+TEST_F(ClusterTest, RolesOfRequestsAreDecidedWhereTheClientConnects) {
+  folder_.write("tokens", "operator operator-of-the-edge\n");
+  const Member s1 = server("s1");  // its own guests are operators
+  const Member e1 = edge("e1", "--guests player --tokens-file '" + (folder_.path() / "tokens").string() + "'");
+  const auto statusOf = [&](const std::string& path, const std::string& body, const std::string& token) {
+    const std::string headers = "Content-Type: application/json\r\n";
+    return httpRequest(e1.port, "POST", path,
+                       headers + (token.empty() ? "" : "Authorization: Bearer " + token + "\r\n"), body)
+        .status;
+  };
+  const std::string commands = "/api/v1/rooms/main/commands";
+  const std::string pause = R"({"setPaused": {"paused": true}})";
+  EXPECT_EQ(statusOf(commands, R"({"splash": {}})", ""), 200u);
+  EXPECT_EQ(statusOf(commands, pause, ""), 403u);
+  EXPECT_EQ(statusOf("/api/v1/rooms", R"({"name": "r", "scene": "pool"})", ""), 403u);
+  EXPECT_EQ(statusOf(commands, pause, "operator-of-the-edge"), 200u) << "the server does not know that token";
+  EXPECT_EQ(statusOf(commands, pause, "a-token-of-nobody-at-all"), 401u);
+  // The token of a room is known to its server only.
+  const HttpAnswer opened =
+      httpRequest(e1.port, "POST", "/api/v1/rooms",
+                  "Content-Type: application/json\r\nAuthorization: Bearer operator-of-the-edge\r\n",
+                  R"({"name": "lab", "scene": "pool", "tokens": ["ROLE_OPERATOR"]})");
+  ASSERT_EQ(opened.status, 201u) << opened.body;
+  const std::string of_lab(boost::json::parse(opened.body).at("tokens").as_array().at(0).at("token").as_string());
+  EXPECT_EQ(statusOf("/api/v1/rooms/lab/commands", pause, of_lab), 200u);
+  EXPECT_EQ(statusOf(commands, pause, of_lab), 403u);
+}
+
+TEST_F(ClusterTest, AnEdgeRefusesClientsWith503UntilItKnowsTheRooms) {
+  const auto join = [](std::uint16_t port, const std::string& target) {
+    WsClient client;
+    EXPECT_FALSE(client.connect("127.0.0.1", port, target));
+    return std::pair(client.handshakeStatus(), client.handshakeHeader("Retry-After"));
+  };
+  const Member e1 = start("edge", "e1");
+  EXPECT_EQ(join(e1.port, "/ws"), std::pair(503u, std::string("1")));
+  EXPECT_EQ(httpRequest(e1.port, "GET", "/readyz").status, 503u);
+  EXPECT_EQ(httpRequest(e1.port, "GET", "/api/v1/rooms").status, 503u) << "no empty list";
+  EXPECT_EQ(httpRequest(e1.port, "GET", "/api/v1/rooms/main").status, 503u);
+  const Member s1 = server("s1");
+  ASSERT_TRUE(eventually([&] { return rooms(e1.port).find("\"main\"") != std::string::npos; }));
+  EXPECT_EQ(join(e1.port, "/ws/nowhere"), std::pair(404u, std::string()));
+  EXPECT_EQ(httpRequest(e1.port, "GET", "/api/v1/rooms/nowhere").status, 404u);
+  for (const char* const name : {"e2", "e3", "e4"}) {
+    const Member next = start("edge", name);
+    WsClient client;
+    EXPECT_TRUE(client.connect("127.0.0.1", next.port)) << client.handshakeStatus() << client.handshakeBody();
+  }
+}
+
+TEST_F(ClusterTest, ASecondProcessOfOneNameEndsAndTheFirstGoesOn) {
+  const Member s1 = server("s1");
+  Member e1 = edge("e1");
+  ScriptedClient ada(e1.port);
+  ada.hello();
+  for (const std::string& what : {std::string("edge"), "serve --device software --scene '" + scene("pool") + "'"}) {
+    for (const std::string& name : {std::string("e1"), std::string("s1")}) {
+      LoggedProcess second(
+          std::string(SPINDRIFT_PROGRAM) + " " + what + " --port 0 --nats " + nats_->url() + " --node " + name,
+          folder_.path() / "second.log");
+      EXPECT_EQ(second.wait(), 2);
+      EXPECT_THAT(second.log(), testing::AllOf(HasSubstr("--node '" + name + "'"), HasSubstr("process "),
+                                               HasSubstr("give each process a name of its own")));
+      EXPECT_THAT(second.log(), Not(HasSubstr("is ready")));
+      std::filesystem::remove(folder_.path() / "second.log");
+    }
+  }
+  for (int k = 0; k < 20; ++k) EXPECT_TRUE(ada.apply(splash(0.05, 0.5)));
+  e1.process->signal(SIGKILL);
+  e1.process->wait();
+  std::filesystem::remove(folder_.path() / "e1.log");
+  e1 = edge("e1");
+  ScriptedClient bob(e1.port);
+  bob.hello();
+  EXPECT_TRUE(bob.apply(splash(0.05, 0.5)));
+}
+
 TEST_F(ClusterTest, ThoseWhoWatchBeyondTheListOfPeopleAreCountedForEverybody) {
   folder_.write("tokens", "operator operator-of-the-cluster\n");
   const std::string tokens = "--tokens-file '" + (folder_.path() / "tokens").string() + "'";
@@ -328,6 +405,11 @@ TEST_F(ClusterTest, WithoutNatsRoomsGoOnAndWatchersWait) {
   ASSERT_TRUE(eventually([&] { return metric(e1.port, "nats_connected") == 0; }));
   EXPECT_EQ(httpRequest(e1.port, "GET", "/readyz").status, 503u);
   EXPECT_THAT(e1.process->waitForLog("the connection to NATS"), HasSubstr("broke"));
+  WsClient late;
+  EXPECT_FALSE(late.connect("127.0.0.1", e1.port));
+  EXPECT_EQ(late.handshakeStatus(), 503u) << "at once, and not after the patience for rooms that are looked for";
+  EXPECT_EQ(late.handshakeHeader("Retry-After"), "1");
+  EXPECT_THAT(late.handshakeBody(), HasSubstr("NATS"));
   EXPECT_TRUE(direct.runFor(60)) << "clients of the server itself notice nothing";
   ASSERT_TRUE(eventually([&] { return behind.ask(splash(0.05, 0.5)).reject().reason() == v1::REJECT_REASON_BUSY; }));
   nats_->start();

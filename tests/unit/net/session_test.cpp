@@ -80,6 +80,15 @@ TEST(Session, RefusesAnUnknownRoomWithTheApplicationsLine) {
   EXPECT_EQ(unlucky.handshakeStatus(), 500U);
 }
 
+TEST(Session, RefusesARoomThatCannotBeReachedNowWith503AndRetryAfter) {
+  const TestServer served;
+  WsClient client;
+  EXPECT_FALSE(client.connect("127.0.0.1", served.server->port(), "/ws/later"));
+  EXPECT_EQ(client.handshakeStatus(), 503U);
+  EXPECT_EQ(client.handshakeHeader("Retry-After"), "1");
+  EXPECT_EQ(client.handshakeBody(), "the room cannot be reached now\n");
+}
+
 TEST(Session, RefusesMoreSessionsThanTheBoundAndTakesThemAgainLater) {
   const TestServer served({.max_session_count = 2, .address_session_share = 1.0});
   WsClient first = served.client();

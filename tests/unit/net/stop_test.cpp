@@ -85,6 +85,20 @@ TEST(Stop, DoesNotWaitForUnresponsiveClients) {
   EXPECT_FALSE(late.connect("127.0.0.1", served.server->port())) << "the port is closed";
 }
 
+TEST(Stop, AnswersRequestsThatWaitForTheApplication) {
+  TestServer served({.close_timeout = 2 * kHang});
+  auto waiting = std::async(std::launch::async, [port = served.server->port()] {
+    return test::httpRequest(port, "POST", "/api/keep", "Content-Type: application/json\r\n", "{}");
+  });
+  ASSERT_TRUE(eventually([&] { return served.application.keptCount() == 1; }));
+  const auto begin = Clock::now();
+  served.server->stop();
+  EXPECT_LT(Clock::now() - begin, kHang) << "the stop waited for the application";
+  const test::HttpAnswer answer = waiting.get();
+  EXPECT_EQ(answer.status, 503U) << answer.body;
+  served.application.kept.front()(HttpReply{200, "text/plain", "too late"});
+}
+
 TEST(Stop, WorksUnderLoad) {
   TestServer served({.thread_count = 2, .close_timeout = std::chrono::milliseconds(500)});
   std::atomic<bool> done{false};

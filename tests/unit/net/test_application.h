@@ -66,6 +66,7 @@ class TestApplication final : public net::Application {
   core::Result<void> acceptSession(const std::string& room) override {
     if (room == "throws") throw std::runtime_error("acceptSession was asked to throw");
     if (room.empty() || room == "pool") return {};
+    if (room == "later") return core::Error{core::ErrorCode::kUnavailable, "the room cannot be reached now"};
     return core::Error{core::ErrorCode::kInvalidInput, "there is no room \"" + room + "\""};
   }
 

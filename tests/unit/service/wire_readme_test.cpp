@@ -6,14 +6,19 @@
 #include <iterator>
 #include <regex>
 #include <set>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <google/protobuf/descriptor.h>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/net/server.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/v1/wire.pb.h>
+#include <spindrift/wire/api_message.h>
+#include <spindrift/wire/client_message.h>
+#include <spindrift/wire/server_message.h>
 
 namespace spindrift::service {
 namespace {
@@ -71,8 +76,86 @@ class WireReadme : public testing::Test {
     }
   }
 
+  /// Returns the bytes of a message in the section "A first exchange in bytes": of the lines below `head`.
+  [[nodiscard]] core::Bytes bytesOf(const std::string& head) const {
+    core::Bytes bytes;
+    const std::size_t at = text_.find("\n" + head + "\n");
+    EXPECT_NE(at, std::string::npos) << "the first exchange has no line " << head;
+    if (at == std::string::npos) return bytes;
+    std::istringstream lines(text_.substr(at + head.size() + 2));
+    const std::regex begin("^  ((?:[0-9a-f]{2} {1,2})+) +\\S");
+    std::smatch match;
+    for (std::string line; std::getline(lines, line) && std::regex_search(line, match, begin);) {
+      std::istringstream words(match[1]);
+      for (std::string word; words >> word;) bytes.push_back(static_cast<std::uint8_t>(std::stoi(word, nullptr, 16)));
+    }
+    return bytes;
+  }
+  static core::Bytes serialized(const google::protobuf::Message& message) {
+    core::Bytes bytes(message.ByteSizeLong());
+    message.SerializeWithCachedSizesToArray(bytes.data());
+    return bytes;
+  }
+
   std::string text_;
 };
+
+TEST_F(WireReadme, FirstExchangeHasTheMessagesOfTheClientAsTheServerReadsThem) {
+  v1::ClientMessage hello;
+  hello.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
+  hello.mutable_hello()->mutable_version()->set_minor(wire::kWireMinor);
+  hello.mutable_hello()->set_client("me");
+  EXPECT_EQ(bytesOf("out  Hello"), serialized(hello));
+
+  v1::ClientMessage subscribe;
+  subscribe.mutable_subscribe()->set_layer(v1::LAYER_SURFACE);
+  subscribe.mutable_subscribe()->set_max_rate_hz(10.0);
+  EXPECT_EQ(bytesOf("out  Subscribe"), serialized(subscribe));
+  const auto asked = wire::parseClientMessage(bytesOf("out  Subscribe"));
+  ASSERT_TRUE(std::holds_alternative<wire::Subscribe>(asked));
+  EXPECT_EQ(std::get<wire::Subscribe>(asked).packing, v1::PACKING_PLAIN);
+  EXPECT_EQ(std::get<wire::Subscribe>(asked).level, core::Level::kFull);
+
+  v1::ClientMessage splash;
+  splash.mutable_command()->set_command_id(7);
+  splash.mutable_command()->mutable_splash()->set_x_m(1.5);
+  splash.mutable_command()->mutable_splash()->set_depth_m(0.25);
+  EXPECT_EQ(bytesOf("out  Command"), serialized(splash));
+  EXPECT_TRUE(std::holds_alternative<v1::Command>(wire::parseClientMessage(bytesOf("out  Command"))));
+}
+
+TEST_F(WireReadme, FirstExchangeHasTheBytesThatTheServersEncoderMakes) {
+  EXPECT_EQ(bytesOf("in  Ack"), *wire::ack(7, 300, 0));
+
+  const auto samples = [](std::int16_t first, std::int16_t second) {
+    return static_cast<std::uint16_t>(first) | std::uint32_t{static_cast<std::uint16_t>(second)} << 16;
+  };
+  const std::vector<std::uint32_t> words{samples(0, 256), samples(-256, 64)};
+  core::FrameView frame;
+  frame.tick = 301;
+  frame.time_s = 5.0;
+  frame.state_id = 302;
+  frame.at(core::Level::kFull).surface = core::SurfaceView{{2, 2}, 8.0, 8.0, 1.0 / 1024.0, words};
+  EXPECT_EQ(bytesOf("in  LayerFrame"), *codec::FrameEncoder().encode(v1::LAYER_SURFACE, frame));
+}
+
+TEST_F(WireReadme, ShowsTheAnswerOfTheRestInterfaceWithItsStrings) {
+  v1::CommandAnswer answer;
+  answer.mutable_ack()->set_command_id(7);
+  answer.mutable_ack()->set_applied_tick(300);
+  EXPECT_THAT(text_, HasSubstr("```json\n" + wire::toJson(answer) + "\n```\n"));
+  const std::string rule = text_.substr(text_.find("**64-bit integers are strings in JSON**"), 400);
+  for (const Descriptor* type : {v1::RoomInfo::descriptor(), v1::Ack::descriptor(), v1::Reject::descriptor(),
+                                 v1::Scene::descriptor(), v1::People::descriptor(), v1::GaugeSeries::descriptor()}) {
+    for (int i = 0; i < type->field_count(); ++i) {
+      const auto kind = type->field(i)->cpp_type();
+      if (kind == google::protobuf::FieldDescriptor::CPPTYPE_UINT64 ||
+          kind == google::protobuf::FieldDescriptor::CPPTYPE_INT64) {
+        EXPECT_THAT(rule, HasSubstr("`" + type->field(i)->name() + "`")) << type->full_name();
+      }
+    }
+  }
+}
 
 TEST_F(WireReadme, ListsEveryReasonOfARejectionWithItsHttpStatus) {
   const auto rows = rowsOf("| `RejectReason` | HTTP status | when |");

@@ -23,7 +23,7 @@ class AuditFile {
 
   /// Opens the file for appending, or creates it with mode 0600. Error kUnavailable names it and the reason.
   static core::Result<std::unique_ptr<AuditFile>> open(std::filesystem::path file);
-  /// Writes what still waits.
+  /// As finish().
   ~AuditFile();
   AuditFile(const AuditFile&) = delete;
   AuditFile& operator=(const AuditFile&) = delete;
@@ -33,6 +33,9 @@ class AuditFile {
   /// Closes the file after the lines that were added before, and opens (or creates) the one of this name: for programs
   /// that rename logs. If that fails, the old one stays in use and the log of the program says so.
   void reopen();
+
+  /// Writes what still waits, and nothing afterwards. Idempotent; one thread.
+  void finish();
 
   [[nodiscard]] std::uint64_t writtenCount() const;
   [[nodiscard]] std::uint64_t lostCount() const;

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,20 +23,25 @@ struct NodeOptions {
   std::string name;                   ///< of this process, unique in the cluster, as isRoomName()
   bool runs_rooms = false;            ///< a server, not an edge
   std::size_t room_max_count = 0;     ///< of a server
+  /// Another process has the name, which was cut off when this one started, or the other way round: this one has to
+  /// end. Called on a thread of the node; empty: only logged.
+  std::function<void()> on_name_lost{};
 };
 
 class Node : public service::Cluster {
  public:
-  /// Connects to NATS and, for a server, opens the directory of rooms. Errors: kInvalidInput for a name, kUnavailable
-  /// when NATS does not answer or lacks JetStream.
+  /// Connects to NATS and, for a server, opens the directory of rooms; blocks for about a second, in which the others
+  /// are heard. Errors: kInvalidInput for a name that is malformed or that another process has, kUnavailable when NATS
+  /// does not answer or lacks JetStream.
   static core::Result<std::unique_ptr<Node>> connect(const NodeOptions& options);
 
-  /// Takes those of the rooms that no other server runs; blocks for about a second, in which the others are heard.
-  /// Before WaterServer::start(). Error kUnavailable when the directory does not answer.
+  /// Takes those of the rooms that no other server runs. Before WaterServer::start(). Error kUnavailable when the
+  /// directory does not answer.
   virtual core::Result<std::vector<rooms::RoomSetup>> claim(std::vector<rooms::RoomSetup> rooms) = 0;
   [[nodiscard]] virtual service::ClusterHooks hooks() = 0;
 
-  using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder)>;
+  /// See RestApi::answer().
+  using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder, const std::optional<access::Grant>&)>;
   /// What a server has and an edge has not.
   struct ServerParts {
     rooms::SimulationThread* simulation = nullptr;
@@ -44,7 +50,8 @@ class Node : public service::Cluster {
   };
   /// Starts the work. `sessions` and the parts outlive the node.
   virtual void serve(service::Sessions& sessions, const ServerParts& server) = 0;
-  /// Whether sessions can be served: NATS is connected and, for an edge, a server is alive. One line says why not.
+  /// Whether rooms of other servers can be served: NATS is connected and, for an edge, a server is alive. kUnavailable
+  /// says in one line why not.
   [[nodiscard]] virtual core::Result<void> ready() const = 0;
   /// Takes no rooms any more. The rooms go on.
   virtual void leave() = 0;

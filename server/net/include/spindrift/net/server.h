@@ -164,7 +164,7 @@ class Application {
   /// Called once by Server::start(), before any other call. The hub is valid as long as the Server.
   virtual void serverStarts(Hub& /*hub*/) {}
   /// Checks a WebSocket handshake on `/ws/{room}` (or `/ws` = the default room, empty name). An Error refuses the
-  /// upgrade with HTTP 404 and the error's line as the body.
+  /// upgrade with the error's line as the body: kUnavailable with HTTP 503 and Retry-After, all others with 404.
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
   /// The session is open; the application sends the greeting.
   virtual void sessionOpened(SessionId session, const std::string& room, const std::string& peer) = 0;
@@ -232,7 +232,7 @@ enum class Refused : std::uint8_t {
   kOrigin,      ///< 403: the page's Origin is not allowed
   kRate,        ///< 429: too many requests from one address
   kFull,        ///< 503: max_session_count sessions are open, or too many of them from one address
-  kRoom,        ///< 404: acceptSession refused
+  kRoom,        ///< 404, 503: acceptSession refused
   kHandshake,   ///< 400, 404, 426: not a supported WebSocket upgrade
   kRequest,     ///< 400, 411, 413, 431: invalid HTTP, no length, or too large
   kConnection,  ///< closed without a reply: too many connections
@@ -287,7 +287,8 @@ class Server {
   virtual void drain(std::chrono::seconds retry_after) = 0;
   /// With TLS: reads certificate and key again, in the background. Thread-safe.
   virtual void reloadCertificate() = 0;
-  /// Stops accepting, closes every session with 1001, waits at most close_timeout + 1 s, closes the remaining sockets
+  /// Stops accepting, answers waiting requests with 503, closes every session with 1001, waits at most close_timeout + 1
+  /// s, closes the remaining sockets
   /// and joins the threads. sessionClosed has been called for every open session when it returns. Idempotent; not from
   /// an I/O thread.
   virtual void stop() = 0;

@@ -35,8 +35,12 @@ class SimulationThread {
 
   /// Starts simulated time; `outlets` must live until stop().
   void run();
-  /// Ends the thread and destroys the rooms' water and the context; waiting changes are reported as failed. Idempotent.
+  /// Ends the thread and destroys the rooms' water and the context; waiting changes are reported as failed. Does not
+  /// wait for a build of water, as the destructor does: on a busy machine it takes minutes, at its low priority.
+  /// Idempotent.
   void stop();
+  /// Returns whether water is still being built or destroyed.
+  [[nodiscard]] bool isBuilding() const { return !builder_->hasEnded(); }
 
   /// Returns the rooms in the order of opening; the first is the default room.
   [[nodiscard]] std::vector<std::shared_ptr<Room>> rooms() const;

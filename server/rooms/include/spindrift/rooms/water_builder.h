@@ -37,6 +37,13 @@ class WaterBuilder {
   /// Any thread. Runs sim::prepareScene() on a separate thread and not behind builds, because a room's ticks wait for
   /// it. Errors: those of prepareScene(); kUnavailable when the builder ends.
   std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
+  /// Any thread. From now on waiting and new builds and changes end with kUnavailable. A build that runs cannot be
+  /// interrupted: hasEnded() says when it is over.
+  void end() {
+    builds_.end();
+    changes_.end();
+  }
+  [[nodiscard]] bool hasEnded() const { return builds_.isIdle() && changes_.isIdle(); }
   /// Any thread. Returns whether no water is being built or destroyed.
   [[nodiscard]] bool isIdle() const { return builds_.isIdle(); }
   /// Any thread. Returns how many waters could not be built since the start, for one cause.

@@ -27,6 +27,8 @@ class Worker {
   using Work = std::function<void(bool runs)>;
   /// Any thread.
   void push(Work work);
+  /// Any thread. From now on waiting and new pieces are called with runs = false; the current one goes on.
+  void end();
   /// Any thread. Returns whether no work waits or runs.
   [[nodiscard]] bool isIdle() const { return unfinished_count_ == 0; }
 
@@ -39,6 +41,7 @@ class Worker {
   std::condition_variable wake_;
   std::deque<Work> work_;
   std::atomic<std::size_t> unfinished_count_ = 0;
+  bool is_ending_ = false;
   bool stopping_ = false;
   std::thread thread_;
 };

@@ -42,13 +42,13 @@ class Cluster {
   virtual ~Cluster() = default;
   /// Returns the room of that name, wherever it runs, or null. The empty name is the default room.
   virtual std::shared_ptr<Venue> find(const std::string& room) = 0;
+  /// As net::Application::acceptSession(), for a room of another server.
+  virtual core::Result<void> accept(const std::string& room) = 0;
   /// Takes a request that another server has to answer, or several together; returns false if this process should.
   virtual bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) = 0;
   /// Opens a room on this server, under a name that no server of the cluster uses. Errors: as
   /// SimulationThread::openRoom(), and kUnavailable when the directory of rooms does not answer.
   virtual void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) = 0;
-  /// Names of all rooms, for messages.
-  [[nodiscard]] virtual std::string names() const = 0;
 };
 
 /// All empty: the server is alone.

@@ -41,8 +41,10 @@ class RestApi {
   void serverStarts(net::Hub& hub) { hub_ = &hub; }
   /// From now on /readyz answers 503 and rooms are not opened. Thread-safe.
   void drain() { is_draining_ = true; }
-  /// Answers any request that net passes to the application.
-  void answer(const net::HttpRequest& request, net::HttpResponder respond);
+  /// Answers any request that net passes to the application. `decided`: what the client may, where the process to which
+  /// it is connected has decided that.
+  void answer(const net::HttpRequest& request, net::HttpResponder respond,
+              const std::optional<access::Grant>& decided = std::nullopt);
 
   /// Reports the outcome of a request's command, by its request_id.
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
@@ -70,7 +72,7 @@ class RestApi {
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
-  [[nodiscard]] std::vector<RoomTokens> roomTokens() const;
+  [[nodiscard]] core::Result<access::Grant> resolve(const std::string& authorization) const;
   net::HttpResponder takePending(std::uint64_t request_id);
 
   AccessControl& access_;

@@ -35,6 +35,7 @@ class Sessions {
   /// Call it before the first session.
   void serve(net::Hub& hub) { hub_ = &hub; }
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
+  [[nodiscard]] AccessControl& access() const { return access_; }
 
   // From the network.
   void opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const std::string& peer);

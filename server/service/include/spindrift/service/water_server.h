@@ -41,6 +41,8 @@ class WaterServer {
   void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
+  /// After stop(): returns whether water of a room that was being opened is still built. The destructor waits for it.
+  [[nodiscard]] bool isBuilding() const { return simulation_->isBuilding(); }
 
   /// See net::Server::reloadCertificate().
   void reloadCertificate() { network_->reloadCertificate(); }

@@ -1,0 +1,115 @@
+// SIGTERM while rooms are being opened.
+#include <csignal>
+#include <filesystem>
+#include <future>
+#include <thread>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "program_fixture.h"
+
+namespace spindrift::test {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+using testing::AnyOf;
+using testing::HasSubstr;
+
+class StopWhileRoomsOpen : public ProgramTest {
+ protected:
+  /// False without a usable device: the test is then skipped.
+  bool serve(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, arguments);
+    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
+    if (!line) {
+      EXPECT_EQ(child_->wait(), 3) << child_->err();
+      return false;
+    }
+    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
+    return true;
+  }
+  /// Asks for a room in a thread of its own.
+  std::future<HttpAnswer> openRoom(int number) const {
+    return std::async(std::launch::async, [port = port_, number] {
+      return httpRequest(port, "POST", "/api/v1/rooms", "Content-Type: application/json\r\n",
+                         fmt::format(R"({{"name": "r{}", "scene": "splash"}})", number));
+    });
+  }
+
+  std::unique_ptr<ChildProcess> child_;
+  std::uint16_t port_ = 0;
+};
+
+/// A file of shaders whose reader waits until the object is destroyed: a build that does not end.
+class EndlessFile {
+ public:
+  explicit EndlessFile(fs::path file) : file_(std::move(file)) {
+    fs::remove(file_);
+    EXPECT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+  }
+  EndlessFile(const EndlessFile&) = delete;
+  EndlessFile& operator=(const EndlessFile&) = delete;
+  ~EndlessFile() {
+    if (writer_ >= 0) ::close(writer_);
+  }
+  /// Waits until somebody reads it.
+  bool waitForReader() {
+    for (const auto end = std::chrono::steady_clock::now() + kPatience; std::chrono::steady_clock::now() < end;) {
+      writer_ = ::open(file_.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);  // fails while nobody reads
+      if (writer_ >= 0) return true;
+      std::this_thread::sleep_for(10ms);
+    }
+    return false;
+  }
+
+ private:
+  const fs::path file_;
+  int writer_ = -1;
+};
+
+TEST_F(StopWhileRoomsOpen, ABuildThatDoesNotEndDelaysNeitherTheAnswersNorTheEnd) {
+  const fs::path shaders = folder().path() / "shaders";
+  fs::copy(fs::path(SPINDRIFT_SOURCE_DIR) / "shaders", shaders, fs::copy_options::recursive);
+  if (!serve({"--shader-dir", shaders.string(), "--audit-log", (folder().path() / "audit.jsonl").string()}))
+    GTEST_SKIP() << "no device";
+  EndlessFile endless(shaders / "sph" / "force.comp");  // the room that runs has no particles
+  std::vector<std::future<HttpAnswer>> answers;
+  for (int k = 0; k < 3; ++k) answers.push_back(openRoom(k));
+  ASSERT_TRUE(endless.waitForReader());
+  EXPECT_EQ(httpRequest(port_, "GET", "/healthz").status, 200U);
+  child_->signal(SIGTERM);
+  EXPECT_EQ(child_->wait(), 0) << child_->err();
+  for (auto& answer : answers) {
+    const HttpAnswer got = answer.get();
+    EXPECT_EQ(got.status, 503U) << got.body;
+    EXPECT_THAT(got.body, HasSubstr("end"));
+  }
+  EXPECT_THAT(child_->err(), HasSubstr("the water of a room was still being built: the program ends without it"));
+  EXPECT_THAT(child_->err(), HasSubstr("room main: ")) << "the summary";
+}
+
+TEST_F(StopWhileRoomsOpen, EveryRequestIsAnsweredAndTheProgramEndsAtAnyMoment) {
+  for (int round = 0; round < 6; ++round) {
+    if (!serve({"--state-dir", (folder().path() / "state").string(), "--max-rooms", "32"})) GTEST_SKIP() << "no device";
+    std::vector<std::future<HttpAnswer>> answers;
+    for (int k = 0; k < 4; ++k) answers.push_back(openRoom(10 * round + k));
+    // From before the requests are read to in the middle of the builds.
+    std::this_thread::sleep_for(40ms * round);
+    child_->signal(SIGTERM);
+    EXPECT_EQ(child_->wait(), 0) << child_->err();
+    for (auto& answer : answers) {
+      const HttpAnswer got = answer.get();
+      // 0: the server listened no more when the connection was made, or closed it before it had read the request.
+      EXPECT_THAT(got.status, AnyOf(0U, 201U, 503U)) << got.body;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::test
