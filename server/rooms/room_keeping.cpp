@@ -1,4 +1,5 @@
 // The state of a room on disk: what it writes while it runs, and how it goes on from there after a restart.
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <variant>
@@ -59,7 +60,8 @@ void Room::keepPeople() {
 }
 
 void Room::flushKept() {
-  if (!keeper_ || answers_.empty()) return;
+  // A refusal promises nothing, and does not wait for the disk.
+  if (!keeper_ || std::ranges::all_of(answers_, [](const Answer& one) { return one.rejected.has_value(); })) return;
   const auto flushed = keeper_->flush();
   if (flushed) return;
   for (Answer& answer : answers_) {
