@@ -7,7 +7,7 @@ namespace {
 
 TEST(MetricLabel, PlainValuesStayAsTheyAre) {
   EXPECT_EQ(metricLabel("room", "quay-2"), R"(room="quay-2")");
-  EXPECT_EQ(metricLabel("room", "Länd (copy)"), R"(room="Länd (copy)") ");
+  EXPECT_EQ(metricLabel("room", "Länd (copy)"), "room=\"Länd (copy)\"");
 }
 
 TEST(MetricLabel, QuotesBackslashesAndLineBreaksAreEscaped) {
