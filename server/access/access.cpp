@@ -3,6 +3,7 @@
 #include <sstream>
 
 #include <spindrift/access/access.h>
+#include <spindrift/core/room_name.h>
 
 namespace spindrift::access {
 namespace {
@@ -30,13 +31,13 @@ std::optional<system_clock::time_point> parseUtc(const std::string& text) {
   return sys_days(date) + hours(hour) + minutes(minute) + seconds(second);
 }
 
-/// "main,lab" as a list; nullopt if a name is empty or too long, or there are too many.
+/// "main,lab" as a list; nullopt if a name is one that no room has, or there are too many.
 std::optional<std::vector<std::string>> parseRooms(std::string_view text) {
   std::vector<std::string> out;
   for (;;) {
     const std::size_t comma = text.find(',');
     const std::string_view name = text.substr(0, comma);
-    if (name.empty() || name.size() > kRoomNameMaxBytes || out.size() == kTokenRoomMaxCount) return std::nullopt;
+    if (!core::isRoomName(name) || out.size() == kTokenRoomMaxCount) return std::nullopt;
     out.emplace_back(name);
     if (comma == std::string_view::npos) return out;
     text.remove_prefix(comma + 1);
@@ -60,8 +61,7 @@ std::string takeOption(const std::string& option, Grant& grant) {
     grant.rooms = parseRooms(*rooms);
     return grant.rooms ? ""
                        : "room= has to be a list of 1 to " + std::to_string(kTokenRoomMaxCount) +
-                             " rooms with ',' between them, each with 1 to " + std::to_string(kRoomNameMaxBytes) +
-                             " characters";
+                             " rooms with ',' between them, each with " + std::string(core::kRoomNameRule);
   }
   if (const auto subject = valueOf("sub=")) {
     if (grant.is_person) return "sub= stands twice";

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/digest.h>
 #include <spindrift/access/jwt.h>
+#include <spindrift/core/room_name.h>
 
 #include "json_object.h"
 
@@ -211,7 +213,9 @@ core::Result<Grant> verifyJwt(std::string_view token, const std::vector<JwtKey>&
   grant.subject = claims.text("sub", kSubjectMaxBytes);
   grant.is_person = !grant.subject.empty();
   grant.name = claims.text("name", kNameMaxBytes);
-  grant.rooms = claims.texts("room", kTokenRoomMaxCount, kRoomNameMaxBytes);
+  grant.rooms = claims.texts("room", kTokenRoomMaxCount, core::kRoomNameMaxBytes);
+  if (grant.rooms && !std::ranges::all_of(*grant.rooms, core::isRoomName))
+    claims.fail(fmt::format("room has an entry that is no name of a room ({})", core::kRoomNameRule));
   if (!claims.fault().empty()) return refusal(claims.fault());
   if (!grant.is_person) grant.subject = "a JWT without sub";
   return grant;

@@ -4,18 +4,45 @@
 #include <memory>
 
 #include <spdlog/details/log_msg.h>
+#include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+
+#include <spindrift/core/text.h>
 
 #include "json_log_formatter.h"
 
 namespace spindrift::cli {
 namespace {
 
+/// The text of a message. Names and reasons in it may come from outside: none begins a line that looks like another
+/// message, or changes the terminal.
+class MessageText final : public spdlog::custom_flag_formatter {
+ public:
+  void format(const spdlog::details::log_msg& message, const std::tm&, spdlog::memory_buf_t& out) override {
+    const std::string text = indentLines({message.payload.data(), message.payload.size()});
+    out.append(text.data(), text.data() + text.size());
+  }
+  [[nodiscard]] std::unique_ptr<custom_flag_formatter> clone() const override {
+    return std::make_unique<MessageText>();
+  }
+};
+
 /// A failure can occur anywhere in main(), so its form cannot be passed down like an option.
 bool writes_json = false;
 
 }  // namespace
+
+std::string indentLines(std::string_view text) {
+  std::string out;
+  while (true) {
+    const std::size_t end = text.find('\n');
+    out += core::cleanText(text.substr(0, end), text.size());
+    if (end == std::string_view::npos || end + 1 == text.size()) return out;
+    out += "\n    ";
+    text.remove_prefix(end + 1);
+  }
+}
 
 void addLogOptions(CLI::App& program, LogOptions& options) {
   program.add_option("--log-level", options.level, "Level of the log on standard error")
@@ -32,7 +59,9 @@ void setUpLogging(const LogOptions& options) {
   if (writes_json) {
     logger->set_formatter(std::make_unique<JsonLogFormatter>());
   } else {
-    logger->set_pattern("%H:%M:%S.%e %^%l%$ %v");
+    auto formatter = std::make_unique<spdlog::pattern_formatter>();
+    formatter->add_flag<MessageText>('*').set_pattern("%H:%M:%S.%e %^%l%$ %*");
+    logger->set_formatter(std::move(formatter));
   }
   logger->set_level(spdlog::level::from_str(options.level));
   spdlog::set_default_logger(std::move(logger));

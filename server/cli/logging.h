@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include <CLI/CLI.hpp>
 
@@ -14,6 +15,9 @@ struct LogOptions {
 
 /// Adds --log-level and --log-format.
 void addLogOptions(CLI::App& program, LogOptions& options);
+
+/// Returns the text without control characters, its lines after the first one indented by four spaces.
+std::string indentLines(std::string_view text);
 
 /// Makes spdlog's default logger. Call once, before other threads start.
 void setUpLogging(const LogOptions& options);

@@ -13,6 +13,7 @@
 
 #include <spindrift/cluster/node.h>
 #include <spindrift/core/paths.h>
+#include <spindrift/core/room_name.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
@@ -32,8 +33,8 @@ using core::ErrorCode;
 /// Lists the scene's file in `catalog`, so that the room can return to it and change its fidelity.
 core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity,
                                         rooms::SceneCatalog& catalog) {
-  if (!rooms::isRoomName(name)) {
-    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
+  if (!core::isRoomName(name)) {
+    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have " + std::string(core::kRoomNameRule)};
   }
   auto file = core::findScene(scene);
   if (!file) return file.error();

@@ -5,6 +5,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/room_name.h>
 #include <spindrift/scene/fidelity.h>
 
 namespace spindrift::cluster {
@@ -38,7 +39,7 @@ Directory::Entries Directory::parse(const bus::KeyValueMap& values) {
   for (const auto& [room, value] : values) {
     Entry entry{.record = {}, .revision = value.revision};
     if (entry.record.ParseFromArray(value.value.data(), static_cast<int>(value.value.size())) &&
-        rooms::isRoomName(room)) {
+        core::isRoomName(room)) {
       out.emplace(room, std::move(entry));
     }
   }
@@ -193,9 +194,7 @@ Directory::Decision Directory::decide(Entries& entries) {
   for (const auto& room : simulation_->rooms()) entries.try_emplace(room->name());
   if (const auto& states = simulation_->rules().states) {
     if (const auto kept = states->rooms()) {
-      for (const std::string& room : *kept) {
-        if (rooms::isRoomName(room)) entries.try_emplace(room);
-      }
+      for (const std::string& room : *kept) entries.try_emplace(room);
     }
   }
   const Servers servers = hooks_.servers();

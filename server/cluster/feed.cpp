@@ -6,6 +6,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/monotonic.h>
+#include <spindrift/core/room_name.h>
 #include <spindrift/wire/client_message.h>
 
 #include "frame_head.h"
@@ -148,7 +149,8 @@ void Feed::attach(FedRoom& room, const v1::ToRoom& message) {
 
 void Feed::take(const std::string& name, core::ByteView bytes) {
   v1::ToRoom message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || message.node().empty()) return;
+  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || !core::isRoomName(message.node()))
+    return;
   std::unique_lock lock(mutex_);
   const auto found = rooms_.find(name);
   if (found == rooms_.end()) return;

@@ -10,6 +10,7 @@
 
 #include <spindrift/bus/bus.h>
 #include <spindrift/cluster/node.h>
+#include <spindrift/core/room_name.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/wire/api_message.h>
 
@@ -314,7 +315,7 @@ core::Result<void> NodeImpl::ready() const {
 
 std::shared_ptr<service::Venue> NodeImpl::find(const std::string& asked) {
   const std::string& name = asked.empty() ? kDefaultRoom : asked;
-  if (!serving_ || !rooms::isRoomName(name)) return nullptr;
+  if (!serving_ || !core::isRoomName(name)) return nullptr;
   const std::lock_guard lock(mutex_);
   const auto known = remote_.find(name);
   if (known != remote_.end() && known->second->isOpen()) return known->second;
@@ -471,9 +472,9 @@ std::string NodeImpl::metrics() const {
 
 core::Result<std::unique_ptr<Node>> Node::connect(const NodeOptions& options) {
   for (const auto& [what, name] : {std::pair("--node", options.name), std::pair("--cluster", options.cluster)}) {
-    if (!rooms::isRoomName(name)) {
+    if (!core::isRoomName(name)) {
       return Error{ErrorCode::kInvalidInput,
-                   std::string(what) + " '" + name + "': names have 1 to 32 letters, digits, '_' or '-'"};
+                   std::string(what) + " '" + name + "': names have " + std::string(core::kRoomNameRule)};
     }
   }
   auto bus =

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <limits>
 #include <set>
+#include <utility>
+
+#include <spindrift/core/room_name.h>
 
 namespace spindrift::cluster {
 namespace {
@@ -13,7 +16,12 @@ constexpr double kRoomLoad = 0.3;
 
 }  // namespace
 
-void Servers::note(const v1::ServerPulse& pulse, Clock::time_point now) {
+void Servers::note(v1::ServerPulse pulse, Clock::time_point now) {
+  if (!core::isRoomName(pulse.server())) return;
+  auto& named = *pulse.mutable_rooms();
+  named.erase(
+      std::remove_if(named.begin(), named.end(), [](const std::string& room) { return !core::isRoomName(room); }),
+      named.end());
   // A room has one server: an earlier one has lost it.
   for (auto& [name, server] : servers_) {
     if (name == pulse.server()) continue;
@@ -23,7 +31,8 @@ void Servers::note(const v1::ServerPulse& pulse, Clock::time_point now) {
                                [&](const std::string& room) { return std::ranges::count(pulse.rooms(), room) > 0; }),
                 rooms.end());
   }
-  servers_[pulse.server()] = {pulse, now};
+  const std::string name = pulse.server();
+  servers_[name] = {std::move(pulse), now};
 }
 
 void Servers::review(Clock::time_point now) {

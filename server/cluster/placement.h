@@ -22,7 +22,8 @@ inline constexpr std::chrono::milliseconds kListenTime{700};
 /// The servers of the cluster, from their pulses.
 class Servers {
  public:
-  void note(const v1::ServerPulse& pulse, Clock::time_point now);
+  /// Pulses of servers whose names no server can have, and rooms of that kind, are left out.
+  void note(v1::ServerPulse pulse, Clock::time_point now);
   /// Forgets servers that have been dead for a minute.
   void review(Clock::time_point now);
 

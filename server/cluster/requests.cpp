@@ -4,6 +4,7 @@
 #include <optional>
 #include <utility>
 
+#include <spindrift/core/room_name.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
 #include <spindrift/wire/client_message.h>
@@ -144,6 +145,7 @@ void Requests::review(Clock::time_point now) {
 
 void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& forward,
                    const Node::Answer& answer) {
+  if (!core::isRoomName(forward.node())) return;  // no node has that name, and it is part of a subject
   const std::string& body = forward.body();
   const net::HttpRequest request{.method = forward.method(),
                                  .path = forward.path(),

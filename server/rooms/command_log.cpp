@@ -2,6 +2,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <utility>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -77,7 +78,7 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
   if (self->out_.good()) {
     v1::Record record;
     *record.mutable_header() = header;
-    self->write(record);
+    self->write(std::move(record));
   }
   if (!self->out_.good()) {
     return Error{ErrorCode::kUnavailable, "the log " + self->file_.string() + " cannot be written (" +
@@ -86,8 +87,9 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
   return self;
 }
 
-void CommandLogWriter::write(const v1::Record& record) {
+void CommandLogWriter::write(v1::Record record) {
   if (ended_) return;
+  record.set_number(++record_count_);
   const std::string payload = record.SerializeAsString();
   const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), core::crc32c(viewOf(payload)));
   if (size_bytes_ + prefix.size() + payload.size() > kLogMaxBytes) {
@@ -145,6 +147,11 @@ std::optional<v1::Record> CommandLogReader::next() {
   const google::protobuf::LogSilencer silencer;
   if (core::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record.ParseFromString(payload)) {
     return broken("a record is damaged");
+  }
+  ++record_count_;
+  if (record.number() != 0 && record.number() != record_count_) {
+    return broken(fmt::format("record {} stands where record {} follows: records are missing, doubled or exchanged",
+                              record.number(), record_count_));
   }
   offset_bytes_ += prefix.size() + length;
   return record;

@@ -58,6 +58,7 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
   auto room = begin(std::move(name), std::move(water), rules, builder, outlets, std::move(place), std::move(access));
   if (!room) return room;
   if (const auto restored = (*room)->restoreUntil(TimePoint::max()); !restored) return restored.error();
+  if (const auto kept = (*room)->isOnDisk(TimePoint::max()); !kept) return kept.error();
   return room;
 }
 
@@ -94,11 +95,6 @@ core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_pt
     room->restoration_->repetition = *std::move(repetition);
   }
   return room;
-}
-
-bool isRoomName(const std::string& name) {
-  constexpr std::size_t kNameMaxBytes = 32;
-  return scene::isSceneName(name) && name.size() <= kNameMaxBytes;
 }
 
 std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
@@ -155,7 +151,7 @@ void Room::publishLoss() {
 void Room::record(v1::Record record) {
   if (!log_) return;
   record.set_tick(tick());
-  log_->write(record);
+  log_->write(std::move(record));
 }
 
 // One tick

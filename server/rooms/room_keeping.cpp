@@ -1,4 +1,5 @@
 // The state of a room on disk: what it writes while it runs, and how it goes on from there after a restart.
+#include <algorithm>
 #include <chrono>
 #include <utility>
 #include <variant>
@@ -59,7 +60,8 @@ void Room::keepPeople() {
 }
 
 void Room::flushKept() {
-  if (!keeper_ || answers_.empty()) return;
+  // A refusal promises nothing, and does not wait for the disk.
+  if (!keeper_ || std::ranges::all_of(answers_, [](const Answer& one) { return one.rejected.has_value(); })) return;
   const auto flushed = keeper_->flush();
   if (flushed) return;
   for (Answer& answer : answers_) {
@@ -75,28 +77,43 @@ void Room::keepState(TimePoint now) {
   // What the watchdog restored does not follow from the log.
   const std::uint64_t recovered_count = water_->sim().recoveredCount();
   if (recovered_count != std::exchange(kept_recovery_count_, recovered_count)) keeper_->ask();
-  const bool stands_still = keeper_->isUpToDate() && water_->stateId() == saved_state_id_;
-  if (!stands_still && keeper_->isDue(now)) {
-    const auto begin = std::chrono::steady_clock::now();
-    auto state = stateNow();
-    const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    if (state) keeper_->save(*std::move(state), now, copy_s);
+  if (keeper_->isDue(now, water_->stateId() != saved_state_id_)) {
+    (void)save();
     next_running_ = now + kRunningInterval;
-  } else if (now >= next_running_ && water_->stateId() != kept_state_id_) {
-    kept_state_id_ = water_->stateId();
+  } else if (now >= next_running_) {
+    keepTick();
     next_running_ = now + kRunningInterval;
-    v1::StateRecord record;
-    record.set_running(true);
-    keepWhatHappened(std::move(record));
   }
 }
 
-core::Result<void> Room::saveAndWait() {
-  if (!keeper_ || is_lost_) return {};
-  water_->bind();
+void Room::keepTick() {
+  if (std::exchange(kept_state_id_, water_->stateId()) == water_->stateId()) return;
+  v1::StateRecord record;
+  record.set_running(true);
+  keepWhatHappened(std::move(record));
+}
+
+core::Result<void> Room::save() {
+  const auto begin = std::chrono::steady_clock::now();
   auto state = stateNow();
   if (!state) return core::Error{core::ErrorCode::kUnavailable, "the device does not answer"};
-  return keeper_->saveAndWait(*std::move(state));
+  const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  keeper_->save(*std::move(state), begin, copy_s);
+  return {};
+}
+
+core::Result<void> Room::saveUntil(TimePoint deadline) {
+  if (!keeper_ || is_lost_) return {};
+  water_->bind();
+  const core::Error late{core::ErrorCode::kUnavailable, "the disk took too long"};
+  // One that is being written is older. Without time for another the log says how far the room has come.
+  if (!keeper_->outcome(deadline) || std::chrono::steady_clock::now() >= deadline) {
+    keepTick();
+    return late;
+  }
+  if (auto begun = save(); !begun) return begun;
+  const auto saved = keeper_->outcome(deadline);
+  return saved ? *saved : late;
 }
 
 std::optional<v1::KeptState> Room::stateNow() {
@@ -129,13 +146,28 @@ core::Result<bool> Room::restoreUntil(TimePoint deadline) {
     restorePeople(repetition->kept);
   }
   keeper_ = std::move(restoration_->keeper);
+  if (!restoration_->repetition) keeper_->openGap("its first snapshot is not on the disk yet");
   restoration_.reset();
-  if (auto saved = saveAndWait(); !saved) {
-    // Not a fault of what was kept, whatever the reason.
-    return core::Error{core::ErrorCode::kUnavailable,
-                       "room " + name_ + ": its state cannot be written: " + saved.error().message};
-  }
+  first_snapshot_until_ = std::chrono::steady_clock::now() + rules_.disk_patience;
+  if (auto begun = save(); !begun) return cannotBeWritten(begun.error());
   return true;
+}
+
+core::Result<bool> Room::isOnDisk(TimePoint deadline) {
+  if (!keeper_) return true;
+  const auto outcome = keeper_->outcome(std::min(deadline, first_snapshot_until_));
+  if (outcome && !*outcome) return cannotBeWritten(outcome->error());
+  if (outcome) return true;
+  if (std::chrono::steady_clock::now() < first_snapshot_until_) return false;
+  spdlog::warn("room {}: its first snapshot is not on the disk after {}: the disk is slow; the room opens without it{}",
+               name_, rules_.disk_patience,
+               keeper_->gap() ? " and refuses commands until it is there" : ", on what was there before");
+  return true;
+}
+
+core::Error Room::cannotBeWritten(const core::Error& why) const {
+  // Not a fault of what was kept, whatever the reason.
+  return {core::ErrorCode::kUnavailable, "room " + name_ + ": its state cannot be written: " + why.message};
 }
 
 void Room::restorePeople(const KeptRoom& kept) {
@@ -202,8 +234,7 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   restartScene(true);
   boatsChanged();
   // Ticks have gone on since the snapshot without the log saying so.
-  if (auto saved = saveAndWait(); !saved)
-    spdlog::error("room {}: its state could not be written after the device failed: {}", name_, saved.error().message);
+  keeper_->openGap("the room went on after its device failed, and no snapshot says so yet");
   return true;
 }
 

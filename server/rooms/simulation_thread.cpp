@@ -1,12 +1,13 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -48,8 +49,9 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
                                                                         RoomOutlets& outlets) {
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
   self->rules_ = std::move(rules);
-  self->max_room_count_ = std::max(max_room_count, setups.size());
+  self->max_room_count_ = max_room_count;
   self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] { raw->wake(); });
+  self->opener_ = std::make_unique<RoomOpener>(self->rules_, *self->builder_, outlets);
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
   self->thread_ = std::thread([raw = self.get(), &built, setups = std::move(setups)]() mutable {
@@ -72,65 +74,57 @@ SimulationThread::~SimulationThread() {
 }
 
 core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
+  std::set<std::string> names;
   for (RoomSetup& setup : setups) {
-    const std::string name = setup.name;
-    if (auto built = buildRoom(name, std::move(setup)); !built) return built;
+    setup.goes_on = true;
+    names.insert(setup.name);
   }
-  if (!rules_.states || !rules_.opens_kept_rooms) return {};
-  const auto kept = rules_.states->rooms();
-  if (!kept) return kept.error();
-  for (const std::string& name : *kept) {
-    if (find(name)) continue;
-    if (auto built = buildRoom(name, std::nullopt); !built) return built;
+  if (rules_.states && rules_.opens_kept_rooms) {
+    const auto kept = rules_.states->rooms();
+    if (!kept) return kept.error();
+    for (const std::string& name : *kept) {
+      if (names.insert(name).second) setups.push_back({.name = name, .goes_on = true});
+    }
   }
-  max_room_count_ = std::max(max_room_count_, rooms().size());
-  return {};
+  std::vector<RoomOpener::Opening> openings;
+  const auto open = [&](RoomSetup setup) -> core::Result<void> {
+    const bool is_kept = setup.scene.name().empty();
+    auto opening = opener_->begin(std::move(setup));
+    if (!opening && is_kept && opening.error().code == ErrorCode::kInvalidInput) {
+      spdlog::warn("{}, so it is not opened", opening.error().message);
+      return {};
+    }
+    if (!opening) return opening.error();
+    openings.push_back(*std::move(opening));
+    if (openings.size() > max_room_count_) return tooManyRooms(names);
+    const auto restored = opener_->restore(openings.back(), Room::TimePoint::max());
+    return restored ? core::Result<void>() : restored.error();
+  };
+  core::Result<void> outcome;
+  for (RoomSetup& setup : setups) {
+    if (outcome = open(std::move(setup)); !outcome) break;
+  }
+  // The disk has the same few seconds for the snapshots of all rooms.
+  for (RoomOpener::Opening& opening : openings) {
+    if (!outcome) break;
+    if (const auto kept = opening.room->isOnDisk(Room::TimePoint::max()); !kept) outcome = kept.error();
+  }
+  for (RoomOpener::Opening& opening : openings) {
+    if (outcome)
+      add(std::move(opening.room));
+    else
+      opener_->giveUp(opening);
+  }
+  return outcome;
 }
 
-core::Result<RoomPlace> SimulationThread::placeOf(const std::string& name) const {
-  if (!rules_.states) return RoomPlace{};
-  auto place = rules_.states->place(name);
-  if (!place) return Error{place.error().code, "room " + name + ": " + place.error().message};
-  return place;
-}
-
-core::Result<void> SimulationThread::buildRoom(const std::string& name, std::optional<RoomSetup> setup) {
-  auto place = placeOf(name);
-  if (!place) return place.error();
-  if (place->kept) {
-    v1::Scene start = place->kept->state->start_scene();
-    scene::fillDefaults(start);
-    v1::Scene scene = place->kept->state->scene();
-    v1::RoomAccess access = place->kept->state->access();
-    scene::fillDefaults(scene);
-    auto added = buildRoom(name, std::move(start), *std::move(place), {});
-    // A full disk or a device that fails is no reason to give up what is there.
-    if (added || added.error().code != ErrorCode::kInvalidInput) return added;
-    const auto aside = rules_.states->setAside(name);
-    if (!aside) return Error{aside.error().code, "room " + name + ": " + aside.error().message};
-    spdlog::error(
-        "room {}: it cannot go on from its state on disk, which is now in {}: {}; it begins anew with scene {}", name,
-        aside->string(), added.error().message, scene.name());
-    place = placeOf(name);
-    if (!place) return place.error();
-    setup = RoomSetup{.name = name, .scene = std::move(scene), .access = std::move(access)};
-  }
-  if (!setup) {
-    spdlog::warn("room {}: nothing of it on disk can be used, so it is not opened; {} stays as it is", name,
-                 rules_.states->folder().string());
-    return {};
-  }
-  return buildRoom(name, std::move(setup->scene), *std::move(place), std::move(setup->access));
-}
-
-core::Result<void> SimulationThread::buildRoom(const std::string& name, v1::Scene scene, RoomPlace place,
-                                               v1::RoomAccess access) {
-  auto room = begin(name, builder_->build(std::move(scene)).get(), std::move(place), std::move(access));
-  if (!room) return room.error();
-  if (auto restored = (*room)->restoreUntil(std::chrono::steady_clock::time_point::max()); !restored)
-    return restored.error();
-  add(*std::move(room));
-  return {};
+Error SimulationThread::tooManyRooms(const std::set<std::string>& names) const {
+  return {ErrorCode::kInvalidInput,
+          fmt::format("{} rooms would be opened ({}), but --max-rooms is {}: start with --max-rooms {}{}", names.size(),
+                      fmt::join(names, ", "), max_room_count_, names.size(),
+                      rules_.states ? fmt::format(", or move the folders of some out of {}",
+                                                  (rules_.states->folder() / "rooms").string())
+                                    : ", or name fewer with --room")};
 }
 
 void SimulationThread::run() {
@@ -227,82 +221,52 @@ void SimulationThread::carryOut(Change change, const Done& done) {
 void SimulationThread::open(RoomSetup setup, Done done) {
   if (rooms().size() + openings_.size() >= max_room_count_) {
     return done(Error{ErrorCode::kUnavailable,
-                      fmt::format("there are {} rooms, as many as may be: close one, or start the server with more "
+                      fmt::format("the limit of {} rooms is reached: close one, or start the server with more "
                                   "--max-rooms",
                                   max_room_count_)});
   }
-  if (find(setup.name) || std::ranges::any_of(openings_, [&](const auto& one) { return one.name == setup.name; })) {
+  if (find(setup.name) ||
+      std::ranges::any_of(openings_, [&](const auto& one) { return one.room.setup.name == setup.name; })) {
     return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
   }
-  auto place = placeOf(setup.name);
-  if (!place) return done(place.error());
-  if (!setup.goes_on) place->kept.reset();  // of a room of this name that could not be opened: the new one is another
-  if (place->kept) {
-    setup.scene = place->kept->state->start_scene();
-    scene::fillDefaults(setup.scene);
-  } else if (setup.scene.name().empty()) {
-    return done(Error{ErrorCode::kInvalidInput, "room " + setup.name + ": nothing of it on disk can be used"});
-  }
-  openings_.push_back({.name = std::move(setup.name),
-                       .place = *std::move(place),
-                       .access = std::move(setup.access),
-                       .water = builder_->build(std::move(setup.scene)),
-                       .room = nullptr,
-                       .done = std::move(done)});
+  auto opening = opener_->begin(std::move(setup));
+  if (!opening) return done(opening.error());
+  openings_.push_back({.room = *std::move(opening), .done = std::move(done)});
 }
 
 void SimulationThread::advanceOpenings() {
   for (auto opening = openings_.begin(); opening != openings_.end();) {
-    const auto is_open = advance(*opening);
+    const auto is_open = advance(opening->room);
     if (is_open && !*is_open) {
       ++opening;
       continue;
     }
     if (is_open) {
-      add(std::move(opening->room));
+      add(std::move(opening->room.room));
       opening->done({});
     } else {
       spdlog::warn("a room was not opened: {}", is_open.error().message);
-      if (opening->room) opening->room->releaseDevice();
+      opener_->giveUp(opening->room);
       opening->done(is_open.error());
     }
     opening = openings_.erase(opening);
   }
 }
 
-core::Result<bool> SimulationThread::advance(Opening& opening) {
-  if (!opening.room) {
-    if (opening.water.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
-    auto room = begin(opening.name, opening.water.get(), std::move(opening.place), std::move(opening.access));
-    if (!room) return room.error();
-    opening.room = *std::move(room);
-  }
+core::Result<bool> SimulationThread::advance(RoomOpener::Opening& opening) {
   // The rooms that run come first; the one that opens makes a tick between theirs at least.
   const auto now = std::chrono::steady_clock::now();
   auto deadline = now + kRestoringSlice;
   for (const auto& room : rooms_) deadline = std::min(deadline, room->due());
-  return opening.room->restoreUntil(deadline);
-}
-
-core::Result<std::shared_ptr<Room>> SimulationThread::begin(std::string name, WaterBuilder::Built water,
-                                                            RoomPlace place, v1::RoomAccess access) {
-  if (!water) return Error{water.error().code, "room " + name + ": " + water.error().message};
-  (*water)->bind();
-  {
-    const std::lock_guard lock(rooms_mutex_);
-    const gpu::Context& context = (*water)->context();
-    if (device_line_.empty() && !context.device().advice.empty())
-      spdlog::warn("simulation runs on {}; {}", context.why(), context.device().advice);
-    device_line_ = context.device().name;
-  }
-  return Room::begin(std::move(name), *std::move(water), rules_, *builder_, outlets_, std::move(place),
-                     std::move(access));
+  auto restored = opener_->restore(opening, deadline);
+  return restored && *restored ? opening.room->isOnDisk(now) : restored;
 }
 
 void SimulationThread::add(std::shared_ptr<Room> room) {
   room->start(std::chrono::steady_clock::now());
   room->onWake([this] { wake(); });
   const std::lock_guard lock(rooms_mutex_);
+  device_line_ = opener_->deviceLine();
   rooms_.push_back(std::move(room));
 }
 
@@ -356,7 +320,7 @@ void SimulationThread::loop() {
     for (const Change& change : changes) change(true);
     advanceOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
-    if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room != nullptr; }))
+    if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
     for (const auto& room : rooms_) {
       if (const auto now = Clock::now(); room->due() <= now) room->run(now, busy.value());
@@ -372,12 +336,14 @@ void SimulationThread::loop() {
   lock.unlock();
   for (const Change& change : changes) change(false);
   for (Opening& opening : std::exchange(openings_, {})) {
-    if (opening.room) opening.room->releaseDevice();  // what is on disk stays as it is
+    opener_->giveUp(opening.room);
     opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
   }
+  const auto saved_until = Clock::now() + rules_.disk_patience;
   for (const auto& room : rooms_) {
-    if (auto kept = room->saveAndWait(); !kept)
-      spdlog::error("room {}: its last snapshot could not be written: {}", room->name(), kept.error().message);
+    if (auto kept = room->saveUntil(saved_until); !kept)
+      spdlog::error("room {}: it ends without a last snapshot: {}; it goes on from the one before and its log",
+                    room->name(), kept.error().message);
     summarise(*room);
     room->releaseDevice();
   }

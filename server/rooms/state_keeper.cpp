@@ -30,10 +30,13 @@ struct StateKeeper::Shared {
   mutable std::mutex mutex;
   std::condition_variable finished;
   bool is_writing = false;
-  /// Why the log lacks something that happened. A newer snapshot holds it.
+  core::Result<void> outcome;  ///< of the last snapshot
+  /// Why the log lacks something that happened. A snapshot of a later state holds it.
   std::optional<std::string> gap;
-  std::uint64_t gap_generation = 0;
+  std::uint64_t gap_count = 0;               ///< gaps since the start
+  std::optional<Clock::time_point> retry{};  ///< of the snapshot, after one failed or a gap opened
   std::string logged_error;
+  std::string logged_removal;
   Clock::time_point logged_at{};
   std::uint64_t snapshot_count = 0;
   std::uint64_t failure_count = 0;
@@ -41,22 +44,41 @@ struct StateKeeper::Shared {
   double copy_s = 0.0;
   double write_s = 0.0;
 
-  core::Result<void> write(std::uint64_t generation, const v1::KeptState& state, Clock::time_point copied) {
+  /// `known_gap_count`: gaps that had opened when the state was copied.
+  void write(const state::StatePoint& point, const v1::KeptState& state, Clock::time_point copied,
+             std::uint64_t known_gap_count) {
     const auto begin = Clock::now();
-    auto written = files->writeSnapshot(generation, viewOf(state.SerializeAsString()));
+    auto written = files->writeSnapshot(point, viewOf(state.SerializeAsString()));
+    const double duration_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    const auto removed = written ? files->removeOldGenerations() : core::Result<void>();
     const std::lock_guard lock(mutex);
-    write_s = std::chrono::duration<double>(Clock::now() - begin).count();
+    write_s = duration_s;
     if (written) {
       ++snapshot_count;
       newest_copy = copied;
-      if (gap && generation > gap_generation) gap.reset();
+      if (known_gap_count == gap_count) {
+        gap.reset();
+        retry.reset();
+      }
+    }
+    end(std::move(written));
+    const std::string removal = removed ? "" : removed.error().message;
+    if (std::exchange(logged_removal, removal) == removal || removed) return;
+    ++failure_count;
+    spdlog::error("room {}: older files of its state are left behind: {}", room, removal);
+  }
+
+  /// The mutex is held.
+  void end(core::Result<void> how) {
+    if (how) {
       if (!std::exchange(logged_error, {}).empty()) spdlog::info("room {}: its state is kept on disk again", room);
     } else {
-      note(written.error());
+      note(how.error());
+      retry = Clock::now() + kRetryPause;
     }
+    outcome = std::move(how);
     is_writing = false;
     finished.notify_all();
-    return written;
   }
 
   /// The mutex is held.
@@ -82,9 +104,15 @@ StateKeeper::~StateKeeper() {
   finish();
 }
 
-void StateKeeper::finish() {
+void StateKeeper::finish() const {
   std::unique_lock lock(shared_->mutex);
   shared_->finished.wait(lock, [this] { return !shared_->is_writing; });
+}
+
+std::optional<core::Result<void>> StateKeeper::outcome(TimePoint deadline) const {
+  std::unique_lock lock(shared_->mutex);
+  if (!shared_->finished.wait_until(lock, deadline, [this] { return !shared_->is_writing; })) return std::nullopt;
+  return shared_->outcome;
 }
 
 core::Result<void> StateKeeper::append(const v1::StateRecord& record) {
@@ -102,21 +130,29 @@ core::Result<void> StateKeeper::append(const v1::StateRecord& record) {
 }
 
 void StateKeeper::appendWhatHappened(const v1::StateRecord& record) {
-  if (auto appended = append(record); !appended) openGap(appended.error());
+  auto appended = append(record);
+  if (appended) return;
+  shared_->files->skipRecord();
+  openGap(appended.error().message);
 }
 
 core::Result<void> StateKeeper::flush() {
   auto flushed = shared_->files->flush();
-  if (!flushed) openGap(flushed.error());
+  if (!flushed) {
+    {
+      const std::lock_guard lock(shared_->mutex);
+      shared_->note(flushed.error());
+    }
+    openGap(flushed.error().message);
+  }
   return flushed;
 }
 
-void StateKeeper::openGap(const core::Error& error) {
+void StateKeeper::openGap(const std::string& why) {
   const std::lock_guard lock(shared_->mutex);
-  shared_->note(error);
-  shared_->gap = error.message;
-  shared_->gap_generation = shared_->files->status().generation;
-  next_ = std::min(next_, Clock::now() + kRetryPause);
+  shared_->gap = why;
+  ++shared_->gap_count;
+  if (!shared_->retry) shared_->retry = Clock::now() + kRetryPause;
 }
 
 std::optional<std::string> StateKeeper::gap() const {
@@ -124,56 +160,38 @@ std::optional<std::string> StateKeeper::gap() const {
   return shared_->gap;
 }
 
-bool StateKeeper::isDue(TimePoint now) const {
-  if (now < next_ && !is_asked_) return false;
+bool StateKeeper::isDue(TimePoint now, bool has_water_changed) const {
   const std::lock_guard lock(shared_->mutex);
-  return !shared_->is_writing;
-}
-
-std::uint64_t StateKeeper::begin(TimePoint now) {
-  is_asked_ = false;
-  next_ = now + interval_;
-  auto generation = shared_->files->beginGeneration();
-  const std::lock_guard lock(shared_->mutex);
-  if (generation) {
-    shared_->is_writing = true;
-    return *generation;
-  }
-  shared_->note(generation.error());
-  next_ = now + kRetryPause;
-  return 0;
+  if (shared_->is_writing) return false;
+  if (is_asked_) return true;
+  if (shared_->retry) return now >= *shared_->retry;
+  const bool is_up_to_date = newest_.state && newest_.records.empty() && !has_water_changed;
+  return now >= next_ && !is_up_to_date;
 }
 
 void StateKeeper::save(v1::KeptState state, TimePoint now, double copy_s) {
+  finish();
+  is_asked_ = false;
+  next_ = now + interval_;
+  const auto point = shared_->files->beginGeneration();
+  std::uint64_t gap_count = 0;
   {
     const std::lock_guard lock(shared_->mutex);
     shared_->copy_s = copy_s;
+    if (!point) return shared_->end(point.error());
+    shared_->is_writing = true;
+    gap_count = shared_->gap_count;
   }
-  const std::uint64_t generation = begin(now);
-  if (generation == 0) return;
-  remember(std::move(state));
-  writer_.push([shared = shared_, generation, now, kept = newest_.state](bool) {
-    (void)shared->write(generation, *kept, now);  // also when the server ends: the state is there
-  });
-}
-
-void StateKeeper::remember(v1::KeptState state) {
   newest_ = {std::make_shared<const v1::KeptState>(std::move(state)), {}};
   records_bytes_ = 0;
+  writer_.push([shared = shared_, point = *point, now, gap_count, kept = newest_.state](bool) {
+    shared->write(point, *kept, now, gap_count);  // also when the server ends: the state is there
+  });
 }
 
 std::optional<KeptRoom> StateKeeper::newest() const {
   if (!newest_.state || gap()) return std::nullopt;
   return newest_;
-}
-
-core::Result<void> StateKeeper::saveAndWait(v1::KeptState state) {
-  finish();
-  const auto now = Clock::now();
-  const std::uint64_t generation = begin(now);
-  if (generation == 0) return core::Error{core::ErrorCode::kUnavailable, "no new log could be begun"};
-  remember(std::move(state));
-  return shared_->write(generation, *newest_.state, now);
 }
 
 StateKeeper::Status StateKeeper::status() const {

@@ -4,6 +4,8 @@
 #include <google/protobuf/stubs/logging.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/room_name.h>
+#include <spindrift/core/text.h>
 #include <spindrift/rooms/state_store.h>
 #include <spindrift/state/room_folders.h>
 
@@ -37,9 +39,27 @@ std::vector<v1::StateRecord> parseRecords(const std::string& room, const std::ve
   return out;
 }
 
+/// Returns why the room cannot go on from the snapshot, or an empty string.
+std::string read(core::ByteView snapshot, const std::string& room, v1::KeptState& state) {
+  if (!parse(state, snapshot)) return "it is no state of a room, or of another version of this program";
+  if (state.room() == room) return "";
+  return "it is of the room '" + core::cleanText(state.room(), core::kRoomNameMaxBytes) + "'";
+}
+
+/// Names the folders that are no rooms, once.
+void warnAboutNames(const std::filesystem::path& folder) {
+  const auto listed = state::listRooms(folder);
+  if (!listed) return;
+  for (const std::string& name : listed->refused_names) {
+    spdlog::warn("the folder '{}' in {} is not opened: a room's name has {}; rename the folder, or remove it",
+                 core::cleanText(name, 4 * core::kRoomNameMaxBytes), (folder / "rooms").string(), core::kRoomNameRule);
+  }
+}
+
 }  // namespace
 
 core::Result<std::shared_ptr<StateStore>> StateStore::open(const StateOptions& options) {
+  warnAboutNames(options.folder);
   // A removal that was cut off in a shared folder is finished by the next one of a room of that name.
   if (options.is_shared) return std::shared_ptr<StateStore>(new StateStore(options, std::nullopt));
   auto lock = state::FolderLock::take(options.folder);
@@ -52,10 +72,12 @@ StateStore::StateStore(StateOptions options, std::optional<state::FolderLock> lo
     : options_(std::move(options)), lock_(std::move(lock)), writer_(kWriterNiceness) {}
 
 core::Result<std::vector<std::string>> StateStore::rooms() const {
-  return state::listRooms(options_.folder);
+  auto listed = state::listRooms(options_.folder);
+  if (!listed) return listed.error();
+  return std::move(listed->names);
 }
 
-core::Result<RoomPlace> StateStore::place(const std::string& room) {
+core::Result<RoomPlace> StateStore::place(const std::string& room, std::uint64_t before) {
   const auto folder = state::roomFolder(options_.folder, room);
   if (!folder) return folder.error();
   std::shared_ptr<state::FolderLock> room_lock;
@@ -64,27 +86,35 @@ core::Result<RoomPlace> StateStore::place(const std::string& room) {
     if (!taken) return taken.error();
     room_lock = std::make_shared<state::FolderLock>(*std::move(taken));
   }
-  auto files =
-      state::RoomFiles::open(*folder, {.sync = options_.sync, .kept_generation_count = options_.kept_generation_count});
-  if (!files) return files.error();
-  auto recovered = (*files)->recover();
-  if (!recovered) return recovered.error();
-  for (const std::string& note : recovered->notes) spdlog::warn("room {}: {}", room, note);
   RoomPlace out;
-  if (recovered->generation > 0) {
+  auto files = state::RoomFiles::open(*folder, room,
+                                      {.sync = options_.sync, .kept_generation_count = options_.kept_generation_count});
+  if (!files) return files.error();
+  bool has_refused = before != state::RoomFiles::kNewest;
+  while (true) {
+    auto recovered = (*files)->recover(before);
+    if (!recovered) return recovered.error();
+    for (const std::string& note : recovered->notes) spdlog::warn("room {}: {}", room, note);
+    if (recovered->generation == 0) break;
     v1::KeptState state;
-    if (parse(state, recovered->snapshot)) {
+    const std::string why = read(recovered->snapshot, room, state);
+    if (why.empty()) {
       out.kept = KeptRoom{std::make_shared<const v1::KeptState>(std::move(state)), parseRecords(room, recovered->logs)};
-    } else {
-      const std::uint64_t generation = recovered->generation;
-      files->reset();  // they hold no file yet
-      room_lock.reset();
-      const auto aside = setAside(room);
-      if (!aside) return aside.error();
-      spdlog::error("room {}: its snapshot {} is of another version of this program; its files are now in {}", room,
-                    generation, aside->string());
-      return place(room);
+      out.generation = recovered->generation;
+      break;
     }
+    spdlog::error("room {}: its snapshot {} cannot be used: {}; an older one is tried", room, recovered->generation,
+                  why);
+    before = recovered->generation;
+    has_refused = true;
+  }
+  if (has_refused && !out.kept) {
+    files->reset();  // they hold no file yet
+    room_lock.reset();
+    const auto aside = setAside(room);
+    if (!aside) return aside.error();
+    spdlog::error("room {}: none of its snapshots can be used; its files are now in {}", room, aside->string());
+    return place(room);
   }
   out.keeper =
       std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_, std::move(room_lock));
@@ -97,6 +127,18 @@ core::Result<std::filesystem::path> StateStore::setAside(const std::string& room
 
 core::Result<void> StateStore::remove(const std::string& room) const {
   return state::removeRoom(options_.folder, room);
+}
+
+core::Result<void> StateStore::removeUnused(const std::string& room) const {
+  std::optional<state::FolderLock> room_lock;
+  if (options_.is_shared) {
+    auto taken = state::FolderLock::take(options_.folder / "locks" / room);
+    if (!taken) return {};  // another server uses it
+    room_lock = *std::move(taken);
+  }
+  const auto has_state = state::hasState(options_.folder, room);
+  if (!has_state) return has_state.error();
+  return *has_state ? core::Result<void>() : remove(room);
 }
 
 }  // namespace spindrift::rooms

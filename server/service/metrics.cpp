@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/scene/fidelity.h>
+#include <spindrift/service/metric_label.h>
 #include <spindrift/service/metrics.h>
 
 namespace spindrift::service {
@@ -16,7 +17,7 @@ class Page {
     text_ += fmt::format("# HELP spindrift_{} {}\n# TYPE spindrift_{} {}\n", name, help, name, type);
     name_ = name;
   }
-  /// `labels` as in `room="main"`; label values are the program's own names, without quotes or backslashes.
+  /// `labels`: those of metricLabel(), with ',' between them.
   template <typename Number>
   void sample(const std::string& labels, Number value) {
     text_ += labels.empty() ? fmt::format("spindrift_{} {}\n", name_, value)
@@ -59,7 +60,7 @@ void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
       count += times.counts()[k];
       const bool is_last = k == rooms::TickTimes::kBounds_s.size();
       const std::string bound = is_last ? "+Inf" : fmt::format("{}", rooms::TickTimes::kBounds_s[k]);
-      page.part("bucket", fmt::format("{},le=\"{}\"", room.label, bound), count);
+      page.part("bucket", room.label + "," + metricLabel("le", bound), count);
     }
     page.part("sum", room.label, times.sum_s());
     page.part("count", room.label, count);
@@ -71,7 +72,7 @@ void writeKept(Page& page, const std::vector<std::shared_ptr<rooms::Room>>& room
   using Status = rooms::StateKeeper::Status;
   std::vector<std::pair<std::string, Status>> kept;
   for (const auto& room : rooms) {
-    if (auto status = room->keptStatus()) kept.emplace_back(fmt::format("room=\"{}\"", room->name()), *status);
+    if (auto status = room->keptStatus()) kept.emplace_back(metricLabel("room", room->name()), *status);
   }
   if (kept.empty()) return;
   const auto each = [&](const char* name, const char* type, const char* help, auto&& value) {
@@ -139,7 +140,7 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
     page.head(name, "gauge", help);
     for (const RoomSample& room : rooms) {
       for (const Reading& gauge : room.vitals->diagnostics.gauges)
-        page.sample(fmt::format("{},gauge=\"{}\"", room.label, gauge.name), gauge.*value);
+        page.sample(room.label + "," + metricLabel("gauge", gauge.name), gauge.*value);
     }
   };
   eachGauge("room_gauge_elevation_meters", "Elevation of the water at a gauge of the scene.", &Reading::elevation_m);
@@ -150,7 +151,7 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
   page.head("room_pass_seconds", "gauge", "Device time of a pass in a tick, where the device can tell.");
   for (const RoomSample& room : rooms) {
     for (const auto& pass : room.vitals->diagnostics.passes) {
-      page.sample(fmt::format("{},pass=\"{}\"", room.label, pass.name), pass.ms / 1e3);
+      page.sample(room.label + "," + metricLabel("pass", pass.name), pass.ms / 1e3);
     }
   }
 }
@@ -197,10 +198,10 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   }
   page.head("refused_total", "counter", "Requests and upgrades refused before they reached a room.");
   for (std::size_t k = 0; k < net::kRefusedCount; ++k) {
-    page.sample(fmt::format("reason=\"{}\"", net::kRefusedNames[k]), stats.refused_count[k]);
+    page.sample(metricLabel("reason", net::kRefusedNames[k]), stats.refused_count[k]);
   }
   page.head("sessions_closed_total", "counter", "Sessions ended, by close code; 0: the connection broke.");
-  for (const auto& [code, count] : stats.closed_by_code) page.sample(fmt::format("code=\"{}\"", code), count);
+  for (const auto& [code, count] : stats.closed_by_code) page.sample(metricLabel("code", std::to_string(code)), count);
 }
 
 void writeFaults(Page& page, const rooms::SimulationThread& rooms) {
@@ -209,7 +210,7 @@ void writeFaults(Page& page, const rooms::SimulationThread& rooms) {
   for (const auto& [cause, code] :
        {std::pair("memory", ErrorCode::kUnavailable), std::pair("driver", ErrorCode::kInternal),
         std::pair("device", ErrorCode::kNoDevice), std::pair("scene", ErrorCode::kInvalidInput)}) {
-    page.sample(fmt::format("cause=\"{}\"", cause), rooms.waterFailureCount(code));
+    page.sample(metricLabel("cause", cause), rooms.waterFailureCount(code));
   }
   page.head("clock_steps_total", "counter", "Times that the system's clock was set.");
   page.sample("", rooms.clockStepCount());
@@ -223,9 +224,9 @@ void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
       for (const core::Level level : core::kLevels) {
         const rooms::EncoderThread::StreamCost& cost = costs[codec::indexOf(stream)][core::indexOf(level)];
         if (level != core::Level::kFull && cost.frame_count == 0) continue;  // no client has used this level so far
-        page.sample(fmt::format("layer=\"{}\",packing=\"{}\",level=\"{}\"",
-                                shortName(v1::Layer_Name(stream.layer), sizeof("LAYER")),
-                                shortName(v1::Packing_Name(stream.packing), sizeof("PACKING")), codec::nameOf(level)),
+        page.sample(metricLabel("layer", shortName(v1::Layer_Name(stream.layer), sizeof("LAYER"))) + "," +
+                        metricLabel("packing", shortName(v1::Packing_Name(stream.packing), sizeof("PACKING"))) + "," +
+                        metricLabel("level", codec::nameOf(level)),
                     value(cost));
       }
     }
@@ -243,7 +244,7 @@ void writeCommands(Page& page, const CommandCounters& commands) {
   page.head("commands_rejected_total", "counter", "Commands not carried out, by reason.");
   for (int k = v1::RejectReason_MIN + 1; k < v1::RejectReason_ARRAYSIZE; ++k) {
     const auto reason = static_cast<v1::RejectReason>(k);
-    page.sample(fmt::format("reason=\"{}\"", shortName(v1::RejectReason_Name(reason), sizeof("REJECT_REASON"))),
+    page.sample(metricLabel("reason", shortName(v1::RejectReason_Name(reason), sizeof("REJECT_REASON"))),
                 commands.rejectedCount(reason));
   }
 }
@@ -281,7 +282,7 @@ std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hu
   const rooms::EncoderThread* const encoder = sources.encoder;
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
-    samples.push_back({fmt::format("room=\"{}\"", room->name()), hub.sessionCount(room->name()),
+    samples.push_back({metricLabel("room", room->name()), hub.sessionCount(room->name()),
                        room->roster().people().people_size(), room->snapshot(), room->vitals(),
                        encoder ? encoder->frameCounts(room->name()) : rooms::EncoderThread::FrameCounts{}});
   }

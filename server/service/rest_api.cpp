@@ -4,6 +4,7 @@
 #include <utility>
 
 #include <spindrift/codec/gauge_message.h>
+#include <spindrift/core/room_name.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/rest_api.h>
@@ -175,8 +176,8 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   const core::ByteView body = call.request.body;
   const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
   if (!wanted) return respond(problem(400, wanted.error().message));
-  if (!rooms::isRoomName(wanted->name())) {
-    return respond(problem(422, "name: a room's name has 1 to 32 letters, digits, '_' or '-'"));
+  if (!core::isRoomName(wanted->name())) {
+    return respond(problem(422, "name: a room's name has " + std::string(core::kRoomNameRule)));
   }
   if (!call.grant.allows(wanted->name())) return respond(problem(403, access::otherRoom(wanted->name())));
   auto tokens = makeTokens(*wanted);
@@ -206,13 +207,13 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
 }
 
 void RestApi::room(const Call& call, net::HttpResponder respond) {
-  if (!call.grant.allows(call.path[1]) && rooms::isRoomName(call.path[1]))
+  if (!call.grant.allows(call.path[1]) && core::isRoomName(call.path[1]))
     return respond(problem(403, access::otherRoom(call.path[1])));
   const auto room = rooms_->find(call.path[1]);
   if (!room || call.path[1].empty()) {
     // Repeat only a valid room name: any other could contain arbitrary bytes.
     const std::string named =
-        rooms::isRoomName(call.path[1]) ? "there is no room '" + call.path[1] + "'" : "there is no such room";
+        core::isRoomName(call.path[1]) ? "there is no room '" + call.path[1] + "'" : "there is no such room";
     return respond(problem(404, named + "; /api/v1/rooms lists what there is"));
   }
   const std::string& method = call.request.method;

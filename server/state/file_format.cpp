@@ -4,14 +4,23 @@
 #include <string_view>
 
 #include <spindrift/core/crc32c.h>
+#include <spindrift/core/text.h>
 #include <spindrift/state/room_files.h>
 
 namespace spindrift::state {
 namespace {
 
-constexpr std::string_view kSnapshotMagic = "spinsnp1";
-constexpr std::string_view kLogMagic = "spinlog1";
+constexpr std::string_view kSnapshotMagic = "spinsnp2";
+constexpr std::string_view kLogMagic = "spinlog2";
 static_assert(kSnapshotMagic.size() == kMagicBytes && kLogMagic.size() == kMagicBytes);
+
+// Version 1: snapshot: magic | generation u64 | payload length u64 | CRC-32C of the payload u32 | payload
+//            log:      magic | generation u64 | records of payload length u32 | CRC-32C of the payload u32 | payload
+constexpr std::size_t kOldSnapshotHeaderBytes = 28;
+constexpr std::size_t kOldLogHeaderBytes = 16;
+constexpr std::size_t kOldRecordHeaderBytes = 8;
+
+constexpr std::size_t kChecksumEnd = kMagicBytes + 4;
 
 template <typename Number>
 void put(std::uint8_t* at, Number number) {
@@ -29,105 +38,186 @@ std::string_view textOf(core::ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
+/// A header without its checksum, with place for `extra_bytes` before the room's name.
+core::Bytes startOf(std::string_view magic, const FileOwner& owner, std::uint64_t number, std::size_t extra_bytes) {
+  core::Bytes out(kStartBytes + extra_bytes);
+  std::ranges::copy(magic, out.begin());
+  put(out.data() + kChecksumEnd, static_cast<std::uint32_t>(owner.room.size()));
+  put(out.data() + 16, owner.generation);
+  put(out.data() + 24, number);
+  out.insert(out.end(), owner.room.begin(), owner.room.end());
+  return out;
 }
 
-/// Checks magic and generation, which both kinds of files begin with. `kind` is "snapshot" or "log".
-std::optional<Fault> checkStart(core::ByteView file, std::string_view magic, std::string_view kind,
-                                std::size_t header_bytes, std::uint64_t generation) {
+void putChecksum(core::Bytes& header) {
+  put(header.data() + kMagicBytes, core::crc32c(core::ByteView(header).subspan(kChecksumEnd)));
+}
+
+enum class Version { kOld, kNow };
+
+struct Start {
+  Version version = Version::kNow;
+  std::optional<std::uint64_t> number{};
+  std::size_t header_bytes = 0;  ///< with the room's name
+  std::optional<Fault> fault{};
+};
+
+Fault wrongGeneration(std::uint64_t found, std::uint64_t expected, std::size_t at_byte) {
+  return {"it says that it is of generation " + std::to_string(found) + ", its name says " + std::to_string(expected),
+          at_byte};
+}
+
+/// Checks what both kinds of files begin with. `kind` is "snapshot" or "log"; the sizes are those of the header without
+/// the room's name, in this version and in version 1.
+Start readStart(core::ByteView file, std::string_view magic, std::string_view kind, std::size_t header_bytes,
+                std::size_t old_header_bytes, const FileOwner& owner) {
+  const auto refuse = [](std::string reason, std::uint64_t at_byte) {
+    return Start{.fault = Fault{std::move(reason), at_byte}};
+  };
   const std::string_view start = textOf(file.first(std::min(file.size(), kMagicBytes)));
-  if (start.size() == kMagicBytes && start != magic && start.starts_with(magic.substr(0, kMagicBytes - 1)) &&
-      isDigit(start.back())) {
-    return Fault{"it was written by " + std::string(start.back() > magic.back() ? "a newer" : "another") +
-                     " version of the program, in the format " + std::string(start) + " (this version reads " +
-                     std::string(magic) + "); that version can use it under its old name",
-                 kMagicBytes - 1};
+  const std::string_view family = magic.substr(0, kMagicBytes - 1);
+  if (!start.starts_with(family.substr(0, start.size())))
+    return refuse("it is no " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
+  if (start.size() == kMagicBytes && start.back() == '1') {
+    if (file.size() < old_header_bytes) return refuse("it ends within its header", file.size());
+    Start out{.version = Version::kOld, .number = {}, .header_bytes = old_header_bytes, .fault = {}};
+    if (const auto found = numberAt<std::uint64_t>(file, kMagicBytes); found != owner.generation)
+      out.fault = wrongGeneration(found, owner.generation, kMagicBytes);
+    return out;
   }
-  if (!magic.starts_with(start))
-    return Fault{"it is no " + std::string(kind) + ": it does not begin with " + std::string(magic), 0};
-  if (file.size() < header_bytes) return Fault{"it ends within its header", file.size()};
-  if (const auto found = numberAt<std::uint64_t>(file, kMagicBytes); found != generation) {
-    return Fault{
-        "it says that it is of generation " + std::to_string(found) + ", its name says " + std::to_string(generation),
-        kMagicBytes};
+  if (start.size() == kMagicBytes && start != magic) {
+    if (start.back() < '0' || start.back() > '9')
+      return refuse("it is no " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
+    return refuse("it was written by " + std::string(start.back() > magic.back() ? "a newer" : "another") +
+                      " version of the program, in the format " + std::string(start) + " (this version reads " +
+                      std::string(magic) + " and the one before); that version can use it under its old name",
+                  kMagicBytes - 1);
   }
-  return std::nullopt;
+  if (file.size() < header_bytes) return refuse("it ends within its header", file.size());
+  const auto name_bytes = numberAt<std::uint32_t>(file, kChecksumEnd);
+  if (name_bytes > kNameMaxBytes) return refuse("its header does not match its checksum", kMagicBytes);
+  if (file.size() - header_bytes < name_bytes) return refuse("it ends within its header", file.size());
+  const core::ByteView header = file.first(header_bytes + name_bytes);
+  if (core::crc32c(header.subspan(kChecksumEnd)) != numberAt<std::uint32_t>(file, kMagicBytes))
+    return refuse("its header does not match its checksum", kMagicBytes);
+  if (const std::string_view room = textOf(header.subspan(header_bytes)); room != owner.room) {
+    return refuse("it is of the room '" + core::cleanText(room, kNameMaxBytes) + "', its folder is that of '" +
+                      std::string(owner.room) + "'",
+                  header_bytes);
+  }
+  if (const auto found = numberAt<std::uint64_t>(file, 16); found != owner.generation)
+    return Start{.fault = wrongGeneration(found, owner.generation, 16)};
+  return {Version::kNow, numberAt<std::uint64_t>(file, 24), header.size(), std::nullopt};
 }
 
-/// Returns why no whole record begins at `at`; `number` counts records from 1.
-std::optional<Fault> checkRecord(core::ByteView file, std::size_t at, std::size_t number) {
-  const std::string name = "record " + std::to_string(number);
-  const std::size_t left = file.size() - at;
-  if (left < kRecordHeaderBytes) return Fault{name + " is not whole", at, true};
-  const auto length = numberAt<std::uint32_t>(file, at);
-  if (length == 0 || length > kRecordMaxBytes) {
-    return Fault{name + " has a length of " + std::to_string(length) + " bytes (1 to " +
-                     std::to_string(kRecordMaxBytes) + " are possible)",
+std::optional<Fault> checkLength(const std::string& name, std::uint32_t length, std::size_t at) {
+  if (length > 0 && length <= kRecordMaxBytes) return std::nullopt;
+  return Fault{name + " has a length of " + std::to_string(length) + " bytes (1 to " + std::to_string(kRecordMaxBytes) +
+                   " are possible)",
+               at};
+}
+
+/// Returns why the record at `at` cannot follow those before it; `expected` is the number that comes next.
+std::optional<Fault> checkNumber(std::uint64_t found, std::uint64_t expected, std::size_t at) {
+  if (found == expected) return std::nullopt;
+  if (found < expected)
+    return Fault{"record " + std::to_string(found) + " stands where record " + std::to_string(expected) + " follows",
                  at};
+  return Fault{"the records " + std::to_string(expected) + " to " + std::to_string(found - 1) + " are missing", at};
+}
+
+/// A record in the file, or why no whole one begins at `at`.
+struct Found {
+  core::ByteView payload;
+  std::optional<Fault> fault;
+};
+
+/// `name` is what the record is called in messages.
+Found readRecord(core::ByteView file, std::size_t at, Version version, const std::string& name,
+                 std::optional<std::uint64_t> number) {
+  const bool is_old = version == Version::kOld;
+  const std::size_t header_bytes = is_old ? kOldRecordHeaderBytes : kRecordHeaderBytes;
+  const std::size_t left = file.size() - at;
+  if (left < header_bytes) return {{}, Fault{name + " is not whole", at, true}};
+  const core::ByteView header = file.subspan(at, header_bytes);
+  const bool is_whole = is_old || core::crc32c(header.subspan(4)) == numberAt<std::uint32_t>(header, 0);
+  if (!is_whole) return {{}, Fault{name + " does not match its checksum", at}};
+  const auto length = numberAt<std::uint32_t>(header, is_old ? 0 : 4);
+  if (auto fault = checkLength(name, length, at)) return {{}, fault};
+  if (number) {
+    if (auto fault = checkNumber(numberAt<std::uint64_t>(header, 8), *number, at)) return {{}, fault};
   }
-  if (length > left - kRecordHeaderBytes) return Fault{name + " is not whole", at, true};
-  if (core::crc32c(file.subspan(at + kRecordHeaderBytes, length)) != numberAt<std::uint32_t>(file, at + 4))
-    return Fault{name + " does not match its checksum", at};
-  return std::nullopt;
+  if (length > left - header_bytes) return {{}, Fault{name + " is not whole", at, true}};
+  const core::ByteView payload = file.subspan(at + header_bytes, length);
+  if (core::crc32c(payload) != numberAt<std::uint32_t>(header, header_bytes - 4))
+    return {{}, Fault{name + " does not match its checksum", at}};
+  return {payload, std::nullopt};
 }
 
 }  // namespace
 
-std::array<std::uint8_t, kSnapshotHeaderBytes> snapshotHeader(std::uint64_t generation, core::ByteView payload) {
-  std::array<std::uint8_t, kSnapshotHeaderBytes> header{};
-  std::ranges::copy(kSnapshotMagic, header.begin());
-  put(header.data() + 8, generation);
-  put(header.data() + 16, static_cast<std::uint64_t>(payload.size()));
-  put(header.data() + 24, core::crc32c(payload));
+core::Bytes snapshotHeader(const FileOwner& owner, std::uint64_t next_number, core::ByteView payload) {
+  core::Bytes header = startOf(kSnapshotMagic, owner, next_number, kSnapshotHeaderBytes - kStartBytes);
+  put(header.data() + kStartBytes, static_cast<std::uint64_t>(payload.size()));
+  put(header.data() + kStartBytes + 8, core::crc32c(payload));
+  putChecksum(header);
   return header;
 }
 
-std::array<std::uint8_t, kLogHeaderBytes> logHeader(std::uint64_t generation) {
-  std::array<std::uint8_t, kLogHeaderBytes> header{};
-  std::ranges::copy(kLogMagic, header.begin());
-  put(header.data() + 8, generation);
+core::Bytes logHeader(const FileOwner& owner, std::uint64_t first_number) {
+  core::Bytes header = startOf(kLogMagic, owner, first_number, 0);
+  putChecksum(header);
   return header;
 }
 
-std::array<std::uint8_t, kRecordHeaderBytes> recordHeader(core::ByteView payload) {
+std::array<std::uint8_t, kRecordHeaderBytes> recordHeader(std::uint64_t number, core::ByteView payload) {
   std::array<std::uint8_t, kRecordHeaderBytes> header{};
-  put(header.data(), static_cast<std::uint32_t>(payload.size()));
-  put(header.data() + 4, core::crc32c(payload));
+  put(header.data() + 4, static_cast<std::uint32_t>(payload.size()));
+  put(header.data() + 8, number);
+  put(header.data() + 16, core::crc32c(payload));
+  put(header.data(), core::crc32c(core::ByteView(header).subspan(4)));
   return header;
 }
 
-ParsedSnapshot parseSnapshot(core::ByteView file, std::uint64_t generation) {
-  if (auto fault = checkStart(file, kSnapshotMagic, "snapshot", kSnapshotHeaderBytes, generation)) return {{}, fault};
-  const auto length = numberAt<std::uint64_t>(file, 16);
-  const core::ByteView payload = file.subspan(kSnapshotHeaderBytes);
+ParsedSnapshot parseSnapshot(core::ByteView file, const FileOwner& owner) {
+  const Start start = readStart(file, kSnapshotMagic, "snapshot", kSnapshotHeaderBytes, kOldSnapshotHeaderBytes, owner);
+  if (start.fault) return {.payload = {}, .next_number = {}, .fault = start.fault};
+  const auto refuse = [](std::string reason, std::uint64_t at_byte) {
+    return ParsedSnapshot{.payload = {}, .next_number = {}, .fault = Fault{std::move(reason), at_byte}};
+  };
+  const std::size_t length_at = start.version == Version::kOld ? 16 : kStartBytes;
+  const auto length = numberAt<std::uint64_t>(file, length_at);
+  const core::ByteView payload = file.subspan(start.header_bytes);
   if (length > kSnapshotMaxBytes) {
-    return {{},
-            Fault{"it says that its content has " + std::to_string(length) + " bytes (at most " +
+    return refuse("it says that its content has " + std::to_string(length) + " bytes (at most " +
                       std::to_string(kSnapshotMaxBytes) + " are possible)",
-                  16}};
+                  length_at);
   }
   if (payload.size() != length) {
-    return {{},
-            Fault{"its content has " + std::to_string(payload.size()) + " bytes instead of " + std::to_string(length),
-                  kSnapshotHeaderBytes + std::min<std::uint64_t>(payload.size(), length)}};
+    return refuse("its content has " + std::to_string(payload.size()) + " bytes instead of " + std::to_string(length),
+                  start.header_bytes + std::min<std::uint64_t>(payload.size(), length));
   }
-  if (core::crc32c(payload) != numberAt<std::uint32_t>(file, 24))
-    return {{}, Fault{"its content does not match its checksum", kSnapshotHeaderBytes}};
-  return {payload, std::nullopt};
+  if (core::crc32c(payload) != numberAt<std::uint32_t>(file, length_at + 8))
+    return refuse("its content does not match its checksum", start.header_bytes);
+  return {.payload = payload, .next_number = start.number, .fault = std::nullopt};
 }
 
-ParsedLog parseLog(core::ByteView file, std::uint64_t generation) {
+ParsedLog parseLog(core::ByteView file, const FileOwner& owner) {
   ParsedLog log;
-  log.fault = checkStart(file, kLogMagic, "log", kLogHeaderBytes, generation);
+  const Start start = readStart(file, kLogMagic, "log", kStartBytes, kOldLogHeaderBytes, owner);
+  log.fault = start.fault;
   if (log.fault) return log;
-  std::size_t at = kLogHeaderBytes;
+  log.first_number = start.number;
+  std::size_t at = start.header_bytes;
   while (at < file.size()) {
-    log.fault = checkRecord(file, at, log.records.size() + 1);
+    std::optional<std::uint64_t> number;
+    if (start.number) number = *start.number + log.records.size();
+    const std::string name = "record " + std::to_string(number.value_or(log.records.size() + 1));
+    const Found found = readRecord(file, at, start.version, name, number);
+    log.fault = found.fault;
     if (log.fault) break;
-    const auto length = numberAt<std::uint32_t>(file, at);
-    log.records.push_back(file.subspan(at + kRecordHeaderBytes, length));
-    at += kRecordHeaderBytes + length;
+    log.records.push_back(found.payload);
+    at = static_cast<std::size_t>(found.payload.data() - file.data()) + found.payload.size();
   }
   log.whole_bytes = at;
   return log;

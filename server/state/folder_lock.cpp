@@ -32,7 +32,11 @@ FolderLock& FolderLock::operator=(FolderLock&&) noexcept = default;
 FolderLock::~FolderLock() = default;
 
 core::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
-  if (auto made = makeFolder(folder); !made) return made.error();
+  const auto made = makeFolder(folder);
+  if (!made) return made.error();
+  for (const std::filesystem::path& parent : *made) {
+    if (auto synced = syncFolder(parent); !synced) return synced.error();
+  }
   auto file = File::openOrCreate(folder / "lock");
   if (!file) return file.error();
   while (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {

@@ -169,17 +169,21 @@ core::Result<std::vector<FolderEntry>> listFolder(const fs::path& folder) {
   return entries;
 }
 
-core::Result<void> makeFolder(const fs::path& folder) {
+core::Result<std::vector<fs::path>> makeFolder(const fs::path& folder) {
   std::error_code error;
-  if (fs::is_directory(folder, error)) return {};
+  if (fs::is_directory(folder, error)) return std::vector<fs::path>();
   const fs::path parent = folder.has_parent_path() ? folder.parent_path() : fs::path(".");
+  std::vector<fs::path> changed;
   if (parent != folder) {
-    if (auto made = makeFolder(parent); !made) return made;
+    auto made = makeFolder(parent);
+    if (!made) return made;
+    changed = *std::move(made);
   }
   // Another process may have been faster.
   if (::mkdir(folder.c_str(), static_cast<mode_t>(kFolderMode)) != 0 && errno != EEXIST)
     return systemError("make the folder", folder, errno);
-  return syncFolder(parent);
+  changed.push_back(parent);
+  return changed;
 }
 
 core::Result<void> syncFolder(const fs::path& folder) {
@@ -215,11 +219,9 @@ core::Result<void> writeWhole(const fs::path& path, core::ByteView first, core::
     }
     return renameFile(temporary, path);
   };
-  if (auto written = write(); !written) {
-    (void)removeFile(temporary);  // the first error says more
-    return written;
-  }
-  return is_forced ? syncFolder(path.parent_path()) : core::Result<void>();
+  auto written = write();
+  if (!written) (void)removeFile(temporary);  // the first error says more
+  return written;
 }
 
 core::Result<void> removeFile(const fs::path& path) {

@@ -64,8 +64,9 @@ struct FolderEntry {
 
 /// Returns the entries, sorted by name.
 core::Result<std::vector<FolderEntry>> listFolder(const std::filesystem::path& folder);
-/// Makes the folder with mode 0700, and those above it, if they are not there. New names are forced to the disk.
-core::Result<void> makeFolder(const std::filesystem::path& folder);
+/// Makes the folder with mode 0700, and those above it, if they are not there. Returns the folders that have new names
+/// in them, innermost last, which syncFolder() forces to the disk.
+core::Result<std::vector<std::filesystem::path>> makeFolder(const std::filesystem::path& folder);
 /// Forces the names in the folder to the disk: files that were made, renamed and removed.
 core::Result<void> syncFolder(const std::filesystem::path& folder);
 /// Replaces `to` if it exists.
@@ -73,8 +74,8 @@ core::Result<void> renameFile(const std::filesystem::path& from, const std::file
 /// Gives the file a second name; an error if that exists.
 core::Result<void> linkFile(const std::filesystem::path& from, const std::filesystem::path& to);
 /// Writes both parts under PATH.tmp and renames the file when it is whole, so that PATH is never a part of it. With
-/// `is_forced` its content and its name are forced to the disk. After an error PATH is what it was, unless only its
-/// name could not be forced to the disk.
+/// `is_forced` its content is forced to the disk before; syncFolder() does so with its name. After an error PATH is
+/// what it was.
 core::Result<void> writeWhole(const std::filesystem::path& path, core::ByteView first, core::ByteView second,
                               bool is_forced);
 /// No error if there is no such file.

@@ -30,10 +30,16 @@ void raise(std::atomic<std::uint64_t>& value, std::uint64_t least) {
 
 }  // namespace
 
-RoomFiles::RoomFiles(fs::path folder, Options options) : folder_(std::move(folder)), options_(options) {}
+RoomFiles::RoomFiles(fs::path folder, std::string room, Options options, std::vector<fs::path> new_names)
+    : folder_(std::move(folder)), room_(std::move(room)), options_(options), new_names_(std::move(new_names)) {}
 RoomFiles::~RoomFiles() = default;
 
-core::Result<std::unique_ptr<RoomFiles>> RoomFiles::open(const fs::path& folder, Options options) {
+core::Result<std::unique_ptr<RoomFiles>> RoomFiles::open(const fs::path& folder, std::string room, Options options) {
+  if (room.size() > kNameMaxBytes) {
+    return Error{ErrorCode::kInvalidInput, "a room's name of " + std::to_string(room.size()) +
+                                               " bytes does not fit into its files: at most " +
+                                               std::to_string(kNameMaxBytes) + " bytes are possible"};
+  }
   if (options.kept_generation_count < 1)
     return Error{ErrorCode::kInvalidInput, "0 generations of a room's state cannot be kept: keep at least 1"};
   if (options.log_max_bytes > kLogMaxBytes) {
@@ -41,18 +47,21 @@ core::Result<std::unique_ptr<RoomFiles>> RoomFiles::open(const fs::path& folder,
                                                " bytes cannot be read again: at most " + std::to_string(kLogMaxBytes) +
                                                " bytes are possible"};
   }
-  if (auto made = makeFolder(folder); !made) return made.error();
-  return std::unique_ptr<RoomFiles>(new RoomFiles(folder, options));
+  auto made = makeFolder(folder);
+  if (!made) return made.error();
+  return std::unique_ptr<RoomFiles>(new RoomFiles(folder, std::move(room), options, *std::move(made)));
 }
 
-core::Result<RoomFiles::Recovered> RoomFiles::recover() try {
+core::Result<RoomFiles::Recovered> RoomFiles::recover(std::uint64_t before) try {
   const std::lock_guard lock(log_mutex_);
   if (log_) return wrongOrder("recover() comes before beginGeneration()");
-  auto found = recoverFolder(folder_, options_.sync != Sync::kNever);
+  auto found = recoverFolder(folder_, room_, before, options_.sync != Sync::kNever);
   if (!found) return found.error();
   last_generation_ = found->last_generation;
+  next_number_ = found->next_number;
   snapshot_generation_ = found->content.generation;
   snapshot_bytes_ = found->snapshot_bytes;
+  refused_from_ = before;
   is_recovered_ = true;
   return std::move(found->content);
 } catch (const std::bad_alloc&) {
@@ -60,29 +69,44 @@ core::Result<RoomFiles::Recovered> RoomFiles::recover() try {
                                             ": snapshots and logs take as much as they have bytes"};
 }
 
-core::Result<std::uint64_t> RoomFiles::beginGeneration() {
+core::Result<StatePoint> RoomFiles::beginGeneration() {
   const std::lock_guard lock(log_mutex_);
   if (!is_recovered_) return wrongOrder("beginGeneration() comes after recover()");
-  if (last_generation_ >= snapshot_generation_ + kLogsWithoutSnapshotMaxCount) {
-    return Error{ErrorCode::kUnavailable, "no further log is begun in " + folder_.string() + ": " +
-                                              std::to_string(kLogsWithoutSnapshotMaxCount) +
-                                              " logs wait for a snapshot; see why none could be written"};
-  }
+  if (auto aside = setRefusedAside(); !aside) return aside.error();
   if (is_torn_) {
     if (auto cut = cutToWholeRecords(); !cut) return cut.error();
   }
-  const bool is_forced = options_.sync == Sync::kAlways;
-  // A log that the disk refuses must not keep the room from the next one: flush() reports it.
-  if (is_forced && log_ && !log_->sync()) raise(needed_snapshot_generation_, last_generation_ + 1);
+  const bool waits_for_snapshot = log_ && last_generation_ > snapshot_generation_;
+  const bool is_unfit = is_full_ || needed_snapshot_generation_ > last_generation_;
+  const bool has_too_many = last_generation_ >= snapshot_generation_ + kLogsWithoutSnapshotMaxCount;
+  if (waits_for_snapshot && (!is_unfit || has_too_many)) return StatePoint{last_generation_, next_number_};
   const std::uint64_t next = last_generation_ + 1;
-  if (auto made = makeEmptyLog(folder_, next, is_forced); !made) return made.error();
+  if (auto made = makeEmptyLog(folder_, {room_, next}, next_number_, false); !made) return made.error();
   auto log = File::openToWrite(folder_ / logName(next));
   if (!log) return log.error();
+  if (options_.sync == Sync::kAlways && log_) unforced_logs_.push_back(log_);
   log_ = std::make_shared<File>(std::move(*log));
   last_generation_ = next;
-  log_bytes_ = kLogHeaderBytes;
+  log_bytes_ = kStartBytes + room_.size();
   generation_ = next;
-  return next;
+  is_full_ = false;
+  return StatePoint{next, next_number_};
+}
+
+/// Sets the snapshots aside that the caller of recover() could not use. The mutex is held.
+core::Result<void> RoomFiles::setRefusedAside() {
+  if (refused_from_ == kNewest) return {};
+  const auto entries = listFolder(folder_);
+  if (!entries) return entries.error();
+  for (const FolderEntry& entry : *entries) {
+    const FileName name = parseFileName(entry.name);
+    if (name.kind != FileKind::kSnapshot || name.generation < refused_from_) continue;
+    const auto aside = nameToSetAside(folder_ / entry.name);
+    if (!aside) return aside.error();
+    if (auto renamed = renameFile(folder_ / entry.name, *aside); !renamed) return renamed;
+  }
+  refused_from_ = kNewest;
+  return {};
 }
 
 core::Result<void> RoomFiles::cutToWholeRecords() {
@@ -97,13 +121,14 @@ core::Result<void> RoomFiles::append(core::ByteView record) {
                                                " bytes cannot be logged: 1 to " + std::to_string(kRecordMaxBytes) +
                                                " bytes are possible"};
   }
-  const auto header = recordHeader(record);
   const std::lock_guard lock(log_mutex_);
   if (!log_) return wrongOrder("append() comes after beginGeneration()");
   if (is_torn_) {
     if (auto cut = cutToWholeRecords(); !cut) return cut;
   }
+  const auto header = recordHeader(next_number_, record);
   if (log_bytes_ + header.size() + record.size() > options_.log_max_bytes) {
+    is_full_ = true;
     return Error{ErrorCode::kUnavailable, "the log " + log_->path().string() + " is full at " +
                                               std::to_string(log_bytes_) + " of at most " +
                                               std::to_string(options_.log_max_bytes) + " bytes: a snapshot is due"};
@@ -115,22 +140,34 @@ core::Result<void> RoomFiles::append(core::ByteView record) {
     return written;
   }
   log_bytes_ += header.size() + record.size();
+  ++next_number_;
   return {};
+}
+
+void RoomFiles::skipRecord() {
+  const std::lock_guard lock(log_mutex_);
+  ++next_number_;
 }
 
 core::Result<void> RoomFiles::flush() {
   if (options_.sync != Sync::kAlways) return {};
-  std::shared_ptr<File> log;
+  std::vector<std::shared_ptr<File>> logs;
   std::uint64_t generation = 0;
   {
     const std::lock_guard lock(log_mutex_);
-    log = log_;
+    if (!log_) return wrongOrder("flush() comes after beginGeneration()");
+    logs = std::exchange(unforced_logs_, {});
+    logs.push_back(log_);
     generation = last_generation_;
   }
-  if (!log) return wrongOrder("flush() comes after beginGeneration()");
-  if (auto synced = log->sync(); !synced) {
+  core::Result<void> forced;
+  for (const auto& log : logs) {
+    if (auto synced = log->sync(); !synced && forced) forced = synced;
+  }
+  if (forced && forced_names_generation_ < generation) forced = forceNames(generation);
+  if (!forced) {
     raise(needed_snapshot_generation_, generation + 1);
-    return synced;
+    return forced;
   }
   if (needed_snapshot_generation_ > snapshot_generation_) {
     return Error{ErrorCode::kUnavailable, "the disk refused records of " + folder_.string() +
@@ -140,8 +177,21 @@ core::Result<void> RoomFiles::flush() {
   return {};
 }
 
-core::Result<void> RoomFiles::writeSnapshot(std::uint64_t generation, core::ByteView payload) {
+/// Forces the names of the files up to `generation` to the disk, and the first time those of new folders.
+core::Result<void> RoomFiles::forceNames(std::uint64_t generation) {
+  if (auto synced = syncFolder(folder_); !synced) return synced;
+  if (forced_names_generation_ == 0) {
+    for (const fs::path& parent : new_names_) {
+      if (auto synced = syncFolder(parent); !synced) return synced;
+    }
+  }
+  raise(forced_names_generation_, generation);
+  return {};
+}
+
+core::Result<void> RoomFiles::writeSnapshot(const StatePoint& point, core::ByteView payload) {
   const std::lock_guard lock(snapshot_mutex_);
+  const std::uint64_t generation = point.generation;
   if (generation < 1 || generation > generation_)
     return wrongOrder("generation " + std::to_string(generation) + " has not begun");
   if (payload.size() > kSnapshotMaxBytes) {
@@ -149,16 +199,16 @@ core::Result<void> RoomFiles::writeSnapshot(std::uint64_t generation, core::Byte
                                                " bytes cannot be written: at most " +
                                                std::to_string(kSnapshotMaxBytes) + " bytes are possible"};
   }
-  const auto header = snapshotHeader(generation, payload);
-  const fs::path path = folder_ / snapshotName(generation);
-  if (auto written = writeWhole(path, header, payload, options_.sync != Sync::kNever); !written) return written;
+  const bool is_forced = options_.sync != Sync::kNever;
+  const core::Bytes header = snapshotHeader({room_, generation}, point.next_number, payload);
+  if (auto written = writeWhole(folder_ / snapshotName(generation), header, payload, is_forced); !written)
+    return written;
+  if (is_forced) {
+    if (auto forced = forceNames(generation); !forced) return forced;
+  }
   if (generation >= snapshot_generation_) {
     snapshot_generation_ = generation;
     snapshot_bytes_ = header.size() + payload.size();
-  }
-  if (auto removed = removeOldGenerations(); !removed) {
-    return Error{removed.error().code, "the snapshot of generation " + std::to_string(generation) +
-                                           " is written, but an older file is still there: " + removed.error().message};
   }
   return {};
 }

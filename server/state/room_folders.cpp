@@ -2,8 +2,11 @@
 #include <cerrno>
 #include <system_error>
 
+#include <spindrift/core/room_name.h>
+#include <spindrift/core/text.h>
 #include <spindrift/state/room_folders.h>
 
+#include "file_names.h"
 #include "posix_file.h"
 
 namespace spindrift::state {
@@ -35,24 +38,21 @@ core::Result<void> removeTree(const fs::path& path) {
 }  // namespace
 
 core::Result<fs::path> roomFolder(const fs::path& folder, const std::string& name) {
-  const bool is_safe = !name.empty() && name.front() != '.' && name.find('/') == std::string::npos &&
-                       name.find('\0') == std::string::npos;
-  if (!is_safe) {
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "the name of a room cannot be used for a folder: it is empty, begins with a dot, or contains a "
-                       "slash or a zero byte"};
-  }
-  return roomsOf(folder) / name;
+  if (core::isRoomName(name)) return roomsOf(folder) / name;
+  return core::Error{core::ErrorCode::kInvalidInput, "'" + core::cleanText(name, 4 * core::kRoomNameMaxBytes) +
+                                                         "' is no name of a room: it has " +
+                                                         std::string(core::kRoomNameRule)};
 }
 
-core::Result<std::vector<std::string>> listRooms(const fs::path& folder) {
+core::Result<RoomList> listRooms(const fs::path& folder) {
   const auto entries = entriesOf(folder);
   if (!entries) return entries.error();
-  std::vector<std::string> names;
+  RoomList out;
   for (const FolderEntry& entry : *entries) {
-    if (entry.is_folder && entry.name.front() != '.') names.push_back(entry.name);
+    if (!entry.is_folder || entry.name.front() == '.') continue;
+    (core::isRoomName(entry.name) ? out.names : out.refused_names).push_back(entry.name);
   }
-  return names;
+  return out;
 }
 
 core::Result<fs::path> setRoomAside(const fs::path& folder, const std::string& name) {
@@ -80,6 +80,19 @@ core::Result<void> removeRoom(const fs::path& folder, const std::string& name) {
   if (auto renamed = renameFile(*room, removed); !renamed) return renamed;
   if (auto synced = syncFolder(roomsOf(folder)); !synced) return synced;
   return removeTree(removed);
+}
+
+core::Result<bool> hasState(const fs::path& folder, const std::string& name) {
+  const auto room = roomFolder(folder, name);
+  if (!room) return room.error();
+  std::error_code error;
+  if (!fs::exists(*room, error) && !error) return false;
+  const auto entries = listFolder(*room);
+  if (!entries) return entries.error();
+  return std::ranges::any_of(*entries, [](const FolderEntry& entry) {
+    const FileKind kind = parseFileName(entry.name).kind;
+    return kind != FileKind::kLog && kind != FileKind::kTemporary;
+  });
 }
 
 core::Result<void> finishRemovals(const fs::path& folder) {

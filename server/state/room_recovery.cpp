@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "file_format.h"
 #include "file_names.h"
 #include "posix_file.h"
 
@@ -20,7 +19,8 @@ constexpr std::size_t kForeignNotesMaxCount = 16;
 
 class Recovery {
  public:
-  Recovery(fs::path folder, bool is_forced) : folder_(std::move(folder)), is_forced_(is_forced) {}
+  Recovery(fs::path folder, std::string_view room, std::uint64_t before, bool is_forced)
+      : folder_(std::move(folder)), room_(room), before_(before), is_forced_(is_forced) {}
 
   core::Result<RecoveredFolder> run();
 
@@ -31,16 +31,22 @@ class Recovery {
   core::Result<void> findSnapshot();
   core::Result<void> readLogs();
   core::Result<bool> readLog(const FolderEntry& entry, std::uint64_t generation);
+  [[nodiscard]] std::optional<Fault> connect(ParsedLog& log, bool is_first) const;
+  core::Result<void> repair(const FolderEntry& entry, const RoomFiles::Log& file, const ParsedLog& log);
   core::Result<void> completeLogs();
+  [[nodiscard]] core::Result<Fault> whyNotUsed(const FolderEntry& entry, std::uint64_t generation) const;
   core::Result<void> cutLog(const fs::path& path, const ParsedLog& log);
   core::Result<void> keepWholePart(const fs::path& path, const RoomFiles::Log& file, const ParsedLog& log);
   core::Result<void> setAside(const FolderEntry& entry, const Fault& fault);
   void note(const std::string& name, const std::string& text) { out_.content.notes.push_back(name + ": " + text); }
 
   const fs::path folder_;
+  const std::string_view room_;
+  const std::uint64_t before_;
   const bool is_forced_;
   std::map<std::uint64_t, FolderEntry, std::greater<>> snapshots_;  ///< newest first
   std::map<std::uint64_t, FolderEntry> logs_;
+  std::optional<std::uint64_t> next_number_ = 1;  ///< nullopt while only files of version 1 were read
   bool is_changed_ = false;
   RecoveredFolder out_;
 };
@@ -57,6 +63,9 @@ core::Result<RecoveredFolder> Recovery::run() {
   if (is_changed_ && is_forced_) {
     if (auto done = syncFolder(folder_); !done) return done.error();
   }
+  std::size_t record_count = 0;
+  for (const RoomFiles::Log& log : out_.content.logs) record_count += log.records.size();
+  out_.next_number = next_number_.value_or(1 + record_count);
   return std::move(out_);
 }
 
@@ -121,14 +130,20 @@ core::Result<core::Bytes> Recovery::readFile(const FolderEntry& entry, std::uint
 
 core::Result<void> Recovery::findSnapshot() {
   for (const auto& [generation, entry] : snapshots_) {
+    if (generation >= before_) continue;
     std::optional<Fault> fault;
-    auto bytes = readFile(entry, kSnapshotHeaderBytes + kSnapshotMaxBytes, fault);
+    auto bytes = readFile(entry, kSnapshotHeaderBytes + kNameMaxBytes + kSnapshotMaxBytes, fault);
     if (!bytes) return bytes.error();
-    if (!fault) fault = parseSnapshot(*bytes, generation).fault;
+    ParsedSnapshot parsed;
+    if (!fault) {
+      parsed = parseSnapshot(*bytes, {room_, generation});
+      fault = parsed.fault;
+    }
     if (!fault) {
       out_.content.generation = generation;
       out_.snapshot_bytes = bytes->size();
-      bytes->erase(bytes->begin(), bytes->begin() + kSnapshotHeaderBytes);
+      next_number_ = parsed.next_number;
+      bytes->erase(bytes->begin(), bytes->end() - static_cast<std::ptrdiff_t>(parsed.payload.size()));
       out_.content.snapshot = std::move(*bytes);
       return {};
     }
@@ -161,8 +176,8 @@ core::Result<bool> Recovery::readLog(const FolderEntry& entry, std::uint64_t gen
   log.file = std::move(*bytes);
   ParsedLog parsed;
   if (!unusable) {
-    parsed = parseLog(log.file, generation);
-    if (parsed.whole_bytes == 0) unusable = parsed.fault;
+    parsed = parseLog(log.file, {room_, generation});
+    unusable = parsed.whole_bytes == 0 ? parsed.fault : connect(parsed, generation == out_.content.generation);
   }
   if (unusable) {
     if (auto aside = setAside(entry, *unusable); !aside) return aside.error();
@@ -170,16 +185,45 @@ core::Result<bool> Recovery::readLog(const FolderEntry& entry, std::uint64_t gen
     return false;
   }
   if (parsed.fault) {
-    // A log that was continued in the next one was whole at that time: then a torn end is damage as well.
-    const bool is_newest = logs_.upper_bound(generation) == logs_.end();
-    const fs::path path = folder_ / entry.name;
-    auto repaired = parsed.fault->is_torn_end && is_newest ? cutLog(path, parsed) : keepWholePart(path, log, parsed);
-    if (!repaired) return repaired.error();
+    if (auto repaired = repair(entry, log, parsed); !repaired) return repaired.error();
   }
+  next_number_.reset();
+  if (parsed.first_number) next_number_ = *parsed.first_number + parsed.records.size();
   log.records = std::move(parsed.records);
   out_.content.logs.push_back(std::move(log));
   out_.last_generation = generation;
   return !parsed.fault;
+}
+
+/// Returns why the records do not follow what was read so far. Those of the log of the snapshot's generation,
+/// `is_first`, that are older than the snapshot are left out.
+std::optional<Fault> Recovery::connect(ParsedLog& log, bool is_first) const {
+  if (!log.first_number || !next_number_) return std::nullopt;  // of version 1
+  const std::uint64_t first = *log.first_number, expected = *next_number_, end = first + log.records.size();
+  if (first > expected)
+    return Fault{
+        "the records " + std::to_string(expected) + " to " + std::to_string(first - 1) + " before it are missing", 0};
+  if (first == expected) return std::nullopt;
+  if (!is_first) {
+    return Fault{
+        "it begins with record " + std::to_string(first) + ", but record " + std::to_string(expected) + " follows", 0};
+  }
+  if (end < expected) {
+    return Fault{"the records " + std::to_string(end) + " to " + std::to_string(expected - 1) +
+                     ", which the snapshot follows, are missing in it" + (log.fault ? ": " + log.fault->reason : ""),
+                 log.whole_bytes};
+  }
+  log.records.erase(log.records.begin(), log.records.begin() + static_cast<std::ptrdiff_t>(expected - first));
+  log.first_number = expected;
+  return std::nullopt;
+}
+
+/// Leaves the whole records of a damaged log under its name.
+core::Result<void> Recovery::repair(const FolderEntry& entry, const RoomFiles::Log& file, const ParsedLog& log) {
+  // A log that was continued in the next one was whole at that time: then a torn end is damage as well.
+  const bool is_newest = logs_.upper_bound(file.generation) == logs_.end();
+  const fs::path path = folder_ / entry.name;
+  return log.fault->is_torn_end && is_newest ? cutLog(path, log) : keepWholePart(path, file, log);
 }
 
 core::Result<void> Recovery::cutLog(const fs::path& path, const ParsedLog& log) {
@@ -201,6 +245,7 @@ core::Result<void> Recovery::keepWholePart(const fs::path& path, const RoomFiles
   if (auto linked = linkFile(path, *aside); !linked) return linked;
   const core::ByteView whole = core::ByteView(file.file).first(log.whole_bytes);
   if (auto written = writeWhole(path, whole, {}, is_forced_); !written) return written;
+  is_changed_ = true;
   note(path.filename().string(), placeOf(*log.fault) + "; its " + std::to_string(log.records.size()) +
                                      " records before are used, the whole file is kept as " +
                                      aside->filename().string());
@@ -211,10 +256,9 @@ core::Result<void> Recovery::keepWholePart(const fs::path& path, const RoomFiles
 core::Result<void> Recovery::completeLogs() {
   const std::uint64_t snapshot = out_.content.generation;
   for (auto later = logs_.upper_bound(out_.last_generation); later != logs_.end(); ++later) {
-    const Fault fault{"what it continues is missing or damaged (the last whole generation is " +
-                          std::to_string(out_.last_generation) + ")",
-                      0};
-    if (auto aside = setAside(later->second, fault); !aside) return aside;
+    const auto fault = whyNotUsed(later->second, later->first);
+    if (!fault) return fault.error();
+    if (auto aside = setAside(later->second, *fault); !aside) return aside;
   }
   if (snapshot == 0 || !out_.content.logs.empty()) return {};
   note(logName(snapshot), "it is missing or unusable, so what happened after the snapshot of generation " +
@@ -222,17 +266,34 @@ core::Result<void> Recovery::completeLogs() {
   RoomFiles::Log log;
   log.generation = snapshot;
   out_.content.logs.push_back(std::move(log));
-  return makeEmptyLog(folder_, snapshot, is_forced_);
+  is_changed_ = true;
+  return makeEmptyLog(folder_, {room_, snapshot}, next_number_.value_or(1), is_forced_);
+}
+
+/// Returns why a log after the last that is used cannot be used, and how much is in it.
+core::Result<Fault> Recovery::whyNotUsed(const FolderEntry& entry, std::uint64_t generation) const {
+  std::optional<Fault> unusable;
+  const auto bytes = readFile(entry, kLogMaxBytes, unusable);
+  if (!bytes) return bytes.error();
+  if (unusable) return *unusable;
+  const ParsedLog parsed = parseLog(*bytes, {room_, generation});
+  if (parsed.whole_bytes == 0) return *parsed.fault;
+  return Fault{"what it continues is missing or damaged (the last whole generation is " +
+                   std::to_string(out_.last_generation) + "); its " + std::to_string(parsed.records.size()) +
+                   " records are not used",
+               0};
 }
 
 }  // namespace
 
-core::Result<void> makeEmptyLog(const fs::path& folder, std::uint64_t generation, bool is_forced) {
-  return writeWhole(folder / logName(generation), logHeader(generation), {}, is_forced);
+core::Result<void> makeEmptyLog(const fs::path& folder, const FileOwner& owner, std::uint64_t first_number,
+                                bool is_forced) {
+  return writeWhole(folder / logName(owner.generation), logHeader(owner, first_number), {}, is_forced);
 }
 
-core::Result<RecoveredFolder> recoverFolder(const fs::path& folder, bool is_forced) {
-  return Recovery(folder, is_forced).run();
+core::Result<RecoveredFolder> recoverFolder(const fs::path& folder, std::string_view room, std::uint64_t before,
+                                            bool is_forced) {
+  return Recovery(folder, room, before, is_forced).run();
 }
 
 }  // namespace spindrift::state

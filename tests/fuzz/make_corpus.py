@@ -148,12 +148,32 @@ def crc32c(data):
     return crc ^ 0xFFFFFFFF
 
 
-def snapshot(payload, generation=1, magic=b"spinsnp1"):
-    return magic + struct.pack("<QQI", generation, len(payload), crc32c(payload)) + payload
+def state_start(magic, generation, number, room, rest=b""):
+    """Returns the header of a snapshot or log: `rest` is what a snapshot has before the room's name."""
+    covered = struct.pack("<IQQ", len(room), generation, number) + rest + room
+    return magic + struct.pack("<I", crc32c(covered)) + covered
 
 
-def log(*records, generation=1, magic=b"spinlog1"):
-    return magic + struct.pack("<Q", generation) + b"".join(struct.pack("<II", len(r), crc32c(r)) + r for r in records)
+def snapshot(payload, generation=1, magic=b"spinsnp2", room=b"pool", number=1, length=None):
+    rest = struct.pack("<QI", len(payload) if length is None else length, crc32c(payload))
+    return state_start(magic, generation, number, room, rest) + payload
+
+
+def state_record(payload, number, length=None):
+    covered = struct.pack("<IQI", len(payload) if length is None else length, number, crc32c(payload))
+    return struct.pack("<I", crc32c(covered)) + covered + payload
+
+
+def log(*records, generation=1, magic=b"spinlog2", room=b"pool", first=1):
+    return state_start(magic, generation, first, room) + b"".join(state_record(r, first + k) for k, r in enumerate(records))
+
+
+def old_snapshot(payload):
+    return b"spinsnp1" + struct.pack("<QQI", 1, len(payload), crc32c(payload)) + payload
+
+
+def old_log(*records):
+    return b"spinlog1" + struct.pack("<Q", 1) + b"".join(struct.pack("<II", len(r), crc32c(r)) + r for r in records)
 
 
 def state_files():
@@ -164,16 +184,22 @@ def state_files():
         "snapshot_empty": plain + snapshot(b"", generation=7),
         "snapshot_cut": plain + snapshot(b"state of the water")[:-3],
         "snapshot_changed": repaired + snapshot(b"state of the water")[:-1] + b"!",
-        "snapshot_newer": plain + snapshot(b"state", magic=b"spinsnp2"),
-        "snapshot_huge": plain + b"spinsnp1" + struct.pack("<QQI", 1, 2**63, 0) + b"x",
+        "snapshot_newer": plain + snapshot(b"state", magic=b"spinsnp3"),
+        "snapshot_huge": plain + snapshot(b"x", length=2**63),
+        "snapshot_old": plain + old_snapshot(b"state of the water"),
+        "snapshot_other_room": other_name + snapshot(b"state of the water", room=b"quay"),
         "log": plain + log(b"a", b"splash", b"wave" * 10),
         "log_empty": plain + log(),
         "log_cut": plain + log(b"a", b"splash")[:-2],
         "log_changed": repaired + log(b"a", b"splash")[:-1] + b"!",
         "log_other_name": other_name + log(b"a", generation=2),
+        "log_other_room": other_name + log(b"a", room=b"quay"),
+        "log_old": plain + old_log(b"a", b"splash"),
         "log_older": plain + log(b"a", magic=b"spinlog0"),
-        "log_huge": plain + log(b"a") + struct.pack("<II", 2**32 - 1, 0) + b"x",
+        "log_huge": plain + log(b"a") + state_record(b"x", 2, length=2**32 - 1),
         "log_zeros": repaired + log(b"a") + bytes(40),
+        "log_doubled": plain + log(b"a", first=9) + state_record(b"a", 9),
+        "log_gap": plain + log(b"a", first=9) + state_record(b"c", 12),
     }
 
 

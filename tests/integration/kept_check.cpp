@@ -19,8 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// docs/state_files.md: mark, generation, length and checksum before the payload.
-constexpr std::streamoff kSnapshotHeadBytes = 8 + 8 + 8 + 4;
+/// docs/state_files.md: the start, length and checksum of the payload; the name of the room follows, and the payload.
+constexpr std::streamoff kSnapshotHeadBytes = 32 + 8 + 4;
 
 constexpr const char* kPoolName = "pool";
 constexpr const char* kParticleNames[] = {"position", "velocity", "acceleration"};
@@ -140,7 +140,7 @@ void removeNewestSnapshots(const fs::path& state_folder) {
 std::optional<v1::KeptState> readSnapshot(const fs::path& state_folder, const std::string& room, std::uint64_t number) {
   std::ifstream file(roomFolder(state_folder, room) / fmt::format("{:012}.snapshot", number), std::ios::binary);
   if (!file) return std::nullopt;
-  file.seekg(kSnapshotHeadBytes);
+  file.seekg(kSnapshotHeadBytes + static_cast<std::streamoff>(room.size()));
   const std::string payload(std::istreambuf_iterator<char>(file), {});
   v1::KeptState state;
   if (!state.ParseFromString(payload)) return std::nullopt;

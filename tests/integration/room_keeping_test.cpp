@@ -1,10 +1,7 @@
 // Rooms that are kept on disk: what a crash leaves of them, and what a damaged or full disk does.
-#include <csignal>
-
-#include <sys/resource.h>
-
 #include <spindrift/rooms/state_store.h>
 
+#include "full_disk.h"
 #include "room_fixture.h"
 #include "temporary_folder.h"
 
@@ -265,7 +262,7 @@ TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
   ASSERT_TRUE(runTicks(15));
   const std::uint64_t tick = room_->tick();
   const std::uint64_t expected = room_->stateHash();
-  ASSERT_TRUE(room_->saveAndWait());
+  ASSERT_TRUE(room_->saveUntil(Clock::now() + kPatience));
   crashAndComeBack();
   EXPECT_EQ(room_->tick(), tick);
   EXPECT_EQ(room_->stateHash(), expected);
@@ -299,21 +296,6 @@ TEST_F(KeptRoomTest, GoesOnWhereItWasWhenTheDeviceFails) {
   EXPECT_EQ(hashAt(compared), expected) << "what is on disk goes on from there";
 }
 
-/// Files of this process cannot grow beyond `bytes` while this lives.
-class FullDisk {
- public:
-  explicit FullDisk(rlim_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit bound{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &bound);
-  }
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
 TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoomAgain) {
   ASSERT_TRUE(runTicks(3));
   {
@@ -340,85 +322,91 @@ TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoom
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-/// The whole server, with rooms that are opened and closed.
-class KeptServerTest : public ServerTest {
- protected:
-  void adjust(service::WaterServerOptions& options) const override {
-    auto store = rooms::StateStore::open({.folder = folder_.path()});
-    ASSERT_TRUE(store) << store.error().message;
-    options.rules.states = *std::move(store);
+TEST_F(KeptRoomTest, PausedTakesCommandsAgainWhenTheDiskWasFullForAMoment) {
+  send(1, setPaused(true));
+  ASSERT_TRUE(isAnswered(1));
+  ASSERT_TRUE(room_->askForSnapshot());
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 2; }));
+  {
+    const FullDisk full(1);
+    room_->roster().arrive({.session = 9, .role = core::Role::kViewer});  // its record cannot be written
+    ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->failure_count > 0; }));
   }
-  void TearDown() override { stop(); }  // while the folder is there
-  TemporaryFolder folder_;
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 3; })) << "it stands still, with a gap";
+  send(2, setPaused(false));
+  ASSERT_TRUE(isAnswered(2));
+  EXPECT_THAT(outlets_.applied, ElementsAre(1, 2));
+}
+
+TEST_F(KeptRoomTest, TriesAFailedSnapshotAgainLongBeforeTheNextIsDue) {
+  ASSERT_TRUE(runTicks(3));
+  {
+    const FullDisk full(kLogsOnly);
+    ASSERT_TRUE(room_->askForSnapshot());
+    ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->failure_count >= 3; })) << "it is tried again meanwhile";
+  }
+  const std::uint64_t generation = room_->keptStatus()->files.generation;
+  EXPECT_LE(generation, 2u) << "without further logs";
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 2; })) << "the next is due in an hour";
+  send(1, splash());
+  ASSERT_TRUE(isAnswered(1));
+  EXPECT_THAT(outlets_.applied, ElementsAre(1));
+  const std::uint64_t compared = room_->tick() + 8;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();
+  EXPECT_EQ(hashAt(compared), expected);
+}
+
+/// Sleeps when nobody is connected.
+class SleepingRoomTest : public KeptRoomTest {
+ protected:
+  struct Deserted final : rooms::RoomOutlets {
+    using Room = rooms::Room;
+    void sceneChanged(const Room&) override {}
+    void timeChanged(const Room&, bool, double) override {}
+    void parameterChanged(const Room&, const std::string&, double) override {}
+    void boatsChanged(const Room&, const v1::BoatList&) override {}
+    void peopleChanged(const Room&, const v1::People&) override {}
+    void wasReset(const Room&) override {}
+    void hasRecovered(const Room&, const std::string&) override {}
+    void fidelityChanged(const Room&, const std::string&) override {}
+    void closed(const Room&) override {}
+    void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override { ++applied_count; }
+    void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++rejected_count; }
+    void frameReady(const Room&, core::FrameView) override {}
+    rooms::WatchedLayers watched(const Room&, const core::ReducedCounts&, core::LevelSet) const override { return {}; }
+    std::size_t sessionCount(const Room&) const override { return 0; }
+    std::size_t sessionCount() const override { return 0; }
+    int applied_count = 0, rejected_count = 0;
+  };
+  Deserted deserted_;
 };
 
-TEST_F(KeptServerTest, KeepsItsFolderForItself) {
-  const auto second = rooms::StateStore::open({.folder = folder_.path()});
-  ASSERT_FALSE(second);
-  EXPECT_THAT(second.error().message, HasSubstr("in use by process"));
-}
-
-TEST_F(KeptServerTest, DoesNotStartWhileTheDiskIsFullAndLosesNothingByIt) {
-  ScriptedClient first = client();
-  const auto tick = first.apply(setSpeed(0.5));
-  ASSERT_TRUE(tick);
-  stop();
+TEST_F(SleepingRoomTest, TakesCommandsAgainWhenTheDiskWasFullForAMoment) {
+  crash();
+  openStore();
+  auto kept = rules_.states->place("asleep");
+  ASSERT_TRUE(kept);
+  auto scene = scene::parseSceneText(std::string(kStillPool) + " unwatched: UNWATCHED_SLEEP", "asleep");
+  ASSERT_TRUE(scene);
+  auto water = rooms::Water::create(device_, *std::move(scene));
+  ASSERT_TRUE(water);
+  auto room = rooms::Room::create("asleep", *std::move(water), rules_, *builder_, deserted_, *std::move(kept));
+  ASSERT_TRUE(room) << room.error().message;
+  room_ = *std::move(room);
+  room_->start(Clock::now());
+  ASSERT_TRUE(runUntil([&] { return room_->vitals()->asleep; }));
+  ASSERT_TRUE(room_->askForSnapshot());
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 2; }));
   {
-    const FullDisk full(10);  // room for the process id in the lock file
-    service::WaterServerOptions options;
-    options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
-    options.network.port = 0;
-    options.rooms.push_back({"main", *scene::parseSceneText(kStillPool, "main")});
-    auto store = rooms::StateStore::open({.folder = folder_.path()});
-    ASSERT_TRUE(store) << store.error().message;
-    options.rules.states = *std::move(store);
-    const auto server = service::WaterServer::start(std::move(options));
-    ASSERT_FALSE(server);
-    EXPECT_THAT(server.error().message, HasSubstr("cannot be written"));
+    const FullDisk full(1);
+    room_->roster().arrive({.session = 9, .role = core::Role::kViewer});
+    ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->failure_count > 0; }));
   }
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "aside"));
-  SetUp();
-  EXPECT_EQ(client().greeting().room_state().speed(), 0.5) << "the room goes on where it was";
-}
-
-TEST_F(KeptServerTest, SetsASnapshotAsideThatIsNoStateOfARoom) {
-  ASSERT_TRUE(client().apply(splash()));
-  stop();
-  {
-    auto files = state::RoomFiles::open(folder_.path() / "rooms" / "main", {});
-    ASSERT_TRUE(files);
-    ASSERT_TRUE((*files)->recover());
-    const auto generation = (*files)->beginGeneration();
-    ASSERT_TRUE(generation);
-    const core::Bytes words(100, 0xff);
-    ASSERT_TRUE((*files)->writeSnapshot(*generation, words));
-  }
-  SetUp();
-  EXPECT_TRUE(client().apply(splash()));
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "aside" / "main"));
-}
-
-TEST_F(KeptServerTest, BeginsARoomAnewWhoseStateIsOfAnotherProgramAndSetsItAside) {
-  ScriptedClient first = client();
-  ASSERT_TRUE(first.apply(splash()));
-  stop();
-  {
-    auto files = state::RoomFiles::open(folder_.path() / "rooms" / "main", {});
-    ASSERT_TRUE(files);
-    auto recovered = (*files)->recover();
-    ASSERT_TRUE(recovered);
-    v1::KeptState kept;
-    ASSERT_TRUE(kept.ParseFromArray(recovered->snapshot.data(), static_cast<int>(recovered->snapshot.size())));
-    kept.mutable_water()->mutable_buffers(0)->mutable_words()->resize(8);
-    const auto generation = (*files)->beginGeneration();
-    ASSERT_TRUE(generation);
-    const std::string bytes = kept.SerializeAsString();
-    ASSERT_TRUE(
-        (*files)->writeSnapshot(*generation, {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()}));
-  }
-  SetUp();
-  EXPECT_TRUE(client().apply(splash())) << "the room is there, from its start";
-  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "aside" / "main"));
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count >= 3; }));
+  send(1, setSpeed(0.5));
+  ASSERT_TRUE(runUntil([&] { return deserted_.applied_count + deserted_.rejected_count > 0; }));
+  EXPECT_EQ(deserted_.applied_count, 1);
 }
 
 }  // namespace

@@ -46,18 +46,22 @@ class ServerTest : public testing::Test {
   /// Further changes to the options by a test.
   virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 
-  void SetUp() override {
+  core::Result<std::unique_ptr<service::WaterServer>> tryToStart() const {
     service::WaterServerOptions options;
     options.device.kind = gpu::DeviceChoice::Kind::kSoftware;
     options.network.port = 0;
     options.rules.scenes = scenes();
     for (const RoomText& room : rooms()) {
       auto scene = scene::parseSceneText(room.scene, room.name);
-      ASSERT_TRUE(scene) << scene.error().message;
+      EXPECT_TRUE(scene) << scene.error().message;
       options.rooms.push_back({room.name, *std::move(scene)});
     }
     adjust(options);
-    auto started = service::WaterServer::start(std::move(options));
+    return service::WaterServer::start(std::move(options));
+  }
+
+  void SetUp() override {
+    auto started = tryToStart();
     if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
     ASSERT_TRUE(started) << started.error().message;
     server_ = *std::move(started);

@@ -100,6 +100,8 @@ TEST(Access, BadOptionsOfALineAreReportedWithoutTheirText) {
     EXPECT_THAT(with(options), HasSubstr("tokens:1:")) << options;
   }
   EXPECT_THAT(with("room=" + std::string(33, 'a')), HasSubstr("1 to 32"));
+  EXPECT_THAT(with("room=main,q\"}"), HasSubstr("1 to 32 letters, digits, '_' or '-'"))
+      << "a name that no room can have";
   EXPECT_THAT(with("secret"), Not(HasSubstr("secret")));
 }
 

@@ -195,6 +195,7 @@ TEST(Jwt, ClaimsOfAnotherFormAreRefusedByName) {
   EXPECT_THAT(refusal(R"(,"name":[])"), HasSubstr("name is no text"));
   EXPECT_THAT(refusal(R"(,"sub":")" + std::string(129, 'a') + "\""), HasSubstr("at most 128"));
   EXPECT_THAT(refusal(R"(,"room":[])"), HasSubstr("room is an empty list"));
+  EXPECT_THAT(refusal(R"(,"room":["main","a room"])"), HasSubstr("room has an entry that is no name of a room"));
   EXPECT_THAT(refusal(R"(,"room":[5])"), HasSubstr("room"));
   EXPECT_THAT(refusal(R"(,"room":"")"), HasSubstr("room"));
   EXPECT_THAT(refusal(R"(,"room":")" + std::string(33, 'a') + "\""), HasSubstr("room"));

@@ -51,6 +51,14 @@ TEST(Servers, AreForgottenAMinuteAfterTheirLastPulse) {
   EXPECT_THAT(servers.rooms(), IsEmpty());
 }
 
+TEST(Servers, NamesThatNoneCanHaveAreLeftOut) {
+  Servers servers;
+  servers.note(pulse("a b", 0, {"main"}), kStart);
+  servers.note(pulse("a", 0, {"q\"} 1", "quay", "two\nlines"}), kStart);
+  EXPECT_THAT(servers.alive(kStart), ElementsAre("a"));
+  EXPECT_THAT(servers.rooms(), ElementsAre("quay"));
+}
+
 TEST(NewRoom, GoesToTheLeastLoadedServer) {
   Servers servers;
   EXPECT_EQ(servers.choose(kStart), "") << "there is no server";

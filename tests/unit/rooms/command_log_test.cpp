@@ -72,6 +72,24 @@ TEST_F(CommandLogTest, ReadsWhatWasWritten) {
   EXPECT_FALSE((*log)->truncation());
 }
 
+TEST_F(CommandLogTest, RecordsThatAreDroppedDoubledOrExchangedEndTheLog) {
+  const std::string whole = bytesOf(written(3));
+  std::vector<std::string> records;
+  for (std::size_t at = 8; at < whole.size(); at += records.back().size())
+    records.push_back(whole.substr(at, 8 + static_cast<unsigned char>(whole[at])));
+  ASSERT_EQ(records.size(), 4U) << "the header and three splashes";
+  for (const std::vector<std::size_t>& order :
+       std::vector<std::vector<std::size_t>>{{0, 1, 3}, {0, 1, 1, 2, 3}, {0, 1, 3, 2}}) {
+    std::string bytes = whole.substr(0, 8);
+    for (const std::size_t k : order) bytes += records[k];
+    const auto log = CommandLogReader::open(withBytes(bytes));
+    ASSERT_TRUE(log);
+    EXPECT_EQ(recordCount(**log), 1U);
+    ASSERT_TRUE((*log)->truncation());
+    EXPECT_THAT(*(*log)->truncation(), HasSubstr("stands where record 3 follows"));
+  }
+}
+
 TEST_F(CommandLogTest, ATruncatedLogGivesItsWholeRecordsAndThePlaceOfItsEnd) {
   const std::string whole = bytesOf(written(3));
   std::size_t most = 0;

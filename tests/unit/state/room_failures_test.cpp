@@ -21,7 +21,14 @@
 namespace {
 bool is_sync_refused = false;
 bool is_cut_refused = false;
+int folder_sync_count = 0;
 }  // namespace
+
+// NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
+extern "C" int fsync(int descriptor) {
+  ++folder_sync_count;
+  return static_cast<int>(::syscall(SYS_fsync, descriptor));
+}
 
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
 extern "C" int fdatasync(int descriptor) {
@@ -73,7 +80,7 @@ struct RoomFailuresTest : StateTest {
 };
 
 TEST_F(RoomFailuresTest, AFailedAppendLeavesWholeRecords) {
-  for (std::uint64_t room_bytes = 0; room_bytes < 8 + 6; ++room_bytes) {
+  for (std::uint64_t room_bytes = 0; room_bytes < 20 + 6; ++room_bytes) {
     std::filesystem::remove_all(room);
     const auto files = openRecovered();
     begin(*files);
@@ -98,18 +105,19 @@ TEST_F(RoomFailuresTest, APartOfARecordThatCannotBeCutIsCutBeforeTheNext) {
   const std::string whole = content(kLog1);
   is_cut_refused = true;
   {
-    const FileSizeLimit limit(whole.size() + 12);
+    const FileSizeLimit limit(whole.size() + 24);
     EXPECT_FALSE(files->append(viewOf("second")));
   }
-  EXPECT_EQ(content(kLog1).size(), whole.size() + 12);
+  EXPECT_EQ(content(kLog1).size(), whole.size() + 24);
   EXPECT_THAT(files->append(viewOf("x")).error().message, HasSubstr("could not cut"));
   EXPECT_FALSE(files->beginGeneration());
   is_cut_refused = false;
   append(*files, "x");
+  writeSnapshot(*files, {1, 1}, "one");
   begin(*files);
   append(*files, "y");
   const auto found = recovered();
-  EXPECT_EQ(summary(found), "0= | 1: first x | 2: y");
+  EXPECT_EQ(summary(found), "1=one | 1: first x | 2: y");
   EXPECT_THAT(found.notes, IsEmpty());
 }
 
@@ -117,33 +125,33 @@ TEST_F(RoomFailuresTest, AFailedSnapshotLeavesAllFilesAsTheyWere) {
   const auto files = openRecovered();
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
-  begin(*files);
+  const StatePoint point = begin(*files);
   append(*files, "b");
   const auto before = allFiles();
-  for (const std::uint64_t size_bytes : {0, 20, 28, 100}) {
+  for (const std::uint64_t size_bytes : {0, 20, 48, 100}) {
     const FileSizeLimit limit(size_bytes);
-    EXPECT_FALSE(files->writeSnapshot(2, core::Bytes(1000, 's')));
+    EXPECT_FALSE(files->writeSnapshot(point, core::Bytes(1000, 's')));
   }
   EXPECT_EQ(allFiles(), before);
   EXPECT_EQ(files->status().snapshot_generation, 1U);
   EXPECT_EQ(summary(recovered()), "1=one | 1: a | 2: b");
-  writeSnapshot(*files, 2, "two");
+  writeSnapshot(*files, point, "two");
   EXPECT_EQ(summary(recovered()), "2=two | 2: b");
 }
 
 TEST_F(RoomFailuresTest, ASnapshotThatTheDiskRefusesDoesNotReplaceTheOlderOne) {
   const auto files = openRecovered({.sync = Sync::kSnapshots, .kept_generation_count = 1});
   writeSnapshot(*files, begin(*files), "one");
-  begin(*files);
+  const StatePoint point = begin(*files);
   const auto before = allFiles();
   is_sync_refused = true;
-  EXPECT_THAT(files->writeSnapshot(2, viewOf("two")).error().message, HasSubstr("check the disk"));
+  EXPECT_THAT(files->writeSnapshot(point, viewOf("two")).error().message, HasSubstr("check the disk"));
   EXPECT_EQ(allFiles(), before);
 }
 
 TEST_F(RoomFailuresTest, AGenerationThatCannotBeginLeavesTheLogThatThereIs) {
   const auto files = openRecovered();
-  begin(*files);
+  writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
   {
     const FileSizeLimit limit(8);
@@ -151,8 +159,8 @@ TEST_F(RoomFailuresTest, AGenerationThatCannotBeginLeavesTheLogThatThereIs) {
   }
   append(*files, "b");
   EXPECT_EQ(files->status().generation, 1U);
-  EXPECT_EQ(summary(recovered()), "0= | 1: a b");
-  EXPECT_EQ(begin(*files), 2U);
+  EXPECT_EQ(summary(recovered()), "1=one | 1: a b");
+  EXPECT_EQ(begin(*files).generation, 2U);
 }
 
 TEST_F(RoomFailuresTest, AfterTheDiskRefusedARecordOnlyASnapshotMakesFlushesSucceed) {
@@ -164,23 +172,55 @@ TEST_F(RoomFailuresTest, AfterTheDiskRefusedARecordOnlyASnapshotMakesFlushesSucc
   EXPECT_THAT(files->flush().error().message, AllOf(HasSubstr("force to the disk"), HasSubstr(kLog1)));
   is_sync_refused = false;
   EXPECT_THAT(files->flush().error().message, HasSubstr("a snapshot of generation 2 makes up for it"));
-  begin(*files);
+  const StatePoint point = begin(*files);
   EXPECT_FALSE(files->flush());
-  writeSnapshot(*files, 2, "two");
+  writeSnapshot(*files, point, "two");
   EXPECT_TRUE(files->flush());
 }
 
-TEST_F(RoomFailuresTest, ALogThatTheDiskRefusesDoesNotKeepTheNextFromBeginning) {
+TEST_F(RoomFailuresTest, AFlushForcesWhatTheOlderLogHoldsAsWell) {
   const auto files = openRecovered({.sync = Sync::kAlways});
-  begin(*files);
+  writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
   is_sync_refused = true;
-  EXPECT_FALSE(files->beginGeneration());  // the new log's header cannot be forced to the disk either
+  const StatePoint point = begin(*files);
+  EXPECT_EQ(point.generation, 2U) << "a new log does not wait for the disk";
+  EXPECT_THAT(files->flush().error().message, HasSubstr(kLog1));
   is_sync_refused = false;
-  EXPECT_EQ(begin(*files), 2U);
-  EXPECT_FALSE(files->flush());
-  writeSnapshot(*files, 2, "two");
+  EXPECT_THAT(files->flush().error().message, HasSubstr("a snapshot of generation 3 makes up for it"));
+  const StatePoint next = begin(*files);
+  EXPECT_EQ(next.generation, 3U) << "the operating system has dropped what it could not write to the one before";
+  writeSnapshot(*files, next, "three");
   EXPECT_TRUE(files->flush());
+}
+
+TEST_F(RoomFailuresTest, TheNameOfASnapshotIsForcedBeforeOlderFilesGo) {
+  const auto files = openRecovered({.sync = Sync::kAlways});
+  const StatePoint point = begin(*files);
+  append(*files, "a");
+  EXPECT_TRUE(files->flush()) << "which forces the name of the log";
+  const int before = folder_sync_count;
+  ASSERT_TRUE(files->writeSnapshot(point, viewOf("one")));
+  EXPECT_EQ(folder_sync_count, before + 1);
+}
+
+TEST_F(RoomFailuresTest, ARecordThatWasLostIsSeenToBeMissing) {
+  {
+    const auto files = openRecovered();
+    writeSnapshot(*files, begin(*files), "one");
+    append(*files, "a");
+    files->skipRecord();
+    append(*files, "c");
+    writeSnapshot(*files, begin(*files), "two");
+    append(*files, "d");
+  }
+  const auto whole = allFiles();
+  EXPECT_EQ(summary(recovered()), "2=two | 2: d");
+  setFiles(whole);
+  setContent(kSnapshot2, "damaged");
+  const auto found = recovered();
+  EXPECT_EQ(summary(found), "1=one | 1: a");
+  EXPECT_THAT(found.notes, testing::Contains(HasSubstr("the records 2 to 2 are missing")));
 }
 
 /// Appends 1, 2, 3, ... to the room until it is killed. The content of a snapshot is the number before it. `appended`
@@ -188,8 +228,9 @@ TEST_F(RoomFailuresTest, ALogThatTheDiskRefusesDoesNotKeepTheNextFromBeginning) 
 [[noreturn]] void appendUntilKilled(RoomFiles& files, int last, std::atomic<int>& appended) {
   for (int k = last + 1;; ++k) {
     if (k % 20 == 0 || k == last + 1) {
-      const auto generation = files.beginGeneration();
-      if (!generation || !files.writeSnapshot(*generation, viewOf(std::to_string(k - 1)))) ::_exit(1);
+      const auto point = files.beginGeneration();
+      if (!point || !files.writeSnapshot(*point, viewOf(std::to_string(k - 1))) || !files.removeOldGenerations())
+        ::_exit(1);
     }
     if (!files.append(viewOf(std::to_string(k) + std::string(100, '.')))) ::_exit(1);
     appended = k;
@@ -206,7 +247,7 @@ TEST_F(RoomFailuresTest, AKilledProcessLosesNoRecordThatWasAppended) {
     const pid_t child = ::fork();
     ASSERT_GE(child, 0);
     if (child == 0) {
-      const auto files = RoomFiles::open(room, {.sync = Sync::kNever});
+      const auto files = RoomFiles::open(room, kRoom, {.sync = Sync::kNever});
       if (!files || !(*files)->recover()) ::_exit(1);
       appendUntilKilled(**files, last, appended);
     }

@@ -1,4 +1,6 @@
 #include <atomic>
+#include <mutex>
+#include <optional>
 #include <thread>
 
 #include <gmock/gmock.h>
@@ -44,12 +46,10 @@ TEST_F(RoomFilesTest, ASnapshotThatWasNeverWrittenLeavesTheOlderOneWithBothLogs)
 }
 
 TEST_F(RoomFilesTest, BeforeTheFirstSnapshotTheLogsBeginWithTheNewRoom) {
-  {
+  for (const char* record : {"a", "b"}) {
     const auto files = openRecovered();
     begin(*files);
-    append(*files, "a");
-    begin(*files);
-    append(*files, "b");
+    append(*files, record);
   }
   EXPECT_EQ(summary(recovered()), "0= | 1: a | 2: b");
 }
@@ -58,7 +58,7 @@ TEST_F(RoomFilesTest, ARestartedRoomContinuesWithTheNextGeneration) {
   writeTwoGenerations();
   {
     const auto files = openRecovered();
-    EXPECT_EQ(begin(*files), 3U);
+    EXPECT_EQ(begin(*files).generation, 3U);
     append(*files, "after");
   }
   EXPECT_EQ(summary(recovered()), "2=two | 2: ccc d | 3: after");
@@ -82,15 +82,35 @@ TEST_F(RoomFilesTest, KeepsExactlyTheGenerationsThatItShall) {
 }
 
 TEST_F(RoomFilesTest, KeepsEachLogThatAKeptSnapshotNeeds) {
-  const auto files = openRecovered();
   for (const char* state : {"one", "", "three", "", "", "six"}) {
-    const std::uint64_t generation = begin(*files);
-    append(*files, "r" + std::to_string(generation));
-    if (*state != '\0') writeSnapshot(*files, generation, state);
+    const auto files = openRecovered();  // a restart begins a log, whatever the snapshot does
+    const StatePoint point = begin(*files);
+    append(*files, "r" + std::to_string(point.generation));
+    if (*state != '\0') writeSnapshot(*files, {point.generation, point.next_number + 1}, state);
   }
   setContent("000000000006.snapshot", "damaged");
-  EXPECT_EQ(summary(recovered()), "3=three | 3: r3 | 4: r4 | 5: r5 | 6: r6");
+  EXPECT_EQ(summary(recovered()), "3=three | 3: | 4: r4 | 5: r5 | 6: r6");
   EXPECT_FALSE(fs::exists(room / kLog2));
+}
+
+TEST_F(RoomFilesTest, ASnapshotThatFailedIsTriedAgainInTheSameGeneration) {
+  const auto files = openRecovered();
+  writeSnapshot(*files, begin(*files), "one");
+  append(*files, "a");
+  for (int k = 0; k < 200; ++k) {
+    EXPECT_EQ(begin(*files).generation, 2U) << "its snapshot could not be written so far";
+    append(*files, "b" + std::to_string(k));
+  }
+  const StatePoint point = begin(*files);
+  append(*files, "after");
+  writeSnapshot(*files, point, "two");
+  EXPECT_THAT(names(), ElementsAre(kLog1, kSnapshot1, kLog2, kSnapshot2));
+  EXPECT_EQ(summary(recovered()), "2=two | 2: after") << "the records before it are in it";
+  setContent(kSnapshot2, "damaged");
+  const auto older = recovered();
+  ASSERT_EQ(older.logs.size(), 2U);
+  EXPECT_EQ(older.logs[1].records.size(), 201U) << "the older snapshot needs them all";
+  EXPECT_EQ(begin(*files).generation, 3U);
 }
 
 TEST_F(RoomFilesTest, OnlyItsOwnerMayReadItsFiles) {
@@ -108,7 +128,7 @@ TEST_F(RoomFilesTest, ItsStatusNamesGenerationsAndSizes) {
   EXPECT_EQ(files->status().generation, 1U);
   EXPECT_EQ(files->status().log_bytes, fs::file_size(room / kLog1));
   EXPECT_EQ(files->status().snapshot_generation, 0U);
-  writeSnapshot(*files, 1, "state");
+  writeSnapshot(*files, {1, 2}, "state");
   EXPECT_EQ(files->status().snapshot_generation, 1U);
   EXPECT_EQ(files->status().snapshot_bytes, fs::file_size(room / kSnapshot1));
   const auto again = openRecovered();
@@ -130,7 +150,7 @@ TEST_F(RoomFilesTest, RecordsOfAnImpossibleSizeAreRefused) {
 }
 
 TEST_F(RoomFilesTest, AFullLogAsksForASnapshot) {
-  const auto files = openRecovered({.sync = Sync::kNever, .log_max_bytes = 16 + 2 * (8 + 4)});
+  const auto files = openRecovered({.sync = Sync::kNever, .log_max_bytes = kPoolLogBytes + 2 * (20 + 4)});
   begin(*files);
   append(*files, "four");
   append(*files, "more");
@@ -141,12 +161,17 @@ TEST_F(RoomFilesTest, AFullLogAsksForASnapshot) {
 }
 
 TEST_F(RoomFilesTest, LogsWithoutASnapshotAreBounded) {
-  const auto files = openRecovered();
-  for (std::uint64_t k = 0; k < kLogsWithoutSnapshotMaxCount; ++k) begin(*files);
-  EXPECT_THAT(files->beginGeneration().error().message, HasSubstr("64 logs wait for a snapshot"));
-  append(*files, "in the log that there is");
-  writeSnapshot(*files, kLogsWithoutSnapshotMaxCount, "state");
-  EXPECT_EQ(begin(*files), kLogsWithoutSnapshotMaxCount + 1);
+  const auto files = openRecovered({.sync = Sync::kNever, .log_max_bytes = kPoolLogBytes + 20 + 4});
+  const std::uint64_t most = kLogsWithoutSnapshotMaxCount;
+  for (std::uint64_t k = 1; k <= most; ++k) {
+    EXPECT_EQ(begin(*files).generation, k);
+    append(*files, "four");
+    EXPECT_FALSE(files->append(viewOf("more"))) << "the log is full";
+  }
+  const StatePoint point = begin(*files);
+  EXPECT_EQ(point.generation, most) << "no further log";
+  writeSnapshot(*files, point, "state");
+  EXPECT_EQ(begin(*files).generation, most + 1) << "a snapshot makes place";
 }
 
 TEST_F(RoomFilesTest, CallsInTheWrongOrderAreRefused) {
@@ -155,20 +180,21 @@ TEST_F(RoomFilesTest, CallsInTheWrongOrderAreRefused) {
   EXPECT_EQ(files->append(viewOf("x")).error().code, ErrorCode::kInternal);
   EXPECT_EQ(files->flush().error().code, ErrorCode::kInternal);
   (void)recover(*files);
-  EXPECT_EQ(files->writeSnapshot(1, {}).error().code, ErrorCode::kInternal);
+  EXPECT_EQ(files->writeSnapshot({1, 1}, {}).error().code, ErrorCode::kInternal);
   begin(*files);
-  EXPECT_EQ(files->writeSnapshot(2, {}).error().code, ErrorCode::kInternal);
+  EXPECT_EQ(files->writeSnapshot({2, 1}, {}).error().code, ErrorCode::kInternal);
   EXPECT_EQ(files->recover().error().code, ErrorCode::kInternal);
 }
 
 TEST_F(RoomFilesTest, OptionsOutOfRangeAreRefused) {
-  EXPECT_EQ(RoomFiles::open(room, {.kept_generation_count = 0}).error().code, ErrorCode::kInvalidInput);
-  EXPECT_EQ(RoomFiles::open(room, {.log_max_bytes = kLogMaxBytes + 1}).error().code, ErrorCode::kInvalidInput);
+  EXPECT_EQ(RoomFiles::open(room, kRoom, {.kept_generation_count = 0}).error().code, ErrorCode::kInvalidInput);
+  EXPECT_THAT(RoomFiles::open(room, std::string(256, 'x'), {}).error().message, HasSubstr("256 bytes"));
+  EXPECT_EQ(RoomFiles::open(room, kRoom, {.log_max_bytes = kLogMaxBytes + 1}).error().code, ErrorCode::kInvalidInput);
 }
 
 TEST_F(RoomFilesTest, AFolderThatCannotBeMadeIsNamed) {
   folder.write("file", "");
-  const auto files = RoomFiles::open(folder.path() / "file" / "room", {});
+  const auto files = RoomFiles::open(folder.path() / "file" / "room", kRoom, {});
   ASSERT_FALSE(files);
   EXPECT_EQ(files.error().code, ErrorCode::kUnavailable);
   EXPECT_THAT(files.error().message, HasSubstr("file"));
@@ -182,12 +208,18 @@ TEST_F(RoomFilesTest, LosesNoRecordWhileOtherThreadsWriteSnapshotsAndFlush) {
     {
       const auto files = openRecovered({.sync = sync});
       std::atomic<int> count_before = 0;
-      std::atomic<std::uint64_t> due = begin(*files);
+      std::mutex mutex;
+      std::optional<StatePoint> due = begin(*files);
       std::atomic<bool> ended = false;
       std::thread snapshots([&] {
         while (!ended) {
-          if (const std::uint64_t generation = due.exchange(0))
-            writeSnapshot(*files, generation, std::to_string(count_before));
+          std::unique_lock lock(mutex);
+          if (!due) continue;
+          const StatePoint point = *due;
+          lock.unlock();
+          writeSnapshot(*files, point, std::to_string(count_before));
+          lock.lock();
+          due.reset();
         }
       });
       std::thread flushes([&] {
@@ -198,7 +230,7 @@ TEST_F(RoomFilesTest, LosesNoRecordWhileOtherThreadsWriteSnapshotsAndFlush) {
         }
       });
       for (int k = 0; k < record_count; ++k) {
-        if (k % 50 == 49 && due == 0) {
+        if (const std::lock_guard lock(mutex); k % 50 == 49 && !due) {
           count_before = k;
           due = begin(*files);
         }

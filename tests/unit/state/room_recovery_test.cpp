@@ -1,4 +1,5 @@
 #include <filesystem>
+#include <sstream>
 
 #include <gmock/gmock.h>
 
@@ -20,6 +21,16 @@ using testing::SizeIs;
 using testing::StartsWith;
 
 struct RoomRecoveryTest : StateTest {
+  /// Snapshot 1 and then logs with these records, as restarts make them whose snapshots could not be written.
+  void writeLogs(const std::vector<std::string>& logs) const {
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      const auto files = openRecovered();
+      const StatePoint point = begin(*files);
+      if (k == 0) writeSnapshot(*files, point, "one");
+      std::istringstream words(logs[k]);
+      for (std::string word; words >> word;) append(*files, word);
+    }
+  }
   /// Recovers, goes on with a new generation, and checks that the next recovery finds both. Returns what was found.
   RoomFiles::Recovered recoverAndGoOn() const {
     RoomFiles::Recovered found;
@@ -27,7 +38,7 @@ struct RoomRecoveryTest : StateTest {
     {
       const auto files = open();
       found = recover(*files);
-      next = begin(*files);
+      next = begin(*files).generation;
       append(*files, "new");
     }
     const auto again = recovered();
@@ -50,9 +61,9 @@ TEST_F(RoomRecoveryTest, ALogCutAnywhereGivesItsWholeRecords) {
     setFiles(whole);
     setContent(kLog1, log.substr(0, size));
     std::string expected = "1=one | 1:";
-    std::size_t end = 16;
+    std::size_t end = kPoolLogBytes;
     for (const std::string& record : records) {
-      end += 8 + record.size();
+      end += 20 + record.size();
       if (end <= size) expected += " " + record;
     }
     auto found = recoverAndGoOn();
@@ -103,37 +114,28 @@ TEST_F(RoomRecoveryTest, AFlippedBitNeverGivesAWrongState) {
 TEST_F(RoomRecoveryTest, ADamagedLogIsKeptAsAWhole) {
   writeTwoGenerations();
   std::string damaged = content(kLog2);
-  damaged[16 + 8] = 'x';  // in the first record
+  damaged[kPoolLogBytes + 20] = 'x';  // in the first record
   setContent(kLog2, damaged);
   const auto found = recoverAndGoOn();
   EXPECT_EQ(summary(found), "2=two | 2:");
   EXPECT_EQ(content(kLog2 + ".damaged"), damaged);
   EXPECT_THAT(found.notes, ElementsAre(kLog2 +
-                                       ": record 1 does not match its checksum, at byte 16; its 0 records before "
+                                       ": record 3 does not match its checksum, at byte 36; its 0 records before "
                                        "are used, the whole file is kept as " +
                                        kLog2 + ".damaged"));
 }
 
 TEST_F(RoomRecoveryTest, ATornEndIsCutWithoutACopy) {
   writeTwoGenerations();
-  setContent(kLog2, content(kLog2) + std::string("\x05\0\0\0....ab", 10));
+  setContent(kLog2, content(kLog2) + std::string(21, 'x').substr(0, 10));
   const auto found = recoverAndGoOn();
   EXPECT_EQ(summary(found), "2=two | 2: ccc d");
-  EXPECT_THAT(found.notes, ElementsAre(StartsWith(kLog2 + ": record 3 is not whole, at byte 36")));
+  EXPECT_THAT(found.notes, ElementsAre(StartsWith(kLog2 + ": record 5 is not whole, at byte 80")));
   EXPECT_FALSE(fs::exists(room / (kLog2 + ".damaged")));
 }
 
 TEST_F(RoomRecoveryTest, LogsAfterADamagedOneAreSetAside) {
-  {
-    const auto files = openRecovered();
-    writeSnapshot(*files, begin(*files), "one");
-    append(*files, "a");
-    append(*files, "b");
-    begin(*files);
-    append(*files, "c");
-    begin(*files);
-    append(*files, "d");
-  }
+  writeLogs({"a b", "c", "d"});
   const std::string log = content(kLog1), later = content(kLog2);
   setContent(kLog1, log.substr(0, log.size() - 1));
   const auto found = recoverAndGoOn();
@@ -144,14 +146,7 @@ TEST_F(RoomRecoveryTest, LogsAfterADamagedOneAreSetAside) {
 }
 
 TEST_F(RoomRecoveryTest, AMissingLogEndsWhatIsUsed) {
-  {
-    const auto files = openRecovered();
-    writeSnapshot(*files, begin(*files), "one");
-    for (const char* record : {"a", "b", "c"}) {
-      append(*files, record);
-      begin(*files);
-    }
-  }
+  writeLogs({"a", "b", "c"});
   const auto whole = allFiles();
   fs::remove(room / kLog2);
   EXPECT_EQ(summary(recoverAndGoOn()), "1=one | 1: a");
@@ -212,12 +207,130 @@ TEST_F(RoomRecoveryTest, FoldersAndLinksInThePlaceOfItsFilesAreSetAside) {
 TEST_F(RoomRecoveryTest, FilesOfANewerVersionAreKeptForIt) {
   writeTwoGenerations();
   std::string newer = content(kSnapshot2);
-  newer[7] = '2';
+  newer[7] = '3';
   setContent(kSnapshot2, newer);
   const auto found = recoverAndGoOn();
   EXPECT_EQ(summary(found), "1=one | 1: a bb | 2: ccc d");
   EXPECT_THAT(found.notes, ElementsAre(AllOf(HasSubstr("a newer version"), HasSubstr(kSnapshot2 + ".damaged"))));
   EXPECT_EQ(content(kSnapshot2 + ".damaged"), newer);
+}
+
+/// Returns the records of a log file, each with its header.
+std::vector<std::string> recordsOf(const std::string& file) {
+  std::vector<std::string> out;
+  const ParsedLog log = parseLog(viewOf(file), {kRoom, 1});
+  for (const core::ByteView record : log.records) {
+    const auto at = static_cast<std::size_t>(reinterpret_cast<const char*>(record.data()) - file.data());
+    out.push_back(file.substr(at - kRecordHeaderBytes, kRecordHeaderBytes + record.size()));
+  }
+  return out;
+}
+
+TEST_F(RoomRecoveryTest, RecordsThatAreDoubledDroppedOrExchangedEndWhatIsUsed) {
+  writeLogs({"a b c"});
+  const std::string log = content(kLog1), start = log.substr(0, kPoolLogBytes);
+  const auto record = recordsOf(log);
+  const auto whole = allFiles();
+  const auto recoverWith = [&](const std::string& records) {
+    setFiles(whole);
+    setContent(kLog1, start + records);
+    const auto found = recoverAndGoOn();
+    EXPECT_THAT(found.notes, SizeIs(1));
+    EXPECT_EQ(content(kLog1 + ".damaged"), start + records) << "all of it is kept";
+    return summary(found);
+  };
+  EXPECT_EQ(recoverWith(record[0] + record[0] + record[1] + record[2]), "1=one | 1: a");
+  EXPECT_EQ(recoverWith(record[0] + record[2]), "1=one | 1: a");
+  EXPECT_EQ(recoverWith(record[0] + record[2] + record[1]), "1=one | 1: a");
+  EXPECT_EQ(recoverWith(record[1] + record[2]), "1=one | 1:");
+}
+
+TEST_F(RoomRecoveryTest, AnOlderLogCutBetweenTwoRecordsIsSeenAndCounted) {
+  writeLogs({"a b c", "d e"});
+  const std::string log = content(kLog1), later = content(kLog2);
+  setContent(kLog1, log.substr(0, log.size() - 2 * (kRecordHeaderBytes + 1)));
+  const auto found = recoverAndGoOn();
+  EXPECT_EQ(summary(found), "1=one | 1: a");
+  EXPECT_THAT(found.notes, ElementsAre(AllOf(HasSubstr(kLog2), HasSubstr("the records 2 to 3 before it are missing"),
+                                             HasSubstr("set aside"))));
+  EXPECT_EQ(content(kLog2 + ".damaged"), later);
+}
+
+TEST_F(RoomRecoveryTest, LogsThatAreNotUsedSayHowMuchTheyHold) {
+  writeLogs({"a", "b c", "d e f"});
+  fs::remove(room / kLog2);
+  EXPECT_THAT(recoverAndGoOn().notes, ElementsAre(AllOf(HasSubstr(kLog3), HasSubstr("its 3 records are not used"))));
+}
+
+TEST_F(RoomRecoveryTest, FilesOfAnotherRoomAreNotUsed) {
+  writeTwoGenerations();
+  const auto other = folder.path() / "other";
+  {
+    auto files = RoomFiles::open(other, "other", {.sync = Sync::kNever});
+    ASSERT_TRUE(files && (*files)->recover());
+    for (const char* state : {"theirs", "theirs as well"}) {
+      writeSnapshot(**files, begin(**files), state);
+      append(**files, "their record");
+    }
+  }
+  const auto whole = allFiles();
+  setContent(kSnapshot2, contentOf(other / kSnapshot2));
+  auto found = recoverAndGoOn();
+  EXPECT_EQ(summary(found), "1=one | 1: a bb | 2: ccc d") << "the snapshot before, with both logs";
+  EXPECT_THAT(found.notes, ElementsAre(AllOf(HasSubstr("it is of the room 'other'"), HasSubstr("set aside"))));
+
+  setFiles(whole);
+  setContent(kLog2, contentOf(other / kLog2));
+  EXPECT_EQ(summary(recoverAndGoOn()), "2=two | 2:");
+
+  fs::remove_all(room);
+  fs::copy(other, room);
+  found = recoverAndGoOn();
+  EXPECT_EQ(summary(found), "0=") << "a folder under another name";
+  EXPECT_THAT(found.notes, testing::Each(HasSubstr("it is of the room 'other'")));
+  EXPECT_EQ(content(kSnapshot1 + ".damaged"), contentOf(other / kSnapshot1)) << "it can be used under its old name";
+}
+
+TEST_F(RoomRecoveryTest, ARefusedSnapshotGivesTheOneBeforeAndStaysUntilTheRoomGoesOn) {
+  writeTwoGenerations();
+  const auto before = allFiles();
+  {
+    const auto files = open();
+    EXPECT_EQ(summary(recover(*files)), "2=two | 2: ccc d");
+    const auto older = files->recover(2);
+    ASSERT_TRUE(older);
+    EXPECT_EQ(summary(*older), "1=one | 1: a bb | 2: ccc d");
+    const auto none = files->recover(1);
+    ASSERT_TRUE(none);
+    EXPECT_EQ(none->generation, 0U);
+  }
+  EXPECT_EQ(allFiles(), before) << "nothing is changed before it is known what can be used";
+  {
+    const auto files = open();
+    ASSERT_TRUE(files->recover(2));
+    writeSnapshot(*files, begin(*files), "three");
+  }
+  EXPECT_EQ(summary(recovered()), "3=three | 3:");
+  EXPECT_TRUE(fs::exists(room / (kSnapshot2 + ".damaged")));
+}
+
+TEST_F(RoomRecoveryTest, FilesOfTheVersionBeforeGoOnInThisOne) {
+  const auto old = [](const char* magic, char generation, const std::string& rest) {
+    return magic + std::string(1, generation) + std::string(7, '\0') + rest;
+  };
+  const std::string state = std::string("\x09\0\0\0\0\0\0\0", 8) + "\x83\x92\x06\xE3" + "123456789";
+  const std::string record = std::string("\x09\0\0\0", 4) + "\x83\x92\x06\xE3" + "123456789";
+  const std::vector<std::pair<std::string, std::string>> files{{kLog1, old("spinlog1", 1, record)},
+                                                               {kSnapshot1, old("spinsnp1", 1, state)},
+                                                               {kLog2, old("spinlog1", 2, record + record)},
+                                                               {kSnapshot2, old("spinsnp1", 2, state)}};
+  setFiles(files);
+  const auto found = recoverAndGoOn();
+  EXPECT_EQ(summary(found), "2=123456789 | 2: 123456789 123456789");
+  EXPECT_THAT(found.notes, IsEmpty());
+  // The newest one of that version is lost after all, when this version has gone on from it.
+  fs::remove(room / kSnapshot2);
+  EXPECT_EQ(summary(recovered()), "1=123456789 | 1: 123456789 | 2: 123456789 123456789 | 3: new");
 }
 
 TEST_F(RoomRecoveryTest, WhatIsSetAsideNeverReplacesWhatWasSetAsideBefore) {
@@ -249,14 +362,14 @@ TEST_F(RoomRecoveryTest, WhatAnInterruptedWriteLeftIsRemoved) {
   writeTwoGenerations();
   const auto before = names();
   setContent("000000000003.log.tmp", "spin");
-  setContent("000000000003.snapshot.tmp", "spinsnp1...");
+  setContent("000000000003.snapshot.tmp", "spinsnp2...");
   EXPECT_THAT(recovered().notes, IsEmpty());
   EXPECT_EQ(names(), before);
 }
 
 TEST_F(RoomRecoveryTest, FilesThatAreTooLongAreNotRead) {
   writeTwoGenerations();
-  fs::resize_file(room / kSnapshot2, kSnapshotMaxBytes + 29);
+  fs::resize_file(room / kSnapshot2, kSnapshotMaxBytes + 400);
   fs::resize_file(room / kLog2, kLogMaxBytes + 1);
   const auto found = recoverAndGoOn();
   EXPECT_EQ(summary(found), "1=one | 1: a bb");

@@ -12,6 +12,7 @@
 
 #include <spindrift/state/room_files.h>
 
+#include "file_format.h"
 #include "temporary_folder.h"
 
 namespace spindrift::state {
@@ -34,13 +35,17 @@ inline std::string summary(const RoomFiles::Recovered& found) {
   return text;
 }
 
+inline constexpr const char* kRoom = "pool";
+/// Sizes of the headers in the files of that room.
+inline constexpr std::size_t kPoolLogBytes = kStartBytes + 4, kPoolSnapshotBytes = kSnapshotHeaderBytes + 4;
+
 struct StateTest : testing::Test {
   test::TemporaryFolder folder;
   const std::filesystem::path room = folder.path() / "room";
 
   /// The room's files before recover().
   std::unique_ptr<RoomFiles> open(RoomFiles::Options options = {.sync = Sync::kNever}) const {
-    auto files = RoomFiles::open(room, options);
+    auto files = RoomFiles::open(room, kRoom, options);
     EXPECT_TRUE(files) << files.error().message;
     return std::move(*files);
   }
@@ -57,18 +62,20 @@ struct StateTest : testing::Test {
   /// What a restarted server finds.
   RoomFiles::Recovered recovered() const { return recover(*open()); }
 
-  static std::uint64_t begin(RoomFiles& files) {
-    const auto generation = files.beginGeneration();
-    EXPECT_TRUE(generation) << generation.error().message;
-    return generation ? *generation : 0;
+  static StatePoint begin(RoomFiles& files) {
+    const auto point = files.beginGeneration();
+    EXPECT_TRUE(point) << point.error().message;
+    return point ? *point : StatePoint();
   }
   static void append(RoomFiles& files, std::string_view record) {
     const auto done = files.append(viewOf(record));
     EXPECT_TRUE(done) << done.error().message;
   }
-  static void writeSnapshot(RoomFiles& files, std::uint64_t generation, std::string_view payload) {
-    const auto done = files.writeSnapshot(generation, viewOf(payload));
+  static void writeSnapshot(RoomFiles& files, const StatePoint& point, std::string_view payload) {
+    const auto done = files.writeSnapshot(point, viewOf(payload));
     EXPECT_TRUE(done) << done.error().message;
+    const auto removed = files.removeOldGenerations();
+    EXPECT_TRUE(removed) << removed.error().message;
   }
   /// Generations 1 and 2, each with a snapshot: "1=one | 1: a bb" and "2=two | 2: ccc d".
   void writeTwoGenerations() const {
@@ -87,8 +94,9 @@ struct StateTest : testing::Test {
     std::ranges::sort(out);
     return out;
   }
-  std::string content(const std::string& name) const {
-    std::ifstream in(room / name, std::ios::binary);
+  std::string content(const std::string& name) const { return contentOf(room / name); }
+  static std::string contentOf(const std::filesystem::path& file) {
+    std::ifstream in(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(in), {}};
   }
   void setContent(const std::string& name, std::string_view content) const {

@@ -18,7 +18,6 @@ inline constexpr std::size_t kTokenMinBytes = 16;
 inline constexpr std::size_t kTokenMaxBytes = 8 * 1024;
 /// Number of rooms that one token can name.
 inline constexpr std::size_t kTokenRoomMaxCount = 64;
-inline constexpr std::size_t kRoomNameMaxBytes = 32;
 inline constexpr std::size_t kSubjectMaxBytes = 128;
 inline constexpr std::size_t kNameMaxBytes = 256;  ///< of a JWT; the room cuts names to its own length
 

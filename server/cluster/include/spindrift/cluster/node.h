@@ -20,7 +20,7 @@ struct NodeOptions {
   std::string nats_url;
   std::string ca_file;                ///< certificates that sign the NATS server's; empty: the system's
   std::string cluster = "spindrift";  ///< letters, digits, '_', '-': begins all subjects
-  std::string name;                   ///< of this process, unique in the cluster, as isRoomName()
+  std::string name;                   ///< of this process, unique in the cluster, as core::isRoomName()
   bool runs_rooms = false;            ///< a server, not an edge
   std::size_t room_max_count = 0;     ///< of a server
   /// Another process has the name, which was cut off when this one started, or the other way round: this one has to

@@ -31,7 +31,7 @@ class CommandLogWriter {
   static core::Result<std::unique_ptr<CommandLogWriter>> create(const std::filesystem::path& folder,
                                                                 const v1::RecordHeader& header);
 
-  void write(const v1::Record& record);
+  void write(v1::Record record);
   /// Returns true when nothing more is written.
   [[nodiscard]] bool ended() const { return ended_; }
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
@@ -43,6 +43,7 @@ class CommandLogWriter {
   std::filesystem::path file_;
   std::ofstream out_;
   std::uint64_t size_bytes_ = 0;
+  std::uint64_t record_count_ = 0;
   std::uint32_t hash_interval_ticks_ = 0;
   bool ended_ = false;
 };
@@ -64,6 +65,7 @@ class CommandLogReader {
 
   std::ifstream in_;
   std::uint64_t offset_bytes_ = 0;
+  std::uint64_t record_count_ = 0;
   v1::RecordHeader header_;
   std::optional<std::string> truncation_;
 };

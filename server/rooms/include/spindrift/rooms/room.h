@@ -38,10 +38,7 @@
 
 namespace spindrift::rooms {
 
-/// Returns whether the name has 1 to 32 letters, digits, '_' or '-'.
-bool isRoomName(const std::string& name);
-
-/// Name in the URL (see isRoomName()), and the checked scene with its defaults filled in.
+/// Name in the URL (see core::isRoomName()), and the checked scene with its defaults filled in.
 struct RoomSetup {
   std::string name;
   v1::Scene scene{};
@@ -57,8 +54,10 @@ struct RoomRules {
   std::filesystem::path record_folder;      ///< folder for logs; empty: no logs
   std::uint32_t hash_interval_ticks = 60;   ///< interval of the state hashes in logs
   std::shared_ptr<StateStore> states;       ///< where the rooms are kept on disk; null: nowhere
-  bool opens_kept_rooms = true;             ///< at the start; false where a cluster decides which server runs a room
-  bool adapts = false;                      ///< lowers a room's fidelity where the machine cannot keep up
+  /// How long the start and the end wait for the disk: for the first and for the last snapshots of all rooms.
+  std::chrono::milliseconds disk_patience{5'000};
+  bool opens_kept_rooms = true;  ///< at the start; false where a cluster decides which server runs a room
+  bool adapts = false;           ///< lowers a room's fidelity where the machine cannot keep up
 };
 
 /// State of a room for other threads: immutable, replaced when it changes.
@@ -104,8 +103,13 @@ class Room {
                                                    const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
                                                    RoomPlace place, v1::RoomAccess access);
   /// Repeats what happened after the snapshot, at least a tick and then until the deadline; with TimePoint::max() to
-  /// the end. Returns whether the room is where it was. Errors: those of create(); the room is of no use then.
+  /// the end. Returns whether the room is where it was; a new snapshot of it is then being written. Errors: those of
+  /// create(); the room is of no use then.
   core::Result<bool> restoreUntil(TimePoint deadline);
+  /// Waits until the deadline for the snapshot that restoreUntil() has begun. Returns whether the room can run: the
+  /// snapshot is on the disk, or the disk has had RoomRules::disk_patience for it. Errors: those of create(); the room
+  /// is of no use then.
+  core::Result<bool> isOnDisk(TimePoint deadline);
 
   // Any thread.
   [[nodiscard]] const std::string& name() const { return name_; }
@@ -148,9 +152,10 @@ class Room {
   [[nodiscard]] std::uint64_t stateHash() { return water_->sim().stateHash(); }
   /// Rejects the commands that still wait.
   void abandonCommands();
-  /// Writes a snapshot and waits for it: at the start, after a device failed, at the end. Errors: those of the files;
-  /// kUnavailable when the device does not answer.
-  core::Result<void> saveAndWait();
+  /// Writes a snapshot and waits for it until the deadline. Errors: those of the files; kUnavailable when the device
+  /// does not answer, or the deadline passes: a snapshot that has begun is written nevertheless, and the log holds the
+  /// rest.
+  core::Result<void> saveUntil(TimePoint deadline);
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() {
     water_.reset();
@@ -257,6 +262,11 @@ class Room {
   void flushKept();
   /// Writes a snapshot when one is due, and how far the room has come.
   void keepState(TimePoint now);
+  /// Writes to the log how far the room has come, unless it stands still.
+  void keepTick();
+  /// Begins to write a snapshot. Error: the device does not answer.
+  core::Result<void> save();
+  [[nodiscard]] core::Error cannotBeWritten(const core::Error& why) const;
   /// The state between two ticks; nullopt when the device does not answer.
   std::optional<v1::KeptState> stateNow();
   /// The way of the water, pause, speed and steps from a snapshot to where the room was.
@@ -360,6 +370,7 @@ class Room {
   std::uint64_t kept_state_id_ = 0;   ///< of the last record that the room runs
   std::uint64_t saved_state_id_ = 0;  ///< of the last snapshot
   TimePoint next_running_{};
+  TimePoint first_snapshot_until_{};
   CommandQueue commands_;
   WorkBudget heavy_budget_;
   std::vector<Answer> answers_;    ///< since the last announce()

@@ -10,6 +10,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +19,7 @@
 #include <spindrift/gpu/device.h>
 #include <spindrift/rooms/clock_watch.h>
 #include <spindrift/rooms/room.h>
+#include <spindrift/rooms/room_opener.h>
 #include <spindrift/rooms/water_builder.h>
 
 namespace spindrift::rooms {
@@ -25,7 +27,7 @@ namespace spindrift::rooms {
 class SimulationThread {
  public:
   /// Makes the rooms and waits for them, with RoomRules::states also those that were kept on disk. They call `outlets`
-  /// only after run(). Errors: those of the device and the rooms.
+  /// only after run(). Errors: those of the device and the rooms; kInvalidInput for more rooms than `max_room_count`.
   static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
                                                                std::vector<RoomSetup> setups, RoomRules rules,
                                                                std::size_t max_room_count, RoomOutlets& outlets);
@@ -77,18 +79,14 @@ class SimulationThread {
   /// Runs on the thread between two rounds; called with false when it will not be carried out.
   using Change = std::function<void(bool runs)>;
 
-  /// A room whose water is being built, and which then goes from its snapshot to where it was.
   struct Opening {
-    std::string name;
-    RoomPlace place;
-    v1::RoomAccess access;
-    std::future<WaterBuilder::Built> water;
-    std::shared_ptr<Room> room;  ///< null while the water is built
+    RoomOpener::Opening room;
     Done done;
   };
 
   explicit SimulationThread(RoomOutlets& outlets) : outlets_(outlets) {}
   core::Result<void> build(std::vector<RoomSetup> setups);
+  [[nodiscard]] core::Error tooManyRooms(const std::set<std::string>& names) const;
   void loop();
   /// Ends the wait between two rounds. Any thread.
   void wake();
@@ -98,14 +96,8 @@ class SimulationThread {
   /// Goes on with the openings, between the ticks of the rooms that run.
   void advanceOpenings();
   /// Returns whether the room can run.
-  core::Result<bool> advance(Opening& opening);
-  core::Result<std::shared_ptr<Room>> begin(std::string name, WaterBuilder::Built water, RoomPlace place,
-                                            v1::RoomAccess access);
+  core::Result<bool> advance(RoomOpener::Opening& opening);
   void add(std::shared_ptr<Room> room);
-  /// Builds a room where it was kept on disk, or else as `setup` says; without a setup only where it was kept.
-  core::Result<void> buildRoom(const std::string& name, std::optional<RoomSetup> setup);
-  core::Result<void> buildRoom(const std::string& name, v1::Scene scene, RoomPlace place, v1::RoomAccess access);
-  core::Result<RoomPlace> placeOf(const std::string& name) const;
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
   void summarise(const Room& room);
@@ -118,7 +110,8 @@ class SimulationThread {
   std::condition_variable wake_;
   bool is_woken_ = false;  ///< since the last round: a room may be due, or the builder has finished a piece of work
   std::unique_ptr<WaterBuilder> builder_;
-  std::vector<Opening> openings_;  ///< used by the thread only
+  std::unique_ptr<RoomOpener> opener_;  ///< used by the thread only
+  std::vector<Opening> openings_;       ///< used by the thread only
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;  ///< guarded by rooms_mutex_

@@ -46,23 +46,25 @@ class StateKeeper {
   /// Call before the senders of appended commands get their answers: with Sync::kAlways, forces the log to the disk. A
   /// failure opens a gap().
   core::Result<void> flush();
-  /// Why the log does not say everything, and what to do; nullopt if it does. The next snapshot closes the gap.
+  /// The log does not say what happened just now. A snapshot of a later state closes the gap.
+  void openGap(const std::string& why);
+  /// Why the log does not say everything, and what to do; nullopt if it does.
   [[nodiscard]] std::optional<std::string> gap() const;
 
-  /// Returns whether a snapshot is due now: the interval has passed, somebody asked, or a write failed. Never while one
-  /// is being written.
-  [[nodiscard]] bool isDue(TimePoint now) const;
-  /// Returns whether nothing was appended since the newest snapshot, and nobody asked for another one.
-  [[nodiscard]] bool isUpToDate() const { return newest_.state && newest_.records.empty() && !is_asked_; }
+  /// Returns whether a snapshot is due now: somebody asked; one second has passed since the last one failed or a gap
+  /// opened; or the interval has passed and there is something new, in the log or, `has_water_changed`, in the water.
+  /// Never while one is being written.
+  [[nodiscard]] bool isDue(TimePoint now, bool has_water_changed) const;
   /// Any thread. A snapshot as soon as possible.
   void ask() { is_asked_ = true; }
-  /// Begins a new log and writes the snapshot beside the room. `state` is of this moment; copying it took `copy_s`.
+  /// Writes a snapshot beside the room, and begins a new log where one is needed. `state` is of this moment; copying it
+  /// took `copy_s`.
   void save(v1::KeptState state, TimePoint now, double copy_s);
-  /// The same, and waits for it.
-  core::Result<void> saveAndWait(v1::KeptState state);
+  /// Returns how the last save() ended; nullopt if it is being written still at the deadline.
+  [[nodiscard]] std::optional<core::Result<void>> outcome(TimePoint deadline) const;
 
   /// Waits for a snapshot that is being written.
-  void finish();
+  void finish() const;
   /// What a restart would find; nullopt if more happened since than this remembers, or there is a gap.
   [[nodiscard]] std::optional<KeptRoom> newest() const;
 
@@ -80,10 +82,6 @@ class StateKeeper {
  private:
   /// Shared with the writer, whose work may end after this.
   struct Shared;
-
-  std::uint64_t begin(TimePoint now);
-  void remember(v1::KeptState state);
-  void openGap(const core::Error& error);
 
   const std::string room_;
   const std::chrono::milliseconds interval_;

@@ -28,6 +28,7 @@ struct StateOptions {
 /// A room's place on disk.
 struct RoomPlace {
   std::optional<KeptRoom> kept;         ///< nullopt: nothing usable was there
+  std::uint64_t generation = 0;         ///< of the snapshot in `kept`
   std::unique_ptr<StateKeeper> keeper;  ///< null: the state is not kept
 };
 
@@ -39,15 +40,19 @@ class StateStore {
   StateStore(const StateStore&) = delete;
   StateStore& operator=(const StateStore&) = delete;
 
-  /// Returns the names of the rooms that have files, sorted.
+  /// Returns the names of the rooms that have files, sorted. Folders whose names no room can have are none.
   [[nodiscard]] core::Result<std::vector<std::string>> rooms() const;
-  /// Reads what there is of a room and logs what cannot be used. One place per room at a time. Error kUnavailable when
-  /// another server runs the room, in a shared folder.
-  core::Result<RoomPlace> place(const std::string& room);
-  /// Moves the files of a room that cannot be used out of the way; returns where to.
+  /// Reads what there is of a room and logs what cannot be used: from the newest snapshot that is whole and of this
+  /// room, and older than generation `before`, which a caller gives that could not go on from that one. If there are
+  /// snapshots and none can be used, all files of the room are moved out of the way. One place per room at a time.
+  /// Error kUnavailable when another server runs the room, in a shared folder.
+  core::Result<RoomPlace> place(const std::string& room, std::uint64_t before = state::RoomFiles::kNewest);
+  /// Moves the files of a room out of the way; returns where to.
   core::Result<std::filesystem::path> setAside(const std::string& room) const;
   /// Removes the files of a closed room.
   core::Result<void> remove(const std::string& room) const;
+  /// Removes what a room leaves that was not opened: a folder with nothing but logs.
+  core::Result<void> removeUnused(const std::string& room) const;
   [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
 
  private:

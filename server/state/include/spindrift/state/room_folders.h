@@ -9,12 +9,15 @@
 
 namespace spindrift::state {
 
-/// Returns the folder of a room, which need not exist. kInvalidInput for a name that is empty, begins with a dot or
-/// contains a slash or a zero byte.
+/// Returns the folder of a room, which need not exist. kInvalidInput for what is no name of a room (core::isRoomName).
 core::Result<std::filesystem::path> roomFolder(const std::filesystem::path& folder, const std::string& name);
 
-/// Returns the names of the rooms that have a folder, sorted.
-core::Result<std::vector<std::string>> listRooms(const std::filesystem::path& folder);
+/// The folders in FOLDER/rooms, sorted; those that begin with a dot are this program's own.
+struct RoomList {
+  std::vector<std::string> names;          ///< of rooms
+  std::vector<std::string> refused_names;  ///< that no room can have: any bytes
+};
+core::Result<RoomList> listRooms(const std::filesystem::path& folder);
 
 /// Moves the folder of a room whose files cannot be used to FOLDER/aside/NAME, NAME.2 and so on; returns the new place.
 core::Result<std::filesystem::path> setRoomAside(const std::filesystem::path& folder, const std::string& name);
@@ -22,6 +25,10 @@ core::Result<std::filesystem::path> setRoomAside(const std::filesystem::path& fo
 /// Removes the files of a closed room; no error if it has none. The folder is renamed first, so that a room is there as
 /// a whole or not at all.
 core::Result<void> removeRoom(const std::filesystem::path& folder, const std::string& name);
+
+/// Returns whether the room's folder holds more than logs: a room without a snapshot cannot go on, and has not been
+/// open. No error if it has none.
+core::Result<bool> hasState(const std::filesystem::path& folder, const std::string& name);
 
 /// Removes what is left of rooms whose removal was interrupted. Call it at the start, while the FolderLock is held.
 core::Result<void> finishRemovals(const std::filesystem::path& folder);
