@@ -154,7 +154,7 @@ TEST_F(Check, PrintsSidesSolverBoatsAndObstacles) {
   const Outcome outcome = runProgram({"check", file});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   for (const char* word :
-       {"sides      -x absorbs, +x reflects, -z periodic, +z periodic, sponge of 3 m", "open side  -x",
+       {"sides      -x absorbs, +x reflects, -z periodic, +z periodic, matched layer of 3 m", "open side  -x",
         "steepening 0.5", "weakly compressible, Tait's equation of state, conserving pressure force, cohesion",
         "obstacles  1", "beach      at +x, 4 m wide, up to a depth of 0.25 m",
         "maker      at +x: solitary wave of 0.1 m, from 2 s on", "boats      1 of at most 8", "draught 0.25 m",

@@ -67,8 +67,7 @@ TEST(EmptyCommands, TakeTheDefaultsOfTheProtoWhereTheSceneHasRoomForThem) {
   for (v1::Command* command : {&splash, &wave, &boat, &speed, &step}) EXPECT_FALSE(send(*command, wide));
   EXPECT_EQ(splash.splash().radius_m(), core::Splash{}.radius_m);
   EXPECT_EQ(splash.splash().depth_m(), core::Splash{}.depth_m);
-  EXPECT_EQ(scene::toCore(wave.breaking_wave()).side, core::BreakingWave{}.side);
-  EXPECT_NE(wave.breaking_wave().side(), v1::SIDE_UNSPECIFIED);
+  EXPECT_FALSE(wave.breaking_wave().has_side()) << "left to the water: its open side";
   EXPECT_EQ(wave.breaking_wave().amplitude_m(), core::BreakingWave{}.amplitude_m);
   EXPECT_EQ(boat.spawn_boat().boat().length_m(), core::Boat{}.length_m);
   EXPECT_EQ(boat.spawn_boat().boat().x_m(), 0.0);
