@@ -126,7 +126,8 @@ TEST_F(Serve, NamesAnInvalidDevice) {
 TEST_F(Serve, WithoutAnyDeviceSaysWhatToInstall) {
   const Outcome probe = runProgram({"info"}, withoutDevices());
   if (probe.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
-  expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3, {"no usable EGL device", "__EGL_VENDOR_LIBRARY_DIRS"});
+  expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3,
+                     {"no usable EGL device", "__EGL_VENDOR_LIBRARY_DIRS"});
 }
 
 TEST_F(Serve, NamesAMissingScene) {

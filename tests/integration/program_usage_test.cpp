@@ -233,7 +233,8 @@ TEST_F(Info, JsonGoesToAFileBesideTheText) {
 TEST_F(Info, NamesAJsonFileThatCannotBeWritten) {
   const Outcome outcome = runProgram({"info", "--json", "/nonexistent/info.json"});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("--json: Value '/nonexistent/info.json' cannot be written: there is no folder /nonexistent"));
+  EXPECT_THAT(outcome.err,
+              HasSubstr("--json: Value '/nonexistent/info.json' cannot be written: there is no folder /nonexistent"));
 }
 
 TEST_F(Info, WithoutADeviceIsStillPrintedAndEndsWithThree) {

@@ -287,10 +287,9 @@ class Server {
   virtual void drain(std::chrono::seconds retry_after) = 0;
   /// With TLS: reads certificate and key again, in the background. Thread-safe.
   virtual void reloadCertificate() = 0;
-  /// Stops accepting, answers waiting requests with 503, closes every session with 1001, waits at most close_timeout + 1
-  /// s, closes the remaining sockets
-  /// and joins the threads. sessionClosed has been called for every open session when it returns. Idempotent; not from
-  /// an I/O thread.
+  /// Stops accepting, answers waiting requests with 503, closes every session with 1001, waits at most close_timeout +
+  /// 1 s, closes the remaining sockets and joins the threads. sessionClosed has been called for every open session when
+  /// it returns. Idempotent; not from an I/O thread.
   virtual void stop() = 0;
 };
 
