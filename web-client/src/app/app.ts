@@ -176,7 +176,10 @@ export class App {
         this.tags.setBoats(boats);
       },
       draining: ({ draining }) => this.toast.show(draining.goTo === "" ? "the server restarts, reconnecting" : "moving to another server, reconnecting", "warn"),
-      roomEvent: ({ event, message }) => this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good"),
+      roomEvent: ({ event, message }) => {
+        if (event === "reset" && this.entered?.repeats) return;
+        this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good");
+      },
       clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
       stats: ({ stats, supersededCount }) => {
         this.link = stats;

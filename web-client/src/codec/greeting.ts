@@ -93,6 +93,8 @@ export interface GreetingInfo {
   beaches: BeachInfo[];
   /** The scene has a bed: the ground does not follow from depth and beaches alone. */
   hasBed: boolean;
+  /** The scene starts again by itself. */
+  repeats: boolean;
   /** The ground of such a scene, once it has been asked for. */
   ground?: GroundGrid;
   boats: BoatDetail[];
@@ -181,6 +183,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
       hasBed: scene?.wave !== undefined && scene.bed !== undefined,
+      repeats: (scene?.restartAfterS ?? 0) > 0,
       boats,
       scenes: [...greeting.scenes],
       parameters: greeting.parameters
