@@ -82,9 +82,9 @@ std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double 
   return out;
 }
 
-/// DispersionLevel::spread of grid k, a coarse one. Sides of the water count for nothing: a wave along a channel must be
-/// equally fast in all of its width. Cells that are in part beyond a side count along each axis by itself. Cells beside
-/// faces that walls or ground close have none: the fitted resistances there stand for the flow as it is.
+/// DispersionLevel::spread of grid k, a coarse one. Sides of the water count for nothing: a wave along a channel must
+/// be equally fast in all of its width. Cells that are in part beyond a side count along each axis by itself. Cells
+/// beside faces that walls or ground close have none: the fitted resistances there stand for the flow as it is.
 std::vector<Four> layOutSpread(const DispersionLevel& level, const DispersionGrid& grid, std::size_t k,
                                const WaveLayout& layout) {
   constexpr double kNone = std::numeric_limits<double>::infinity();

@@ -240,7 +240,8 @@ Motion coarser(const DispersionGrid& fine, const DispersionGrid& coarse, const C
 
 /// Whether a face is at least partly closed by something else than a side of the water.
 bool isObstructed(const DispersionGrid& grid, std::size_t cell, int axis) {
-  return !grid.isAtSide(cell, axis) && grid.open[cell][static_cast<std::size_t>(axis)] < grid.shareInside(cell, 1 - axis);
+  return !grid.isAtSide(cell, axis) &&
+         grid.open[cell][static_cast<std::size_t>(axis)] < grid.shareInside(cell, 1 - axis);
 }
 
 /// Cells at an obstructed face, and those beside them along it.

@@ -284,7 +284,9 @@ DispersionGrid::DispersionGrid(CellCounts counts, std::array<double, 2> water)
 
 Coarsened coarsen(const DispersionGrid& fine, CellCounts counts) {
   Coarsened out{DispersionGrid(counts, {fine.extent[0] / 2, fine.extent[1] / 2}),
-                findOwners(fine, static_cast<int>(counts.x)), {}, {}};
+                findOwners(fine, static_cast<int>(counts.x)),
+                {},
+                {}};
   out.from_coarse_x.assign(fine.wet.size(), Four{});
   out.from_coarse_z.assign(fine.wet.size(), Four{});
   coverFaces(fine, out);
