@@ -83,17 +83,18 @@ std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double 
 }
 
 /// DispersionLevel::spread of grid k, a coarse one. Sides of the water count for nothing: a wave along a channel must
-/// be equally fast in all of its width. Cells that are in part beyond a side count along each axis by itself. Cells
-/// beside faces that walls or ground close have none: the fitted resistances there stand for the flow as it is.
+/// be equally fast in all of its width. Cells that are in part beyond a side count along each axis by itself. Where
+/// walls or ground close faces within the water, cells beside any closed face have none: the fitted resistances there
+/// stand for the flow as it is, and with a spread at the sides the slow modes of such basins are less accurate.
 std::vector<Four> layOutSpread(const DispersionLevel& level, const DispersionGrid& grid, std::size_t k,
-                               const WaveLayout& layout) {
+                               const WaveLayout& layout, bool has_walls) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const std::array is_periodic{layout.is_periodic_x, layout.is_periodic_z};
   std::vector<Four> out(level.stiffness.size());
   const auto massOf = [&](std::size_t cell, int axis) {
     const auto a = static_cast<std::size_t>(axis);
     const double mass = level.stiffness[cell][a];
-    return mass == 0.0 && grid.isAtSide(cell, axis) && !is_periodic[a] ? kNone : mass;
+    return !has_walls && mass == 0.0 && grid.isAtSide(cell, axis) && !is_periodic[a] ? kNone : mass;
   };
   for (int z = 0; z < grid.nz; ++z) {
     for (int x = 0; x < grid.nx; ++x) {
@@ -234,7 +235,8 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
     owners.push_back(std::move(coarser.owner));
     grids.push_back(std::move(coarser.grid));
   }
-  if (!basin.is_flat) fitResistances(grids, owners);
+  const bool has_walls = !basin.is_flat && std::ranges::any_of(grids, &DispersionGrid::hasWalls);
+  if (has_walls) fitResistances(grids, owners);
   for (std::size_t k = 0; k < grids.size(); ++k) {
     DispersionLevel& level = out.levels[k];
     level.stiffness = stiffnessOf(grids[k], k, layout.cell_m, out.depth_m);
@@ -242,7 +244,7 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
       for (auto* table : {&level.stiffness, &level.from_coarse_x, &level.from_coarse_z}) roundToHalves(*table);
     }
     if (k == 0) continue;
-    level.spread = layOutSpread(level, grids[k], k, layout);
+    level.spread = layOutSpread(level, grids[k], k, layout, has_walls);
     if (!out.is_flat) roundToHalves(level.spread);
   }
   return out;

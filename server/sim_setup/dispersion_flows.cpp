@@ -238,12 +238,6 @@ Motion coarser(const DispersionGrid& fine, const DispersionGrid& coarse, const C
   return out;
 }
 
-/// Whether a face is at least partly closed by something else than a side of the water.
-bool isObstructed(const DispersionGrid& grid, std::size_t cell, int axis) {
-  return !grid.isAtSide(cell, axis) &&
-         grid.open[cell][static_cast<std::size_t>(axis)] < grid.shareInside(cell, 1 - axis);
-}
-
 /// Cells at an obstructed face, and those beside them along it.
 std::vector<bool> besideWalls(const DispersionGrid& grid) {
   std::vector<bool> out(grid.wet.size(), false);
@@ -252,8 +246,8 @@ std::vector<bool> besideWalls(const DispersionGrid& grid) {
     const int z = static_cast<int>(i) / grid.nx;
     for (int along = -1; along <= 1; ++along) {
       for (int across = 0; across <= 1; ++across) {
-        if (isObstructed(grid, i, 0)) out[grid.at(x + across, z + along)] = true;
-        if (isObstructed(grid, i, 1)) out[grid.at(x + along, z + across)] = true;
+        if (grid.isObstructed(i, 0)) out[grid.at(x + across, z + along)] = true;
+        if (grid.isObstructed(i, 1)) out[grid.at(x + along, z + across)] = true;
       }
     }
   }
@@ -305,13 +299,6 @@ void fit(DispersionGrid& grid, const std::vector<Motion>& motions, double width)
 }  // namespace
 
 void fitResistances(std::vector<DispersionGrid>& grids, const std::vector<CellOwners>& owners) {
-  const bool has_walls = std::ranges::any_of(grids, [](const DispersionGrid& grid) {
-    for (std::size_t i = 0; i < grid.wet.size(); ++i) {
-      if (isObstructed(grid, i, 0) || isObstructed(grid, i, 1)) return true;
-    }
-    return false;
-  });
-  if (!has_walls) return;
   std::size_t base = 0;
   while (base + 1 < grids.size() && std::max(grids[base].nx, grids[base].nz) > kBaseSide) ++base;
   std::vector<Cells> levels = slowest(grids[base]);

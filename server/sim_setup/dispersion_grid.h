@@ -36,6 +36,17 @@ struct DispersionGrid {
   [[nodiscard]] bool isAtSide(std::size_t cell, int axis) const {
     return along(cell, axis) + 1 >= extent[static_cast<std::size_t>(axis)];
   }
+  /// Returns whether walls or ground close at least a part of a face.
+  [[nodiscard]] bool isObstructed(std::size_t cell, int axis) const {
+    return !isAtSide(cell, axis) && open[cell][static_cast<std::size_t>(axis)] < shareInside(cell, 1 - axis);
+  }
+  /// Returns whether any face is obstructed.
+  [[nodiscard]] bool hasWalls() const {
+    for (std::size_t i = 0; i < wet.size(); ++i) {
+      if (isObstructed(i, 0) || isObstructed(i, 1)) return true;
+    }
+    return false;
+  }
   [[nodiscard]] std::size_t at(int x, int z) const {
     return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
   }

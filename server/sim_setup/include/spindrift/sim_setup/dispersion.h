@@ -58,9 +58,9 @@ struct DispersionLevel {
   /// where closed or dry.
   std::vector<std::array<double, 4>> stiffness;
   /// f_0 and f_1 of the cell along x, then along z: spreadOf() the grid times the smallest 1/d of its four faces (over
-  /// their open share), times the scene's depth; closed sides of the water do not count, and beside faces that walls or
-  /// ground close it is 0. In cells that are in part beyond the water, the smallest along each axis. Empty in the
-  /// finest grid.
+  /// their open share), times the scene's depth; closed sides of the water do not count. Where walls or
+  /// ground close faces within the water it is 0 beside all closed faces. In cells that are in part beyond the water,
+  /// the smallest along each axis. Empty in the finest grid.
   std::vector<std::array<double, 4>> spread;
   /// Weights of the x and the z face in the coarser grid's faces E, W, N, S of the same block. Empty in the coarsest
   /// grid.
