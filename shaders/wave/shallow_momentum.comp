@@ -36,8 +36,8 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 #define MAX_PRESSED 0.45
 /// Cells press fully where water runs together, across a cell, with the second share of sqrt(g h), and not at all below the first:
 /// waves that do not break would lose height (`study --case bar`).
-#define PRESSED_FROM 0.02
-#define PRESSED_FULL 0.06
+#define PRESSED_FROM 0.016
+#define PRESSED_FULL 0.048
 /// Waves and flow together may cross this share of a cell in a step. What is faster loses velocity: in a step it is divided by 1 plus
 /// COURANT_LOSS times the excess. The scene's step leaves room for waves that break, not for columns several times the
 /// depth; their explicit step would gain energy.
@@ -77,11 +77,13 @@ struct Face {
 };
 
 /// What the slope of the velocity adds to the momentum that `through` [m^2/s] carries across the middle of a cell with the height
-/// water_m, over that of the face it comes from: velocities at the faces before and after the cell, and at those beyond.
+/// water_m, over that of the face it comes from: velocities at the faces before and after the cell, and at those beyond. The
+/// velocity is that of the middle of the step, in which water moves on, and waves that travel with it by as much more: without
+/// their part such waves steepen by themselves (`study --case breaking-front`).
 float steeperMomentum(float through, float water_m, float far_before, float before, float after, float far_after) {
   const float rise = through > 0.0 ? vanLeer(after - before, before - far_before) : -vanLeer(after - before, far_after - after);
-  const float crossed = sim.wave_dt_s / sim.wave_cell_m * abs(through) / max(water_m, 1e-6);
-  return 0.5 * through * rise * max(1.0 - crossed, 0.0);
+  const float travelled_mps = abs(through) / max(water_m, 1e-6) + sqrt(sim.gravity_mps2 * water_m);
+  return 0.5 * through * rise * max(1.0 - sim.wave_dt_s / sim.wave_cell_m * travelled_mps, 0.0);
 }
 
 /// Change of the velocity in a step by the water that flows in, and by the pressure of water that runs together. [m/s]
