@@ -44,7 +44,8 @@ constexpr std::uint32_t kNarrowCount = 2 * DISPERSION_COLUMNS;
 }  // namespace
 
 core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Context& ctx, const WaveLayout& layout,
-                                                                     const Basin& basin, const gpu::Defines& defines) {
+                                                                     const Basin& basin, const gpu::Defines& defines,
+                                                                     bool keeps_last_step) {
   using gpu::Program;
   using gpu::TexelBuffer;
   constexpr auto kScratch = gpu::BufferContent::kScratch;
@@ -85,8 +86,8 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
   create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
   create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
-  create(out->dispersed_,
-         TexelBuffer::create(ctx, "dispersed slope", layout.counts().total(), gpu::TexelFormat::kRG32F, kScratch));
+  create(out->dispersed_, TexelBuffer::create(ctx, "dispersed slope", layout.counts().total(),
+                                              keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F));
   for (std::size_t finest = 0; finest < 2; ++finest) {
     gpu::Defines of_grid = defines;
     of_grid.emplace_back("FINEST", std::to_string(finest));

@@ -14,17 +14,19 @@ namespace spindrift::sim {
 
 class DispersedSlope {
  public:
-  /// Errors: those of the buffers and programs.
+  /// `keeps_last_step`: with a nonlinear bulk, which needs it. Errors: those of the buffers and programs.
   static core::Result<std::unique_ptr<DispersedSlope>> create(gpu::Context& ctx, const WaveLayout& layout,
-                                                              const Basin& basin, const gpu::Defines& defines);
+                                                              const Basin& basin, const gpu::Defines& defines,
+                                                              bool keeps_last_step);
   /// Uploads the tables for a changed depth.
   void upload(const WaveLayout& layout, const Basin& basin);
 
   /// Computes texels() from the slopes of the surface, which the caller has bound for lookups: ELEVATION and, if the
   /// scene has one, PRESSURE_HEAD, nx x nz [units]; with a nonlinear bulk SURFACE_RISE, nx x nz x 2 [units per cell].
   void compute();
-  /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell].
-  [[nodiscard]] const gpu::TexelBuffer& texels() const { return dispersed_; }
+  /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell]. If it keeps the last step, nx x nz x
+  /// 4: the same of the last step behind; then the next steps depend on it.
+  [[nodiscard]] gpu::TexelBuffer& texels() { return dispersed_; }
 
  private:
   struct Grid {

@@ -230,6 +230,7 @@ std::vector<gpu::Buffer*> WaterSim::Parts::checkpointBuffers() {
     state = {&wave->elevation(), &wave->flow()};
     if (auto* outflow = wave->outflow()) state.push_back(outflow);
     if (auto* elevation_x = wave->elevationX()) state.push_back(elevation_x);
+    if (auto* slope = wave->lastSlope()) state.push_back(slope);
   }
   if (particles) state.insert(state.end(), {&particles->position, &particles->velocity});
   if (pool) state.push_back(&pool->words());

@@ -189,6 +189,7 @@ void WaterSim::setState(const StateCopy& state) {
       units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
     parts_->wave->elevation().upload(units);
     parts_->wave->flow().upload(state.flow_m2ps);
+    parts_->wave->forgetLastStep();
     if (auto* elevation_x = parts_->wave->elevationX()) elevation_x->upload(state.elevation_x_units);
   }
 }

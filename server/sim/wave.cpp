@@ -73,7 +73,7 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   if (hasMakers(scene)) create(wave->makers_, WaveMakers::create(ctx, scene, layout, defines));
   if (create.error()) return *create.error();
   if (disperses(scene)) {
-    auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines);
+    auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines, isNonlinear(scene));
     if (!dispersed) return dispersed.error();
     wave->dispersed_slope_ = *std::move(dispersed);
   }
@@ -90,9 +90,18 @@ void Wave::clear() {
     elevation_.clear();
   }
   flow_.clear();
+  forgetLastStep();
   if (has_outflow_) outflow_.clear();
   if (has_matched_layer_) elevation_x_.clear();
   clearPressure();
+}
+
+gpu::TexelBuffer* Wave::lastSlope() {
+  return shallow_flow_ && dispersed_slope_ ? &dispersed_slope_->texels() : nullptr;
+}
+
+void Wave::forgetLastStep() {
+  if (auto* slope = lastSlope()) slope->clear();
 }
 
 void Wave::bindEvents() const {
@@ -191,6 +200,7 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
     bindBasin();
     flow_.bindTexel(FLOW);
     if (breaking) breaking->bindTexel(BREAKING);
+    dispersed_slope_->texels().bindTexel(DISPERSED);
     shallow_flow_->findRise().bindTexel(SURFACE_RISE);
   }
   if (dispersed_slope_) dispersed_slope_->compute();

@@ -32,6 +32,8 @@ class Wave {
 
   /// Sets a level surface at rest, with dry ground above it in a nonlinear bulk, and the outflow to zero.
   void clear();
+  /// Call it after other code has set the elevation or the flow: the next step then takes nothing from the last one.
+  void forgetLastStep();
   /// Clears the external pressure on the surface; callers then add to pressureHead().
   void clearPressure();
   /// Uploads the tables for changed parameters (depth, gravity).
@@ -67,6 +69,9 @@ class Wave {
   /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
   /// (wave/continuity.comp); null in scenes without one. 0 outside the layer.
   [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
+  /// nx x nz x 4: the dispersed slopes of the last two steps, which a nonlinear bulk with dispersion takes into the
+  /// next one (wave/dispersed_share.glsl); null in other scenes.
+  [[nodiscard]] gpu::TexelBuffer* lastSlope();
   /// null in scenes without.
   [[nodiscard]] WaveMakers* makers() { return makers_.get(); }
   /// Sum of the elevations of water at rest: ground above the still water counts in a nonlinear bulk.

@@ -84,7 +84,8 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
 std::uint64_t waveCellBytes(const core::Scene& scene) {
   // Elevation; flow and transfer; the share that limits transfers.
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
-  if (isNonlinear(scene)) bytes += 2 * 16 - 8 + (disperses(scene) ? 8 : 0);  // FLOW twice; SURFACE_RISE
+  if (isNonlinear(scene))
+    bytes += 2 * 16 - 8 + (disperses(scene) ? 16 : 0);  // FLOW twice; SURFACE_RISE, DISPERSED of the last step
   if (isVaried(scene)) bytes += 16 + 16;
   if (exchangesWater(scene)) bytes += 8;
   if (hasMatchedLayer(scene)) bytes += 4;

@@ -149,6 +149,26 @@ std::optional<Component> componentOf(const SideResponse& side, double amplitude_
                    .edge_phase_rad = phase_rad + std::arg(answered->edge)};
 }
 
+/// The second harmonic that belongs to a regular wave and travels with it (Stokes 1847): without it, the maker sends a
+/// free one that cancels it at the side. Longer waves than those for which it is a quarter of the wave have other
+/// forms.
+std::optional<Component> boundHarmonic(const SideResponse& side, double amplitude_m, double omega, double phase_rad,
+                                       double depth_m) {
+  constexpr double kMostShare = 0.25;
+  const auto wave = side.at(omega);
+  const auto free_wave = side.at(2 * omega);
+  if (!wave || !free_wave) return std::nullopt;
+  const double t = std::tanh(wave->wavenumber_radpm * depth_m);
+  const double share = 0.25 * wave->wavenumber_radpm * amplitude_m * (3 - t * t) / (t * t * t);
+  const double bound_m = amplitude_m * std::min(share, kMostShare);
+  const double flow_mps = side.forcedFlow_mps(2 * omega, 2 * wave->wavenumber_radpm);
+  return Component{.omega_radps = 2 * omega,
+                   .phase_rad = 2 * phase_rad,
+                   .flow_m2ps = bound_m * flow_mps,
+                   .edge_m = bound_m * std::abs(free_wave->edge),
+                   .edge_phase_rad = 2 * phase_rad + std::arg(free_wave->edge)};
+}
+
 /// JONSWAP over the frequency's share of the peak's, without a factor.
 double jonswap(double ratio, double enhancement) {
   return std::pow(ratio, -5) * std::exp(-1.25 * std::pow(ratio, -4)) * jonswapPeak(ratio, enhancement);
@@ -231,8 +251,13 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
   if (const auto* regular = std::get_if<core::RegularWaves>(&maker.waves)) {
     const double omega = 2 * pi / regular->period_s;
     out.ramp_s_ = regular->period_s;
-    if (const auto each = componentOf(side, regular->height_m / 2, omega, -pi / 2); each && regular->height_m > 0)
+    const double amplitude_m = regular->height_m / 2;
+    if (const auto each = componentOf(side, amplitude_m, omega, -pi / 2); each && amplitude_m > 0)
       out.components_ = {*each};
+    if (isNonlinear(scene) && disperses(scene) && !out.components_.empty()) {
+      if (const auto bound = boundHarmonic(side, amplitude_m, omega, -pi / 2, depth_m))
+        out.components_.push_back(*bound);
+    }
     if (out.is_simple_wave_) out.keepLevels(long_mps);
     if (const auto answered = side.at(omega)) out.absorbing_mps_ = answered->absorbing_mps;
   } else if (const auto* irregular = std::get_if<core::IrregularWaves>(&maker.waves)) {

@@ -89,4 +89,17 @@ std::optional<SideResponse::Answer> SideResponse::at(double omega_radps) const {
   return out;
 }
 
+// With the forces of both sides of the mirror and the flow q at x = 0, the level is
+//   (2 i w q + r)/(w(k)^2 - w^2) over wave numbers k, and r has a pole at the forced wave's. The pole of the free wave
+//   k_f
+// vanishes with q = level (w(k)^2 - w^2)/(k^2 - k_f^2) w k/w(k)^2 for a pressure, which the dispersion filters, and
+// with k_f^2/(w k) in place of the last factor for a force that it does not filter: here their geometric mean, for
+// both.
+double SideResponse::forcedFlow_mps(double omega_radps, double k_radpm) const {
+  const double w = 2 / dt_s_ * std::sin(0.5 * omega_radps * dt_s_);
+  const double free_radpm = wavenumber(w);
+  const double slope = (square(k_radpm) - w * w) / (k_radpm * k_radpm - free_radpm * free_radpm);
+  return slope * free_radpm / (std::sqrt(square(k_radpm)) * std::cos(0.5 * k_radpm * cell_m_));
+}
+
 }  // namespace spindrift::sim

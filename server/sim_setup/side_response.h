@@ -34,6 +34,11 @@ class SideResponse {
   /// nullopt if the grid has no travelling wave of this frequency, or one of fewer than four cells.
   [[nodiscard]] std::optional<Answer> at(double omega_radps) const;
 
+  /// Flow per level of a wave that is not free but forced all along the water, with this frequency and wave number,
+  /// that makes no free wave of the frequency beside it. Precondition: at() answers for the frequency, k_radpm is not
+  /// that of the free wave.
+  [[nodiscard]] double forcedFlow_mps(double omega_radps, double k_radpm) const;
+
   /// The same for the longest waves.
   [[nodiscard]] double longEdge() const { return 1 - 0.5 * dt_s_ / cell_m_ * long_mps_; }
   [[nodiscard]] double longAbsorbing_mps() const { return long_mps_ / (1 + 0.5 * dt_s_ / cell_m_ * long_mps_); }

@@ -50,6 +50,7 @@ const std::vector<Case>& accuracyCases() {
         {"momentum", "Momentum and energy of nonlinear water", momentumAndEnergy},
         {"run-up", "Run-up of solitary waves on a plane beach", solitaryRunUp},
         {"run-up-profiles", "The surface of a wave that runs up a plane beach, over time", runUpProfiles},
+        {"bar", "Harmonics of waves behind a submerged bar", submergedBar},
         {"island", "Solitary waves that meet a conical island", conicalIsland},
         {"solitary-wave", "A solitary wave that dispersion and nonlinearity hold in balance", solitaryWave},
         {"wave-makers", "Waves that are made at a side, and what a maker does with those that come back", waveMakers},

@@ -38,6 +38,9 @@ Outcome shallowWake(gpu::Context& ctx, bool quick);
 Outcome reflection(gpu::Context& ctx, bool quick);
 Outcome greensLaw(gpu::Context& ctx, bool quick);
 
+// bar_case.cpp
+Outcome submergedBar(gpu::Context& ctx, bool quick);
+
 // island_case.cpp
 Outcome conicalIsland(gpu::Context& ctx, bool quick);
 

@@ -141,6 +141,47 @@ core::Result<void> regularWaves(gpu::Context& ctx, const Water& water, double de
   return {};
 }
 
+/// Regular waves high enough for a second harmonic: that which is bound to them, as in waves of permanent form (Stokes
+/// 1847), and the free one, which the maker should not make.
+core::Result<void> secondHarmonic(gpu::Context& ctx, std::vector<Row>& rows) {
+  constexpr double kHeight_m = 0.05;
+  constexpr double kWaveNumber = 0.67;
+  const double length_m = 2 * pi / kWaveNumber;
+  const double omega = sim::waveFrequency(kWaveNumber, kGravity_mps2, 1.0);
+  const double period_s = 2 * pi / omega;
+  core::Scene scene = flumeScene(kShallowDispersed, 8 * length_m, length_m / 60, 2 * length_m, 30.0);
+  scene.wave_makers = {core::WaveMaker{.side = core::Side::kMinusX,
+                                       .waves = core::RegularWaves{.height_m = kHeight_m, .period_s = period_s}}};
+  std::vector<double> places_m;
+  for (double waves = 0.75; waves < 4.0; waves += 0.2) places_m.push_back(waves * length_m);
+  for (const double x : places_m) addGauge(scene, x);
+  const double from_s = 18 * period_s;
+  const auto readings = readingsOf(ctx, scene, from_s + 6 * period_s);
+  if (!readings) return readings.error();
+  // Two waves by least squares.
+  const double free_k = sim::waveNumber(2 * omega, kGravity_mps2, 1.0);
+  std::complex<double> both, to_bound, to_free;
+  for (std::size_t g = 0; g < places_m.size(); ++g) {
+    const std::complex<double> measured = amplitudeOf((*readings)[g], 2 * omega, from_s, from_s + 6 * period_s);
+    const auto bound = std::polar(1.0, -2 * kWaveNumber * places_m[g]);
+    const auto free_wave = std::polar(1.0, -free_k * places_m[g]);
+    both += std::conj(bound) * free_wave;
+    to_bound += std::conj(bound) * measured;
+    to_free += std::conj(free_wave) * measured;
+  }
+  const auto count = static_cast<double>(places_m.size());
+  const double det = count * count - std::norm(both);
+  const double bound_m = std::abs(count * to_bound - both * to_free) / det;
+  const double free_m = std::abs(count * to_free - std::conj(both) * to_bound) / det;
+  const double t = std::tanh(kWaveNumber);
+  const double wanted_m = kWaveNumber * kHeight_m * kHeight_m / 16 * (3 - t * t) / (t * t * t);
+  rows.push_back({"nonlinear, dispersed, regular waves of 0.05 depths: bound second harmonic / that of Stokes", "",
+                  bound_m / wanted_m, 1.0, Tolerance::kRelative, 0.15, "waves of permanent form"});
+  rows.push_back({"the same: free second harmonic / bound one", "", free_m / wanted_m, 0.3, Tolerance::kAtMost, 0.0,
+                  "the maker makes none; 1.3 from a maker of first order"});
+  return {};
+}
+
 /// A maker that faces a wall: the standing wave is as high after 60 periods as after 30.
 core::Result<void> standingWaves(gpu::Context& ctx, const Water& water, double depth_ratio, std::vector<Row>& rows) {
   const double length_m = 1.0 / depth_ratio;
@@ -293,6 +334,7 @@ Outcome waveMakers(gpu::Context& ctx, bool quick) {
                          {kShallowDispersed, 0.15, true},
                          {kShallowDispersed, 0.4, false}})
     if (run.is_quick || !quick) next([&] { return regularWaves(ctx, run.water, run.depth_ratio, rows); });
+  next([&] { return secondHarmonic(ctx, rows); });
   for (const Run& run : {Run{kShallow, 0.03, false},
                          {kShallowDispersed, 0.05, false},
                          {kShallowDispersed, 0.15, true},

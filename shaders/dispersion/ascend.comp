@@ -1,7 +1,8 @@
 // On the way up the V-cycle: the two sweeps of descend.comp again, the correction of the coarser grid, two sweeps.
 // Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, with
 // NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
-// DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units].
+// DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units per cell]; with NONLINEAR with
+// that of the step before behind it.
 // Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = a
 // grad(eta) + sum_j sqrt(c_j) phi_j.
 #include "dispersion/strip.glsl"
@@ -10,7 +11,11 @@ layout(local_size_x = DISPERSION_GROUP) in;
 
 layout(binding = DISPERSION_COARSE) uniform samplerBuffer coarse;
 #if FINEST
+#if NONLINEAR
+layout(std430, binding = DISPERSED) restrict buffer Dispersed { vec4 dispersed[]; };
+#else
 layout(std430, binding = DISPERSED) restrict writeonly buffer Dispersed { vec2 dispersed[]; };
+#endif
 #else
 layout(std430, binding = DISPERSION_FACES) restrict writeonly buffer Faces { vec4 faces_after[]; };
 #endif
@@ -88,7 +93,12 @@ void main() {
       const bvec2 is_open = greaterThan(rows[3].weight[c].xz, vec2(0.0));
       const vec2 slope = rows[3].right[c].xz / root_c.xz;
       const vec2 at_once = min(DISPERSION_DEPTH_SHARE * sim.wave_depth_m / stiffnessOf(rows[3], c).xy, vec2(DISPERSION_CELL_SHARE * sim.wave_cell_m));
-      dispersed[i] = mix(vec2(0.0), at_once * slope + vec2(shares.x + shares.y, shares.z + shares.w), is_open);
+      const vec2 filtered = mix(vec2(0.0), at_once * slope + vec2(shares.x + shares.y, shares.z + shares.w), is_open);
+#if NONLINEAR
+      dispersed[i] = vec4(filtered, dispersed[i].xy);
+#else
+      dispersed[i] = filtered;
+#endif
 #else
       faces_after[i] = swept[c];
 #endif

@@ -5,9 +5,11 @@
 // Raises LIMIT_ARGS if a transfer could empty a cell, so that wave/given_share.comp runs over all cells.
 // Equation: u_t + (u grad) u = -g grad(eta + head) - g n^2 |u| u / h^(4/3) - (kappa + sigma) u.
 //   Advection conserves momentum (Stelling & Duinmeijer 2003): du = sum of inflow (u_there - u) over the mean water of both
-//   cells. It is bounded: a step takes at most all of the momentum that flows in.
+//   cells. Along the axis of a face the velocity that water brings is of second order (van Leer 1979), except in bores. Advection
+//   is bounded: a step takes at most all of the momentum that flows in.
 //   The height at a face is that of the giving cell, limited second order (van Leer 1979), over the higher bed.
-//   Where water runs together, cells press with h (du)^2 (von Neumann & Richtmyer 1950), so that bores stay without ripples.
+//   Where water runs together as fast as in a bore, cells press with h (du)^2 (von Neumann & Richtmyer 1950), so that bores
+//   stay without ripples.
 //   Waves and flow together cross at most about a cell in a step (FREE_COURANT); what is faster loses velocity.
 //   Friction of the bed (Manning) is implicit, so it stops thin films.
 // DISPERSE: slopes filtered by the dispersion take the place of those of the surface in water that is deep for its waves.
@@ -22,9 +24,6 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
 layout(binding = FLOW) uniform samplerBuffer flow;
-#if DISPERSE
-layout(binding = DISPERSED) uniform samplerBuffer dispersed;
-#endif
 #if SEA
 #include "wave/incident_sea.glsl"
 #endif
@@ -35,6 +34,10 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 /// Share of the speed difference across a cell that its pressure may take from a face in a step; both faces together take
 /// less than all.
 #define MAX_PRESSED 0.45
+/// Cells press fully where water runs together, across a cell, with the second share of sqrt(g h), and not at all below the first:
+/// waves that do not break would lose height (`study --case bar`).
+#define PRESSED_FROM 0.016
+#define PRESSED_FULL 0.048
 /// Waves and flow together may cross this share of a cell in a step. What is faster loses velocity: in a step it is divided by 1 plus
 /// COURANT_LOSS times the excess. The scene's step leaves room for waves that break, not for columns several times the
 /// depth; their explicit step would gain energy.
@@ -70,7 +73,18 @@ struct Face {
   float in_before, in_after; // water along the axis in the middle of the cell before and of the cell behind [m^2/s], toward +
   float in_left, in_right;   // water across the axis at both ends of the face, toward +
   float across;              // velocity across the axis at the face [m/s]
+  float far_before, far_after; // velocity along the axis at the face before `before` and at the one behind `after`
 };
+
+/// What the slope of the velocity adds to the momentum that `through` [m^2/s] carries across the middle of a cell with the height
+/// water_m, over that of the face it comes from: velocities at the faces before and after the cell, and at those beyond. The
+/// velocity is that of the middle of the step, in which water moves on, and waves that travel with it by as much more: without
+/// their part such waves steepen by themselves (`study --case breaking-front`).
+float steeperMomentum(float through, float water_m, float far_before, float before, float after, float far_after) {
+  const float rise = through > 0.0 ? vanLeer(after - before, before - far_before) : -vanLeer(after - before, far_after - after);
+  const float travelled_mps = abs(through) / max(water_m, 1e-6) + sqrt(sim.gravity_mps2 * water_m);
+  return 0.5 * through * rise * max(1.0 - sim.wave_dt_s / sim.wave_cell_m * travelled_mps, 0.0);
+}
 
 /// Change of the velocity in a step by the water that flows in, and by the pressure of water that runs together. [m/s]
 float advected(Face f, Column here, Column there) {
@@ -79,10 +93,16 @@ float advected(Face f, Column here, Column there) {
   const float per_m = sim.wave_dt_s / sim.wave_cell_m;
   const float weight = per_m / mean_m;
   const vec4 inflow = weight * max(vec4(f.in_before, -f.in_after, f.in_left, -f.in_right), vec4(0.0));
-  const float change = dot(inflow, vec4(f.before, f.after, f.left, f.right) - f.own);
   const vec2 differs = vec2(f.before, f.after) - f.own;
   const vec2 closing = max(vec2(differs.x, -differs.y), vec2(0.0));
-  const vec2 pressed = min(closing * per_m * vec2(here.water_m, there.water_m) / mean_m, vec2(MAX_PRESSED)) * closing;
+  // A front is cells wide: its sensor reaches one cell to either side, so that its foot and its crest stay without ripples.
+  const vec2 nearby = max(max(closing, closing.yx), max(vec2(f.far_before - f.before, f.after - f.far_after), vec2(0.0)));
+  const vec2 breaks = smoothstep(vec2(PRESSED_FROM), vec2(PRESSED_FULL),
+                                 nearby * inversesqrt(max(sim.gravity_mps2 * vec2(here.water_m, there.water_m), vec2(1e-12))));
+  const vec2 steeper = (1.0 - breaks) * vec2(steeperMomentum(f.in_before, here.water_m, f.far_before, f.before, f.own, f.after),
+                                             steeperMomentum(f.in_after, there.water_m, f.before, f.own, f.after, f.far_after));
+  const float change = dot(inflow, vec4(f.before, f.after, f.left, f.right) - f.own) + weight * (steeper.x - steeper.y);
+  const vec2 pressed = breaks * min(closing * per_m * vec2(here.water_m, there.water_m) / mean_m, vec2(MAX_PRESSED)) * closing;
   return change / max(dot(inflow, vec4(1.0)), 1.0) + pressed.x - pressed.y;
 }
 
@@ -114,8 +134,10 @@ void main() {
   if (any(greaterThanEqual(cell, n))) return;
   // Flow reaches across every side, because it is 0 at closed ones; water is mirrored there.
   const int row = n.x * cell.y;
-  const int row_before = n.x * wrapped(cell.y - 1, n.y);
-  const int row_after = n.x * wrapped(cell.y + 1, n.y);
+  const int z_before = wrapped(cell.y - 1, n.y);
+  const int z_after = wrapped(cell.y + 1, n.y);
+  const int row_before = n.x * z_before;
+  const int row_after = n.x * z_after;
   const int x_before = wrapped(cell.x - 1, n.x);
   const int x_after = wrapped(cell.x + 1, n.x);
   const int i = cell.x + row;
@@ -127,29 +149,44 @@ void main() {
   vec4 at_x = texelFetch(flow, i_x);
   vec4 at_before_z = texelFetch(flow, cell.x + row_before);
   vec4 at_z = texelFetch(flow, i_z);
+  vec2 far_before = vec2(texelFetch(flow, wrapped(x_before - 1, n.x) + row).x, texelFetch(flow, cell.x + n.x * wrapped(z_before - 1, n.y)).y);
+  vec2 far_after = vec2(texelFetch(flow, wrapped(x_after + 1, n.x) + row).x, texelFetch(flow, cell.x + n.x * wrapped(z_after + 1, n.y)).y);
+  // Beyond a closed side water is mirrored.
+#if !WAVE_PERIODIC_X
+  if (cell.x == 0) far_before.x = -own.x;
+  if (cell.x == n.x - 2) far_after.x = -own.x;
+#endif
+#if !WAVE_PERIODIC_Z
+  if (cell.y == 0) far_before.y = -own.y;
+  if (cell.y == n.y - 2) far_after.y = -own.y;
+#endif
   // Through a side with a wave-maker water comes and goes as fast as beside it.
 #if MAKERS & MINUS_X_BIT
   if (cell.x == 0) at_before_x.xz = own.xz;
+  if (cell.x <= 1) far_before.x = at_before_x.x;
 #endif
 #if MAKERS & PLUS_X_BIT
   if (cell.x == n.x - 2) at_x.xz = own.xz;
+  if (cell.x >= n.x - 3) far_after.x = at_x.x;
 #endif
 #if MAKERS & MINUS_Z_BIT
   if (cell.y == 0) at_before_z.yw = own.yw;
+  if (cell.y <= 1) far_before.y = at_before_z.y;
 #endif
 #if MAKERS & PLUS_Z_BIT
   if (cell.y == n.y - 2) at_z.yw = own.yw;
+  if (cell.y >= n.y - 3) far_after.y = at_z.y;
 #endif
   const vec4 at_x_before_z = texelFetch(flow, x_after + row_before);
   const vec4 at_z_before_x = texelFetch(flow, x_before + row_after);
   const Face face_x = Face(at_before_x.x, own.x, at_x.x, at_before_z.x, at_z.x,
                            0.5 * (at_before_x.z + own.z), 0.5 * (own.z + at_x.z),
                            0.5 * (at_before_z.w + at_x_before_z.w), 0.5 * (own.w + at_x.w),
-                           0.25 * (own.y + at_x.y + at_before_z.y + at_x_before_z.y));
+                           0.25 * (own.y + at_x.y + at_before_z.y + at_x_before_z.y), far_before.x, far_after.x);
   const Face face_z = Face(at_before_z.y, own.y, at_z.y, at_before_x.y, at_x.y,
                            0.5 * (at_before_z.w + own.w), 0.5 * (own.w + at_z.w),
                            0.5 * (at_before_x.z + at_z_before_x.z), 0.5 * (own.z + at_z.z),
-                           0.25 * (own.x + at_z.x + at_before_x.x + at_z_before_x.x));
+                           0.25 * (own.x + at_z.x + at_before_x.x + at_z_before_x.x), far_before.y, far_after.y);
 
   const Column here = columnOf(i, texelFetch(elevation, i).x);
   const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
@@ -169,9 +206,10 @@ void main() {
 #if DISPERSE
   const vec2 depth_m = texelFetch(basin, i).xy;
   const float breaks = breakingAt(i);
-  const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)));
-  const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z)));
-  rise = vec2(1.0 - share_x.all, 1.0 - share_z.all) * rise + vec2(share_x.after, share_z.after) * texelFetch(dispersed, i).xy;
+  const vec4 psi = texelFetch(dispersed, i);
+  const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)), psi.z, awayFromMakers(vec2(cell) + vec2(1.0, 0.5), n));
+  const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z)), psi.w, awayFromMakers(vec2(cell) + vec2(0.5, 1.0), n));
+  rise = vec2(1.0 - share_x.all, 1.0 - share_z.all) * rise + vec2(share_x.after, share_z.after) * psi.xy;
 #endif
   const vec2 driving = sim.wave_pull * rise;
 

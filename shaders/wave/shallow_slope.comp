@@ -1,10 +1,10 @@
 // The slopes that the dispersion filters in nonlinear shallow water: of the surface, the pressure heads, and the pressure of
 // water that rises or falls faster below than a hydrostatic column would.
-// Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED, BASIN, BREAKING. Writes SURFACE_RISE
-// [nx x nz x 2, units per cell] at the faces toward +x and +z of each cell: the slopes times the share that disperses there.
-// Equation: head_q = h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h, h of at most HEAD_CELLS cells. The equations of Serre (1953; Green & Naghdi 1976) have
-// this term with the factor 2/3, and dispersion by the real depth where ours takes the still one; with the factor 1 solitary waves
-// of 0.1 and 0.3 of the depth keep their height (docs/shore.md).
+// Reads ELEVATION [nx x nz, units], FLOW [velocities, m/s], PRESSURE_HEAD, BED, BASIN, BREAKING, DISPERSED of the step before. Writes SURFACE_RISE
+// [nx x nz x 2, units per cell] at the faces toward +x and +z of each cell: the slopes times the share that disperses there, and
+// what makes it disperse by the real depth (dispersed_share.glsl).
+// Equation: head_q = DYNAMIC_FACTOR h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h, h of at most HEAD_CELLS cells: a term of the equations of
+// Serre (1953; Green & Naghdi 1976), as is DYNAMIC_FACTOR.
 // Toward wave-makers the dynamic head fades out, within two depths of them.
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
@@ -25,35 +25,13 @@ layout(std430, binding = SURFACE_RISE) restrict writeonly buffer SurfaceRise { v
 /// The same bound where a depth has more cells than this: as if it had this many. Waves much shorter than the depth have no such
 /// head, and one of several cells made them grow: to 0.09 of the depth, in water 1,000 cells deep to seven times the sea's height.
 #define HEAD_CELLS 20.0
+#define DYNAMIC_FACTOR (2.0 / 3.0)
 
 /// head_q of a cell, for velocities through its faces toward + and - x, + and - z. [units]
 float dynamicHead(Column water, vec4 u_mps) {
   const float stretch = water.water_m * (u_mps.x - u_mps.y + u_mps.z - u_mps.w) / sim.wave_cell_m;
-  return min(stretch * stretch / max(sim.gravity_mps2, 1e-6), MAX_DYNAMIC_HEAD * min(water.water_m, HEAD_CELLS * sim.wave_cell_m)) * ELEVATION_UNITS_PER_M;
+  return min(DYNAMIC_FACTOR * stretch * stretch / max(sim.gravity_mps2, 1e-6), MAX_DYNAMIC_HEAD * min(water.water_m, HEAD_CELLS * sim.wave_cell_m)) * ELEVATION_UNITS_PER_M;
 }
-
-#if MAKERS
-/// Share of the dynamic head at a cell near wave-makers: within two depths water stretches as the maker lets it in, and its
-/// head would draw in more.
-float awayFromMakers(ivec2 cell, ivec2 n) {
-  const vec2 from_minus = vec2(cell) + 0.5;
-  const vec2 from_plus = vec2(n) - from_minus;
-  float cells = 1e9;
-#if MAKERS & MINUS_X_BIT
-  cells = min(cells, from_minus.x);
-#endif
-#if MAKERS & PLUS_X_BIT
-  cells = min(cells, from_plus.x);
-#endif
-#if MAKERS & MINUS_Z_BIT
-  cells = min(cells, from_minus.y);
-#endif
-#if MAKERS & PLUS_Z_BIT
-  cells = min(cells, from_plus.y);
-#endif
-  return smoothstep(0.0, 2.0 * sim.wave_depth_m, cells * sim.wave_cell_m);
-}
-#endif
 
 void main() {
   const ivec2 n = waveCounts();
@@ -77,15 +55,19 @@ void main() {
   float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
   float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
 #if MAKERS
-  pressed *= awayFromMakers(cell, n);
-  pressed_x *= awayFromMakers(cell + ivec2(1, 0), n);
-  pressed_z *= awayFromMakers(cell + ivec2(0, 1), n);
+  const vec2 middle = vec2(cell) + 0.5;
+  pressed *= awayFromMakers(middle, n);
+  pressed_x *= awayFromMakers(middle + vec2(1.0, 0.0), n);
+  pressed_z *= awayFromMakers(middle + vec2(0.0, 1.0), n);
 #endif
   const int head = headAt(i);
   const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
                          drivingRise(here, there_z, headAt(i_z) - head) + pressed_z - pressed);
   const vec2 depth_m = texelFetch(basin, i).xy;
   const float breaks = breakingAt(i);
-  surface_rise[i] = rise * vec2(dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x))).before,
-                                dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z))).before);
+  const vec4 psi = texelFetch(dispersed, i);
+  const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)), psi.x, awayFromMakers(vec2(cell) + vec2(1.0, 0.5), n));
+  const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z)), psi.y, awayFromMakers(vec2(cell) + vec2(0.5, 1.0), n));
+  surface_rise[i] = rise * vec2(share_x.before, share_z.before) +
+                    vec2(share_x.fed, share_z.fed) * vec2(extrapolated(psi.x, psi.z), extrapolated(psi.y, psi.w));
 }

@@ -33,7 +33,7 @@ class DispersedSlopeOnDevice : public OnDevice {
     for (auto& [name, value] : defines) {
       if (name == "HEAD") value = has_head ? "1" : "0";
     }
-    auto made = DispersedSlope::create(*ctx_, first_layout, layOutBasin(first, first_layout), defines);
+    auto made = DispersedSlope::create(*ctx_, first_layout, layOutBasin(first, first_layout), defines, false);
     EXPECT_TRUE(made) << made.error().message;
     if (first_depth_m) (*made)->upload(layout, basin);
     auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);

@@ -67,6 +67,38 @@ TEST(SideAnswer, OfDispersedWavesIsTheirGroupSpeed) {
   }
 }
 
+TEST(SideAnswer, OfAForcedWaveIsThatOfTheFreeOneWhenItIsNearlyFree) {
+  const SideResponse side(9.81, 1.0, 0.05, 0.005, true);
+  const double omega = waveFrequency(1.0, 9.81, 1.0);
+  const auto answer = side.at(omega);
+  ASSERT_TRUE(answer);
+  EXPECT_NEAR(side.forcedFlow_mps(omega, 1.001 * answer->wavenumber_radpm) / answer->flow_mps, 1.0, 2e-3);
+  // Without dispersion all waves move their water with their own speed.
+  const SideResponse shallow(9.81, 1.0, 0.01, 0.0005, false);
+  EXPECT_NEAR(shallow.forcedFlow_mps(omega, 0.5), omega / 0.5, 0.01 * omega / 0.5);
+}
+
+TEST(IncidentWaves, RegularOnesBringTheirSecondHarmonicIntoNonlinearWater) {
+  const core::RegularWaves waves{.height_m = 0.04, .period_s = 2.857};
+  const auto harmonicOf = [&](core::Bulk bulk, int n) {
+    const IncidentWaves made = madeBy(flume(bulk, core::Dispersion::kAiry), {.waves = waves});
+    std::complex<double> sum;
+    constexpr int kCount = 400;
+    for (int k = 0; k < kCount; ++k) {
+      const double t = waves.period_s * (3 + static_cast<double>(k) / kCount);
+      sum += made.at(t).flow_m2ps * std::polar(2.0 / kCount, -2 * pi * n * k / kCount);
+    }
+    return sum;
+  };
+  EXPECT_LT(std::abs(harmonicOf(core::Bulk::kLinear, 2)), 1e-9);
+  const std::complex<double> first = harmonicOf(core::Bulk::kNonlinear, 1);
+  const std::complex<double> second = harmonicOf(core::Bulk::kNonlinear, 2);
+  EXPECT_GT(std::abs(second), 0.01 * std::abs(first));
+  EXPECT_LT(std::abs(second), 0.25 * std::abs(first));
+  // Its crests are on those of the wave.
+  EXPECT_NEAR(std::arg(second / (first * first)), 0.0, 1e-3);
+}
+
 TEST(IncidentWaves, OfNoHeightAreNothing) {
   for (const auto bulk : {core::Bulk::kLinear, core::Bulk::kNonlinear}) {
     for (const auto& waves : std::vector<decltype(core::WaveMaker::waves)>{
@@ -95,7 +127,7 @@ TEST(IncidentWaves, BeginWithoutAJumpAndEndAgain) {
     before_m = now.elevation_m;
     highest_m = std::max(highest_m, now.elevation_m);
   }
-  EXPECT_NEAR(highest_m, 0.05, 0.012) << "with the part that stays beside the maker";
+  EXPECT_NEAR(highest_m, 0.05, 0.015) << "with the part that stays beside the maker and the second harmonic";
 }
 
 TEST(IncidentWaves, OfASpectrumHaveItsHeightAndRepeatBySeed) {
