@@ -4,9 +4,9 @@ import { join } from "node:path";
 
 import { repository } from "./workshop.mjs";
 
-/** Labels that the code puts on samples: `name=\"` in a format, or the label of a room that was made before. */
+/** Labels that the code puts on samples: with metricLabel("name", …), or the label of a room that was made before. */
 function labelsIn(code) {
-  const written = [...code.matchAll(/(\w+)=\\"/g)].map((match) => match[1]);
+  const written = [...code.matchAll(/metricLabel\("(\w+)"/g)].map((match) => match[1]);
   const isOfRoom = /\broom\.label\b|\[label, status\]/.test(code);
   return [...new Set([...(isOfRoom ? ["room"] : []), ...written])];
 }
