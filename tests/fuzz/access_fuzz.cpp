@@ -41,7 +41,7 @@ void checkGrant(const access::Grant& grant) {
   if (!grant.rooms) return;
   must(!grant.rooms->empty() && grant.rooms->size() <= access::kTokenRoomMaxCount, "rooms keep their bound");
   for (const std::string& room : *grant.rooms)
-    must(!room.empty() && room.size() <= access::kRoomNameMaxBytes, "a room has a name");
+    must(!room.empty() && room.size() <= core::kRoomNameMaxBytes, "a room has a name");
 }
 
 std::string signatureOf(std::string_view text) {
