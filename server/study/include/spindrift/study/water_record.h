@@ -42,7 +42,8 @@ struct WaterRecord {
   std::uint32_t wave_cells_count = 0;
   std::uint64_t recovered_count = 0;
 
-  /// Fields of a sample, x fastest: elevation on kSurfaceCells^2 cells, averaged or interpolated [m]; volume of
+  /// Fields of a sample, x fastest: elevation on kSurfaceCells cells along x and as many across as make them about
+  /// square, averaged or interpolated, on land in a nonlinear bulk the depth of the water on it [m]; volume of
   /// particles in columns of the box over the mean volume. Empty if the scene lacks the part.
   struct Sample {
     std::vector<double> surface_m;
@@ -60,11 +61,15 @@ inline constexpr std::size_t kColumnsAlong = 20;
 /// Runs the scene from its start; a repetition gives the same samples.
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options);
 
+/// Returns the hash of the water after its first ticks (sim::WaterSim::stateHash()).
+core::Result<std::uint64_t> stateHashAfter(gpu::Context& ctx, const core::Scene& scene, int tick_count);
+
 /// Difference of a run from another run of the same scene. Ratios are relative to the root mean square of the other
 /// run's field, or to its largest energy.
 struct RecordErrors {
   std::optional<double> surface_rms_ratio, surface_max_ratio;
-  std::optional<double> spectrum_ratio;  ///< of the surface: sum |P - P_ref| / sum P_ref over rings of wave numbers
+  std::optional<double> spectrum_ratio;  ///< of the surface: sum |P - P_ref| / sum P_ref over rings of wave numbers;
+                                         ///< square water only
   std::optional<double> column_rms_ratio;
   std::optional<double> front_rms_ratio;
   std::optional<double> density_rms_ratio;  ///< of this run, not a difference
