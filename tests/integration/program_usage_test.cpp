@@ -76,6 +76,14 @@ TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
   expectOneErrorLine(runProgram({"--log-level", "loud", "info"}), 2, {"--log-level", "loud", "debug"});
 }
 
+TEST_F(Usage, UnknownSceneOfATradeStudyIsRefusedWithTheScenes) {
+  const Outcome outcome =
+      runProgram({"study", "--device", "software", "--suite", "trade", "--quick", "--case", "lagoon"});
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("'lagoon'"), HasSubstr("harbor"), HasSubstr("known")));
+}
+
 class Help : public testing::TestWithParam<std::string> {};
 
 TEST_P(Help, GoesToStandardOutputAndExitsWith0) {
