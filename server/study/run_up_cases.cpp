@@ -215,7 +215,8 @@ Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
     const double tolerance = cells_per_m == 40.0 ? 0.012 : cells_per_m == 20.0 ? 0.035 : 0.06;
     rows.push_back(
         {fmt::format("slope 1:19.85, H/d = 0.019, without friction, {:.0f} cells a depth: run-up / d", cells_per_m), "",
-         *reached_m, kClosedFormRunUp, Tolerance::kRelative, tolerance, "closed form (NTHMP benchmark 1); Celeris -1.27 %"});
+         *reached_m, kClosedFormRunUp, Tolerance::kRelative, tolerance,
+         "closed form (NTHMP benchmark 1); Celeris -1.27 %"});
   }
   for (const LaboratoryRun& run : kLaboratory) {
     if (quick && run.height != 0.0275) continue;

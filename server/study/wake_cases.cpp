@@ -185,7 +185,8 @@ FieldFigure pictureOf(const Wake& wake, const std::string& name, const std::stri
 double rootMeanSquare(const Wake& wake, std::span<const double> surface_m, Columns part) {
   double sum = 0.0;
   for (std::size_t z = 0; z < wake.side_count; ++z) {
-    for (std::size_t x = part.first; x < part.last; ++x) sum += surface_m[x + wake.side_count * z] * surface_m[x + wake.side_count * z];
+    for (std::size_t x = part.first; x < part.last; ++x)
+      sum += surface_m[x + wake.side_count * z] * surface_m[x + wake.side_count * z];
   }
   return std::sqrt(sum / static_cast<double>(wake.side_count * (part.last - part.first)));
 }

@@ -161,7 +161,8 @@ class TradeRuns {
         }
         showProgress(fmt::format("{}: {}", result.name, level.name));
         const auto error_ratio = result.error_ratio(ctx_, level);
-        if (!error_ratio) return core::Error{error_ratio.error().code, result.name + ": " + error_ratio.error().message};
+        if (!error_ratio)
+          return core::Error{error_ratio.error().code, result.name + ": " + error_ratio.error().message};
         if (auto added = journal_.add(key, *error_ratio); !added) return added.error();
         errors.push_back(*error_ratio);
       }
@@ -214,11 +215,10 @@ class TradeRuns {
     std::optional<WaterRecord> finest_run;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const TradeChoice& choice = choices[i];
-      const std::string key =
-          journalKey("trade",
-                     fmt::format("{}/{}/{}/{} s/x {:.3f}/{}", name, choice.knob, choice.setting, record.seconds,
-                                 scene.finest_scale, all_hashes_),
-                     options_, ctx_);
+      const std::string key = journalKey("trade",
+                                         fmt::format("{}/{}/{}/{} s/x {:.3f}/{}", name, choice.knob, choice.setting,
+                                                     record.seconds, scene.finest_scale, all_hashes_),
+                                         options_, ctx_);
       if (const auto known = journal_.find(key)) {
         rows.push_back(rowFromJson(known->as_object()));
         continue;
@@ -395,10 +395,11 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
     result.json["costs"] = toJson(*sweep);
   }
   if (!found) {
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "--case: there is no '" + options.only + "'" + (options.quick ? " in the quick form" : "") +
-                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, harbor, beach, flume, boat_wake_wave, "
-                           "known, cost"};
+    return core::Error{core::ErrorCode::kInvalidInput, "--case: there is no '" + options.only + "'" +
+                                                           (options.quick ? " in the quick form" : "") +
+                                                           "; choose one of splash, breaking_wave, boat_wake, thesis, "
+                                                           "dam_break, harbor, beach, flume, boat_wake_wave, "
+                                                           "known, cost"};
   }
   return result;
 }
