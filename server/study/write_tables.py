@@ -101,15 +101,15 @@ def table(figures, head, rows):
 
 
 def table_levels(figures):
-    head = ["scene", "simulated", "judged by cells x", *[level.upper() for level in LEVELS]]
+    head = ["scene", "simulated", *[level.upper() for level in LEVELS]]
     rows = []
     for scene in figures["scenes"]:
         cells = [row_of(scene, LEVEL, level) for level in LEVELS]
         cells = [f"{seconds(row['wall_ms_per_s'])}, {percent(row['height_rms_ratio'])}" for row in cells]
-        rows.append([scene["scene"], f"{scene['seconds']:g} s", f"{scene['finest_scale']:.3g}", *cells])
+        rows.append([scene["scene"], f"{scene['seconds']:g} s", *cells])
     means = [mean_of(figures, level) for level in LEVELS]
     cells = [f"x {digits(mean['cost_ratio'], 2)}, x {digits(mean['error_ratio'], 2)}" for mean in means]
-    return table(figures, head, [*rows, ["geometric mean over BALANCED", "", "", *cells]])
+    return table(figures, head, [*rows, ["geometric mean over BALANCED", "", *cells]])
 
 
 def table_means(figures):
