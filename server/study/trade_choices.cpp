@@ -40,7 +40,9 @@ core::Scene withResolution(core::Scene scene, double scale) {
   // Multiples of 16 stay so, and the cells of a rectangle fit its width.
   const std::uint32_t step = wave.resolution_count % 16 == 0 ? 16 : 1;
   const double cells = std::round(wave.resolution_count * scale / step) * step;
-  wave.resolution_count = std::min(static_cast<std::uint32_t>(cells), core::kWaveMaxSideCount);
+  const double most = std::floor(std::sqrt(core::kWaveMaxCellCount * before.length_m / before.width_m));
+  const auto limit = std::min(static_cast<std::uint32_t>(most), core::kWaveMaxSideCount);
+  wave.resolution_count = std::min(static_cast<std::uint32_t>(cells), limit);
   const auto fits = [&] {
     const core::WaveCells after = core::waveCellsOf(wave.resolution_count, before.length_m, before.width_m);
     if (!core::widthFits(after, before.width_m)) return false;
@@ -52,7 +54,7 @@ core::Scene withResolution(core::Scene scene, double scale) {
     return wave.dispersion == core::Dispersion::kNone || sim::canDisperse(out);
   };
   // Dispersion needs a number of cells that can be halved often enough; the largest one of a square can.
-  while (!fits() && wave.resolution_count < core::kWaveMaxSideCount) wave.resolution_count += step;
+  while (!fits() && wave.resolution_count + step <= limit) wave.resolution_count += step;
   return scene;
 }
 
