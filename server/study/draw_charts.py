@@ -16,7 +16,7 @@ import sys
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7a5c00", "#444444"]
 MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", "*"]
 LEVEL = "fidelity"  # the knob of the rows that are fidelity levels
-COST_LABEL = "wall time per simulated second [ms]"
+COST_LABEL = "processor time per simulated second [ms]"
 ERROR_LABEL = "RMS error of the water height [%]"
 
 
@@ -171,12 +171,12 @@ def trade_points(scene):
     for row in scene["rows"]:
         if not row["refused"]:
             label = row["setting"] if row["knob"] == LEVEL else f"{row['knob']} {row['setting']}"
-            yield row, Point(row["wall_ms_per_s"], 100 * row["height_rms_ratio"], label)
+            yield row, Point(row["cost_ms_per_s"], 100 * row["height_rms_ratio"], label)
 
 
 def trade_chart(name, title, series):
     series = [one for one in series if one.points]
-    return Chart(name, title, COST_LABEL, ERROR_LABEL, series, True, True, (1000.0, "real time"))
+    return Chart(name, title, COST_LABEL, ERROR_LABEL, series, True, True, (1000.0, "one core, real time"))
 
 
 SUITES = {"accuracy": accuracy_charts, "stability": stability_charts, "trade": trade_charts}

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <numeric>
 
+#include <time.h>
+
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/study/water_record.h>
 
@@ -14,8 +16,6 @@
 
 namespace spindrift::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 /// Share of a dam's water that counts as ahead of its front.
 constexpr double kAheadShare = 0.01;
@@ -216,11 +216,13 @@ struct FieldDifference {
 
 constexpr int kTimedRuns = 3;
 
-/// Wall times of the intervals of a run, without the time between them.
+/// Cost of the intervals of a run, without the time between them: on a rasteriser in software the processor time of all
+/// threads, which other programs hardly change, otherwise wall time. [s]
 class IntervalTimes {
  public:
-  void begin() { begin_ = Clock::now(); }
-  void end() { seconds_.push_back(std::chrono::duration<double>(Clock::now() - begin_).count()); }
+  explicit IntervalTimes(const gpu::Context& ctx) : is_software_(ctx.device().is_software) {}
+  void begin() { begin_s_ = now_s(); }
+  void end() { seconds_.push_back(now_s() - begin_s_); }
   [[nodiscard]] double sum() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
   /// Keeps the shorter time of each interval.
   void keepFastest(const IntervalTimes& other) {
@@ -229,7 +231,17 @@ class IntervalTimes {
   }
 
  private:
-  Clock::time_point begin_;
+  [[nodiscard]] double now_s() const {
+    if (is_software_) {
+      timespec spent{};
+      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+      return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  bool is_software_;
+  double begin_s_ = 0.0;
   std::vector<double> seconds_;
 };
 
@@ -278,7 +290,7 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   std::vector<std::uint64_t> sample_ticks;
   double frame_bytes = 0.0;
   std::size_t frame_count = 0;
-  IntervalTimes times;
+  IntervalTimes times(ctx);
   const double begin_s = water.time_s();
   const auto interval_count = static_cast<int>(std::lround(options.seconds / options.sample_interval_s));
   for (int i = 1; i <= interval_count; ++i) {
@@ -305,14 +317,14 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   for (int run = 1; run < kTimedRuns && once_s < options.repeat_below_s; ++run) {
     auto again = warm(ctx, scene);
     if (!again) return again.error();
-    IntervalTimes again_times;
+    IntervalTimes again_times(ctx);
     for (int i = 1; i <= interval_count; ++i) {
       const double time_s = i * options.sample_interval_s;
       if (auto done = advance(ctx, **again, time_s, again_times, [] {}); !done) return done.error();
     }
     times.keepFastest(again_times);
   }
-  out.wall_ms_per_s = 1e3 * times.sum() / out.seconds;
+  out.cost_ms_per_s = 1e3 * times.sum() / out.seconds;
   for (gpu::PassCost& pass : out.passes) pass.total_ms *= times.sum() / once_s;
   return out;
 }

@@ -51,7 +51,7 @@ TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndKeepsTheirNumbers) {
   const auto& rows = json.at("scenes").at(0).at("rows").as_array();
   ASSERT_EQ(rows.size(), 3u) << "draft, balanced, fine";
   for (const auto& row : rows) {
-    EXPECT_GT(row.at("wall_ms_per_s").to_number<double>(), 0.0);
+    EXPECT_GT(row.at("cost_ms_per_s").to_number<double>(), 0.0);
     EXPECT_GT(row.at("stream_mbit_per_s").to_number<double>(), 0.0);
     EXPECT_GT(row.at("height_rms_ratio").to_number<double>(), 0.0);
     EXPECT_LT(row.at("height_rms_ratio").to_number<double>(), 0.5);

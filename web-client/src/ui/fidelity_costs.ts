@@ -1,9 +1,9 @@
-// What each fidelity level costs and how far off it is, as `spindrift study --suite trade` measured it on two cores without a GPU.
+// What each fidelity level costs and how far off it is, as `spindrift study --suite trade` measured it without a GPU.
 // server/study/write_tables.py writes the figures; `./dev study --update` measures them again.
 import { type FidelityName, kFidelities } from "../codec/fidelity";
 import figures from "./fidelity_costs.json";
 
-/** Seconds of wall time per simulated second and percent of the water's height, or both over those of balanced. */
+/** Seconds of processor time per simulated second and percent of the water's height, or both over those of balanced. */
 type CostAndError = readonly number[];
 
 const kScenes: Readonly<Record<string, readonly CostAndError[]>> = figures.scenes;
@@ -25,7 +25,7 @@ export function describeCost(sceneName: string, level: FidelityName): string {
   const measured = kScenes[sceneName]?.[rank(level)];
   if (measured) {
     const [cost, error] = measured;
-    return `Measured for this scene on ${kMeasuredOn}: ${cost} s of two cores' time per simulated second, water ${error} % off.`;
+    return `Measured for this scene on ${kMeasuredOn}: ${cost} s of processor time per simulated second, water ${error} % off.`;
   }
   if (level === "balanced") return "Balanced is what the other levels are measured against; this scene was not measured.";
   const [cost, error] = figures.means[rank(level)]!;

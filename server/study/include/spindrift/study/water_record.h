@@ -25,14 +25,15 @@ struct RecordOptions {
   double sample_interval_s = 0.1;  ///< simulated
   bool has_samples = true;         ///< false: costs only
   FrameBytes frame_bytes;          ///< may be empty
-  /// A run with less wall time than this is run three times, and the fastest time of each interval counts: the speed of
-  /// a virtual machine changes by a factor of two from minute to minute.
+  /// A run that costs less time than this is run three times, and the fastest time of each interval counts: the speed
+  /// of a virtual machine changes by a factor of two from minute to minute.
   double repeat_below_s = 3.0;
 };
 
 struct WaterRecord {
   // Cost, without the time for sampling.
-  double wall_ms_per_s = 0.0;  ///< wall time of a simulated second
+  double cost_ms_per_s =
+      0.0;  ///< of a simulated second: processor time on a rasteriser in software, otherwise wall time
   std::vector<gpu::PassCost> passes;
   double seconds = 0.0;  ///< simulated
   std::uint64_t device_bytes = 0;
