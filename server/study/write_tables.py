@@ -166,7 +166,8 @@ def table_knobs(figures):
             name = (row["knob"], row["setting"])
             if row["knob"] != LEVEL and row["knob"] not in simpler and name not in names:
                 names.append(name)
-    names.sort(key=lambda name: [knob for knob, _ in names].index(name[0]))
+    knobs = [knob for knob, _ in names]
+    names.sort(key=lambda name: knobs.index(name[0]))  # the settings of a knob together
     rows = []
     for name in names:
         cells = []
