@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { makePose, mixAngle, mixBodies, unpackBodies, wrapAngle, type BodiesState, type BodyPose } from "../src/scene/bodies";
+import { makePose, mixAngle, mixBodies, unpackBodies, wrapAngle, type BodiesState, type BodyPose } from "../src/scene/frames/bodies";
 import type { BodiesFrame } from "../src/net/messages";
 import { bodiesPayload, type BodyRecord } from "./wire";
 

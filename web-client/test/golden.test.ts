@@ -7,8 +7,8 @@ import type { Malformed } from "../src/codec/malformed";
 import { isPacked, type PackedFrame } from "../src/codec/frame_types";
 import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse, type ParsedMessage } from "../src/codec/parse";
-import { unpackBodies, type BodyPose } from "../src/scene/bodies";
-import { elevationAtM } from "../src/scene/height_field";
+import { unpackBodies, type BodyPose } from "../src/scene/frames/bodies";
+import { elevationAtM } from "../src/scene/frames/height_field";
 
 interface GoldenCase {
   file: string;

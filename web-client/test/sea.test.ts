@@ -4,12 +4,12 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import type { SideKind, SideName, WaveInfo, WindInfo } from "../src/codec/scene_info";
-import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/sea/coast";
+import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/landscape/coast";
 import { blendOf, kSideOrder } from "../src/scene/sea/open_sea";
 import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";
 import { fitToTile, slopeVariance } from "../src/scene/sea/sea_tile";
 import { seaStateOf, waveFrequencyRadps } from "../src/scene/sea/sea_state";
-import { gridLines } from "../src/scene/water_grid";
+import { gridLines } from "../src/scene/water/water_grid";
 
 const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: SideKind): Record<SideName, SideKind> => ({ "+x": plusX, "-x": minusX, "+z": plusZ, "-z": minusZ });
 

@@ -2,10 +2,11 @@
 import { describe, expect, it } from "vitest";
 
 import type { FoamFrame, ParticleFrame, SurfaceFrame } from "../src/net/messages";
-import { makePose } from "../src/scene/bodies";
+import { makePose } from "../src/scene/frames/bodies";
 import { DiffuseParticles, kFloatsPerParticle, kinds, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
 import { MovingSurface } from "../src/scene/whitewater/moving_surface";
-import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, share, type Births } from "../src/scene/whitewater/sources";
+import { makeFastRandom } from "../src/scene/drawing/random";
+import { addCrests, addFromParticles, addHulls, addRims, rimOf, share, type Births } from "../src/scene/whitewater/sources";
 
 const kSideM = 16;
 const kCount = 32;

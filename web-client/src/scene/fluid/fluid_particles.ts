@@ -5,11 +5,11 @@ import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, 
 
 import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
-import type { FrameRing } from "../frame_ring";
-import type { ShownParticles } from "../looks/particle_values";
-import type { Pass, Picture } from "../passes/pass";
-import type { PlayoutClock } from "../playout_clock";
-import type { Uniforms } from "../shaders";
+import type { Pass, Picture } from "../drawing/pass";
+import type { FrameRing } from "../frames/frame_ring";
+import type { ShownParticles } from "../frames/particle_values";
+import type { PlayoutClock } from "../frames/playout_clock";
+import type { Uniforms } from "../shaders/materials";
 
 const kWordsPerParticle = kParticleBytes / 2;
 /** Particles are extrapolated for at most this many frame intervals. */

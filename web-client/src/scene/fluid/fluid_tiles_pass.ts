@@ -2,9 +2,9 @@
 // Reads the particles. Writes one byte per tile.
 import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
-import { makeMaterial, type Uniforms } from "../shaders";
 
 const kColumnsCount = 48;
 const kRowsCount = 32;

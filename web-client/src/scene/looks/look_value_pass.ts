@@ -2,10 +2,10 @@
 // around the time shown, as the field pass chose and uploaded them. Writes the look's value, filtered linearly between samples.
 import { ClampToEdgeWrapping, HalfFloatType, LinearFilter, RedFormat, RepeatWrapping, Vector4, WebGLRenderTarget, type Texture } from "three";
 
-import { FullscreenPass } from "../fullscreen";
-import type { FieldPass } from "../passes/field_pass";
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial } from "../shaders";
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
+import type { FieldPass } from "../water/field_pass";
 import type { Rectangle } from "./surface_values";
 
 export class LookValuePass implements Pass {

@@ -1,11 +1,11 @@
 // Values of the water's surface at a place, from the samples of the frames: the same that look_value.frag and look_surface.frag draw,
 // without the rounding of textures. Pure.
 import type { FoamFrame } from "../../net/messages";
-import type { Between } from "../frame_ring";
-import type { PlaneCounts } from "../frame_textures";
-import { elevationRangeM } from "../height_field";
-import type { ShownSurfaces } from "../passes/field_pass";
-import { depthAtM, type Bed } from "../terrain";
+import type { Between } from "../frames/frame_ring";
+import type { PlaneCounts } from "../frames/frame_textures";
+import { elevationRangeM } from "../frames/height_field";
+import { depthAtM, type Bed } from "../landscape/terrain";
+import type { ShownSurfaces } from "../water/field_pass";
 
 /** A rectangle of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */
 export interface Rectangle {

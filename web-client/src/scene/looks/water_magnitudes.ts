@@ -1,6 +1,6 @@
 // How far the surface is from rest, over the water alone: the values that a range follows. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
-import { bedOf, depthAtM } from "../terrain";
+import { bedOf, depthAtM } from "../landscape/terrain";
 import { isCovered } from "./dry_places";
 import { kLeastDepths, type ShownSurface } from "./surface_values";
 

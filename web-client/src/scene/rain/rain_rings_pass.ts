@@ -3,10 +3,11 @@
 import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial, type Uniforms } from "../shaders";
-import { makeFastRandom } from "../whitewater/sources";
-import { makeDropSeeds, rainShare } from "./rain";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeFastRandom } from "../drawing/random";
+import { rainShare } from "../light/weather";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { makeDropSeeds } from "./drop_seeds";
 
 const kTileM = 4;
 /** Rings at a time in the hardest rain, per m^2. */

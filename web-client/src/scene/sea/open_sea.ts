@@ -4,12 +4,12 @@
 import { Vector2, Vector4 } from "three";
 
 import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
-import type { Pass, Picture } from "../passes/pass";
-import type { Quality } from "../quality";
-import type { Uniforms } from "../shaders";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Quality } from "../drawing/quality";
+import type { Uniforms } from "../shaders/materials";
 import { makeRipples, rippleSlope } from "./ripples";
-import { SeaTile, slopeVariance } from "./sea_tile";
 import { seaStateOf, withParameter, type PlaneWave } from "./sea_state";
+import { SeaTile, slopeVariance } from "./sea_tile";
 
 /** As in the server: a sea fades into the next one in this time (wind_sea.cpp). */
 const kFadeS = 4;

@@ -1,9 +1,9 @@
 // A sum of plane waves as a repeating texture: elevation and slopes, drawn again for every picture.
 import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
 
-import { FullscreenPass } from "../fullscreen";
-import type { TexelType } from "../quality";
-import { makeMaterial } from "../shaders";
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { TexelType } from "../drawing/quality";
+import { makeMaterial } from "../shaders/materials";
 import type { PlaneWave } from "./sea_state";
 
 /** As in sea_tile.frag. Two seas of 32 waves while one fades into the next. */

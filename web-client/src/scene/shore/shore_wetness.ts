@@ -1,7 +1,7 @@
 // How wet the ground is and how much foam the swash leaves, per sample of the surface's frames. Kept on the page: real depth = elevation -
 // ground says where water stands; the rest follows from when it stood there last. Pure.
 import type { FoamFrame, SurfaceFrame } from "../../net/messages";
-import type { PlaneCounts } from "../frame_textures";
+import type { PlaneCounts } from "../frames/frame_textures";
 import type { ShoreCells } from "./shore_ground";
 
 /** Thinner water counts as none: three steps of a frame with the usual quantum, so that rounding does not wet dry ground. */

@@ -1,9 +1,9 @@
 // Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
-// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (passes/flat_shadow_pass.ts).
+// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (shadows/flat_shadow_pass.ts).
 import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial } from "../shaders";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { WhitePoints } from "./white_points";
 
 export class FrothPass implements Pass {

@@ -1,24 +1,13 @@
 // Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, where the surface rises against rocks
 // and breakwaters, and among fast white particles. Every source adds a mean number per second and area, length or particle, so that the
 // picture does not depend on the rates of frames and pictures. Pure: no renderer.
-import type { BoatDetail } from "../../codec/greeting";
 import { kParticleBytes } from "../../codec/frame_types";
+import type { BoatDetail } from "../../codec/greeting";
 import type { ObstacleInfo } from "../../codec/scene_info";
 import type { FoamFrame, ParticleFrame } from "../../net/messages";
-import type { BodyPose } from "../bodies";
+import type { BodyPose } from "../frames/bodies";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
 import type { MovingSurface } from "./moving_surface";
-
-/** Marsaglia's xorshift (2003) with 32 bits: fast, and the same in every run. Returns 0..1. */
-export function makeFastRandom(seed: number): () => number {
-  let state = seed | 1;
-  return () => {
-    state ^= state << 13;
-    state ^= state >>> 17;
-    state ^= state << 5;
-    return (state >>> 0) / 2 ** 32;
-  };
-}
 
 /** Ihmsen et al. (2012), equation 1: 0 below `least`, 1 above `most`, linear between. */
 export function share(value: number, least: number, most: number): number {
