@@ -1,12 +1,12 @@
 // Measures how long the worker takes for one frame of the surface and one of the particles: `npm run bench`, in Node or, with
 // --chromium, in a worker of a browser.
 import { fromBinary } from "@bufbuild/protobuf";
-import { ServerMessageSchema } from "../gen/spindrift/v1/wire_pb";
-import { FrameUnpacker } from "./frame_unpacker";
-import { isPacked } from "./frame_types";
-import { parseFrame } from "./parse_frame";
 
-export interface DecodeTimes {
+import { FrameUnpacker } from "../src/codec/frame_unpacker";
+import { parseFrame } from "../src/codec/parse_frame";
+import { ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
+
+interface DecodeTimes {
   frames: number;
   particles: number;
   resolution: number;
@@ -47,7 +47,7 @@ export function measureDecoding(file: Uint8Array, rounds: number): DecodeTimes {
       const message = fromBinary(ServerMessageSchema, bytes);
       if (message.message.case !== "frame") throw new Error("not a frame");
       const parsed = parseFrame(message.message.value);
-      const frame = isPacked(parsed) ? unpacker.unpack(parsed) : parsed;
+      const frame = parsed.kind === "packedSurface" || parsed.kind === "packedParticles" ? unpacker.unpack(parsed) : parsed;
       // Like the worker: into a buffer that the page has returned.
       if ("payload" in frame) bufferOf(frame.payload.length).set(frame.payload);
       const ms = performance.now() - begin;
