@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
-import { isCovered } from "../src/scene/looks/dry_places";
+import { isCovered } from "../src/scene/landscape/clearance";
 import { densityRatio, pickParticle, placeM, speedMps, type ShownParticles } from "../src/scene/frames/particle_values";
 import { breakingCriterion, foamAt, kLeastDepths, ShownSurface, type Rectangle } from "../src/scene/looks/surface_values";
 import type { ShownSurfaces } from "../src/scene/water/field_pass";

@@ -3,6 +3,7 @@ import { Vector3, type Object3D } from "three";
 
 import type { BoatDetail } from "../../codec/greeting";
 import { kLampColors, type LampColor, type Lamps } from "../light/lamps";
+import { clamp } from "../maths/interpolate";
 import type { BoatLamp } from "./fittings";
 
 /** Side lights and the masthead light end this far from straight ahead, and the stern light begins. */
@@ -22,7 +23,7 @@ const kColors: Record<BoatLamp["kind"], LampColor> = {
 
 /** Returns the share of a light that is seen at a bearing from the bow, positive to starboard. */
 export function lampShare(kind: BoatLamp["kind"], bearingDeg: number): number {
-  const soft = (insideDeg: number): number => Math.min(Math.max(0.5 + insideDeg / kEdgeDeg, 0), 1);
+  const soft = (insideDeg: number): number => clamp(0.5 + insideDeg / kEdgeDeg, 0, 1);
   const ahead = soft(kAbaftBeamDeg - Math.abs(bearingDeg));
   if (kind === "allRound") return 1;
   if (kind === "masthead") return ahead;

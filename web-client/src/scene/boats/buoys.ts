@@ -3,10 +3,11 @@
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { BreakwaterInfo, SideName } from "../../codec/scene_info";
+import { kSideNames, type BreakwaterInfo } from "../../codec/scene_info";
 import { clearanceM } from "../landscape/clearance";
 import { bedOf, depthAtM, insideM } from "../landscape/terrain";
 import { kLampColors, type Lamps } from "../light/lamps";
+import { clamp } from "../maths/interpolate";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
 import { addRod, addTurned } from "../meshes/shapes";
@@ -25,7 +26,6 @@ const kRadiusLimitsM = [0.08, 0.6] as const;
 const kFlashS = 0.7;
 const kFlashEveryS = 3;
 
-const kSides: readonly SideName[] = ["+x", "-x", "+z", "-z"];
 const kPaints: Record<BuoyPlace["kind"], Paint> = { red: [0.66, 0.05, 0.035, 0], green: [0.03, 0.34, 0.14, 0] };
 const kLampPaints: Record<BuoyPlace["kind"], Paint> = { red: [0.8, 0.08, 0.05, -1], green: [0.08, 0.7, 0.25, -1] };
 const kWeed: Paint = [0.09, 0.11, 0.05, 0.6];
@@ -46,13 +46,13 @@ export function buoyPlaces(greeting: BuoyScene): BuoyPlace[] {
   if (!wave || setting !== "openSea") return [];
   const bed = bedOf(greeting);
   const isFree = (xM: number, zM: number, widthM: number, found: readonly BuoyPlace[]): boolean =>
-    kSides.every((side) => insideM(side, greeting, xM, zM) > kClearWidths.side * widthM + (wave.sides[side] === "open" ? wave.spongeWidthM : 0)) &&
+    kSideNames.every((side) => insideM(side, greeting, xM, zM) > kClearWidths.side * widthM + (wave.sides[side] === "open" ? wave.spongeWidthM : 0)) &&
     depthAtM(bed, xM, zM) >= kLeastDepths * bed.depthM &&
     obstacles.every((obstacle) => clearanceM(obstacle, xM, zM) > kClearWidths.obstacle * widthM) &&
     found.every((other) => Math.hypot(xM - other.xM, zM - other.zM) > kClearWidths.buoy * widthM);
   const found: BuoyPlace[] = [];
   for (const wall of obstacles.filter((each): each is BreakwaterInfo => each.shape === "breakwater")) {
-    const radiusM = Math.min(Math.max(kRadiusWidths * wall.widthM, kRadiusLimitsM[0]), kRadiusLimitsM[1]);
+    const radiusM = clamp(kRadiusWidths * wall.widthM, kRadiusLimitsM[0], kRadiusLimitsM[1]);
     for (const end of [1, -1])
       for (const off of kOffWidths) {
         const alongM = end * (wall.lengthM / 2 + off * wall.widthM);
@@ -152,7 +152,7 @@ export class Buoys {
     this.places.forEach(({ kind, radiusM }, n) => {
       const { x: xM, z: zM } = this.group.children[n]!.position;
       const phaseS = (shownS + 0.37 * n * kFlashEveryS) % kFlashEveryS;
-      const share = Math.min(Math.max(3 - 6 * Math.abs(phaseS / kFlashS - 0.5), 0), 1);
+      const share = clamp(3 - 6 * Math.abs(phaseS / kFlashS - 0.5), 0, 1);
       lamps.add(xM, kLampRadii * radiusM, zM, 1.6 * radiusM, kLampColors[kind], share, true);
     });
   }

@@ -2,6 +2,7 @@
 // beam, height and draught. The keel touches half the height below the origin, the deck's lowest point half the height above it; the
 // widest place has the beam, and the hull reaches from transom to stem over the length. Bow along +x, starboard +z. Pure.
 import type { BoatDetail } from "../../codec/greeting";
+import { clamp, smooth } from "../maths/interpolate";
 import type { Point } from "../meshes/mesh_builder";
 
 export type HullKind = "dinghy" | "launch" | "cutter";
@@ -46,8 +47,6 @@ const kStrakeBeams = 0.014;
 const kSideBeams = 0.034;
 /** Place of the deck's and the keel's lowest points. */
 export const kLowestAt = 0.36;
-
-const clamp = (value: number, least: number, most: number): number => Math.min(Math.max(value, least), most);
 
 export function hullKind({ lengthM }: Pick<BoatDetail, "lengthM">): HullKind {
   return lengthM < kLaunchFromM ? "dinghy" : lengthM < kCutterFromM ? "launch" : "cutter";
@@ -108,7 +107,7 @@ export class HullLines {
     // Toward the bow the sections become V-shaped with flare.
     const bow = 0.62 * up + 0.38 * up ** 2.6;
     const ahead = clamp((along - widestAt) / (1 - widestAt), 0, 1);
-    const share = ahead * ahead * (3 - 2 * ahead);
+    const share = smooth(ahead);
     return this.sheerHalfM(along) * (middle + (bow - middle) * share);
   }
 

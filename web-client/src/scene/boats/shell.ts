@@ -1,5 +1,6 @@
 // The hull of a boat as one closed surface: outside (sides, transom, gunwale) and inside (inner sides, deck or floor boards), which share
 // the edges of the gunwale.
+import { clamp } from "../maths/interpolate";
 import type { MeshBuilder, Band, Paint, Point } from "../meshes/mesh_builder";
 import type { HullLines } from "./lines";
 import type { Livery } from "./livery";
@@ -14,7 +15,6 @@ export function stationsOf(lines: HullLines, count: number): number[] {
   return bent;
 }
 
-const clamp = (value: number, least: number, most: number): number => Math.min(Math.max(value, least), most);
 export const mirrored = ([x, y, z]: Point): Point => [x, y, -z];
 const middle = (a: Point): Point => [a[0], a[1], 0];
 
@@ -115,7 +115,7 @@ export function addInside(builder: MeshBuilder, lines: HullLines, livery: Livery
     for (const { along, i } of own) {
       const isTip = i === stations.length - 1;
       const sheerM = lines.sheerM(along);
-      const floorM = Math.min(Math.max(floor.heightM(along), lines.keelM(along) + 0.06 * lines.boat.heightM), sheerM - 0.01 * lines.boat.heightM);
+      const floorM = clamp(floor.heightM(along), lines.keelM(along) + 0.06 * lines.boat.heightM, sheerM - 0.01 * lines.boat.heightM);
       const rim = isTip ? edge[i]! : lines.inside(along, sheerM);
       outer.push(edge[i]!);
       rims.push(rim);

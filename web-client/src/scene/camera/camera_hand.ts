@@ -3,7 +3,7 @@
 import { Spherical, Vector3 } from "three";
 import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-import { wrapAngle } from "../frames/bodies";
+import { wrapAngle } from "../maths/interpolate";
 
 /** A press that moves the pointer no farther than this is a click. */
 export const kClickRadiusPx = 6;

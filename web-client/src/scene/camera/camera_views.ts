@@ -2,7 +2,7 @@
 import { Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
-import { wrapAngle } from "../frames/bodies";
+import { clamp, smooth, wrapAngle } from "../maths/interpolate";
 import { CameraHand } from "./camera_hand";
 import { diveView, keepClear, type DiveWater } from "./dive";
 import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
@@ -155,7 +155,7 @@ export class CameraViews {
     if (this.following && followed) this.follow(this.following, followed, nowS);
     if (this.travel) {
       const done = Math.min((nowS - this.travel.startedS) / kTravelS, 1);
-      const eased = done * done * (3 - 2 * done);
+      const eased = smooth(done);
       this.camera.position.lerpVectors(this.travel.fromM, this.travel.toM, eased);
       this.controls.target.lerpVectors(this.travel.fromTargetM, this.travel.toTargetM, eased);
       this.setFov(this.travel.fromFovDegrees + (fovOf(this.framed) - this.travel.fromFovDegrees) * eased);
@@ -181,7 +181,7 @@ export class CameraViews {
 
   private follow(following: NonNullable<CameraViews["following"]>, boat: Followed, nowS: number): void {
     const { camera, controls, scratchM } = this;
-    const elapsedS = Math.min(Math.max(nowS - following.lastS, 0), kLongestFrameS);
+    const elapsedS = clamp(nowS - following.lastS, 0, kLongestFrameS);
     following.lastS = nowS;
     const still = this.reducedMotion();
     const share = (perS: number): number => (still ? 1 : 1 - Math.exp(-perS * elapsedS));

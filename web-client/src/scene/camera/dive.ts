@@ -6,6 +6,7 @@ import type { ObstacleInfo } from "../../codec/scene_info";
 import { clearanceM } from "../landscape/clearance";
 import { coastHeightM } from "../landscape/coast";
 import { bedOf, groundHeightM } from "../landscape/terrain";
+import { clamp } from "../maths/interpolate";
 
 /** Least depth for a camera, and its distance from ground, walls and obstacles, in near planes. */
 const kLeastDepthNears = 4;
@@ -39,8 +40,6 @@ export function diveWater(greeting: GreetingInfo, nearM: number): DiveWater | un
   const outsideM = isTank ? -kOutsideDepths * wave.depthM : kAboveNears * nearM;
   return { sideM, widthM, depthM: wave.depthM, nearM, outsideM, obstacles, groundM };
 }
-
-const clamp = (value: number, low: number, high: number): number => Math.min(Math.max(value, low), high);
 
 /** Returns the distance from a place to the nearest side of the square; negative outside. */
 function fromSidesM({ sideM, widthM }: DiveWater, xM: number, zM: number): number {

@@ -2,6 +2,7 @@
 import { Vector3 } from "three";
 
 import type { SideName } from "../../codec/scene_info";
+import { clamp } from "../maths/interpolate";
 
 /** A part of the canvas in CSS pixels from its top left corner. */
 export interface PixelRect {
@@ -60,7 +61,7 @@ const kRaised = { wide: 1, tall: 2.2 };
 
 /** Returns 0 for a wide free part and 1 for a tall one. */
 function tallness(tangents: { across: number; up: number }): number {
-  return Math.min(Math.max((kWideRatio - tangents.across / tangents.up) / (kWideRatio - kTallRatio), 0), 1);
+  return clamp((kWideRatio - tangents.across / tangents.up) / (kWideRatio - kTallRatio), 0, 1);
 }
 
 /** Returns the factor by which a view from above is raised in a free part of this shape: a higher camera fills more of a tall one. */

@@ -2,7 +2,8 @@
 // tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it.
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from "three";
 
-import { hash } from "./random";
+import { smooth } from "../maths/interpolate";
+import { hash } from "../maths/random";
 
 const kSide = 256;
 
@@ -26,7 +27,6 @@ function cellWalls(x: number, y: number, period: number, seed: number): number {
 function cloud(x: number, y: number, period: number, seed: number): number {
   const cx = Math.floor(x);
   const cy = Math.floor(y);
-  const smooth = (t: number): number => t * t * (3 - 2 * t);
   const [fx, fy] = [smooth(x - cx), smooth(y - cy)];
   const at = (dx: number, dy: number): number => hash((cx + dx) % period, (cy + dy) % period, seed);
   return (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;

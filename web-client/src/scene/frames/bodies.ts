@@ -1,6 +1,7 @@
 // Bodies frames: unpacking, and interpolation between two of them. Pure.
 import { kBodyBytes } from "../../codec/frame_types";
 import type { BodiesFrame } from "../../net/messages";
+import { mixAngle } from "../maths/interpolate";
 
 export interface BodyPose {
   boatId: number;
@@ -47,16 +48,6 @@ export function unpackBodies(frame: BodiesFrame): BodiesState {
       rudder: view.getInt8(at + 25) / 127,
     });
   return { timeS: frame.timeS, stateId: frame.stateId, bodies };
-}
-
-/** Interpolates between two angles by the shorter way; the result is in -pi..pi. */
-export function mixAngle(from: number, to: number, mix: number): number {
-  const way = wrapAngle(to - from);
-  return wrapAngle(from + way * mix);
-}
-
-export function wrapAngle(angle: number): number {
-  return angle - 2 * Math.PI * Math.round(angle / (2 * Math.PI));
 }
 
 /** A longer distance in one frame is a jump: the boat left one periodic side and came in at the other. */

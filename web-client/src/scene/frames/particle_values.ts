@@ -1,8 +1,9 @@
 // Values of single particles, from the 12 bytes that the server streams, and the particle under a ray. Pure.
+import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
 import type { Ray } from "./pick";
 
-const kWordsPerParticle = 6;
+export const kWordsPerParticle = kParticleBytes / 2;
 
 /** The particles of one picture. */
 export interface ShownParticles {
@@ -16,7 +17,7 @@ export interface ShownParticles {
 const signedByte = (byte: number): number => (byte << 24) >> 24;
 
 /** Returns the streamed velocity. */
-function velocityMps({ frame, words }: ShownParticles, index: number): [number, number, number] {
+export function velocityMps({ frame, words }: ShownParticles, index: number): [number, number, number] {
   const at = index * kWordsPerParticle;
   const [low, high] = [words[at + 3]!, words[at + 4]!];
   const unit = frame.maxSpeedMps / 127;
@@ -25,6 +26,11 @@ function velocityMps({ frame, words }: ShownParticles, index: number): [number, 
 
 export function speedMps(shown: ShownParticles, index: number): number {
   return Math.hypot(...velocityMps(shown, index));
+}
+
+/** Returns how white a particle is, 0 to 255. */
+export function whiteOf({ words }: ShownParticles, index: number): number {
+  return words[index * kWordsPerParticle + 5]! & 255;
 }
 
 /** The streamed range of density over rest density. Values beyond it are sent as its ends. */

@@ -1,5 +1,6 @@
 // Chooses the simulation time to show. Frames arrive unevenly; this clock runs evenly, and far enough behind the server that there is
 // nearly always a frame before and one after to interpolate between.
+import { clamp } from "../maths/interpolate";
 
 /** Number of frames over which rate and interval are measured, and over which the jitter is. */
 const kRateCount = 16;
@@ -93,8 +94,8 @@ export class PlayoutClock {
       const steadyS = this.shownS + rate * elapsedS;
       const mostS = kMaxSlew * rate * elapsedS;
       const offS = (targetS - steadyS) * Math.min(1, kSlewPerS * elapsedS);
-      const slewedS = steadyS + Math.min(Math.max(offS, -mostS), mostS);
-      this.shownS = Math.min(Math.max(slewedS, this.shownS), Math.max(newest.timeS, this.shownS));
+      const slewedS = steadyS + clamp(offS, -mostS, mostS);
+      this.shownS = clamp(slewedS, this.shownS, Math.max(newest.timeS, this.shownS));
     }
     return this.shownS;
   }

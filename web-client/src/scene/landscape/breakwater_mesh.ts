@@ -3,10 +3,11 @@
 import type { BufferGeometry } from "three";
 
 import type { BreakwaterInfo } from "../../codec/scene_info";
-import { hash } from "../drawing/random";
+import { clamp } from "../maths/interpolate";
+import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addRod, addTurned, type Turn } from "../meshes/shapes";
-import { overgrown, shaded } from "./overgrowth";
+import { overgrown, shaded } from "./paints";
 
 /** The light at the end of a wall. */
 export type LightKind = "lighthouse" | "beacon";
@@ -56,7 +57,7 @@ export function makeBreakwater(wall: BreakwaterInfo, depthM: number, light: Ligh
 
 /** Boxes side by side with joints between them, and weed at the water's level. */
 function addCaissons(builder: MeshBuilder, { lengthM, widthM, heightM }: BreakwaterInfo, bottomM: number, topM: number): void {
-  const count = Math.min(Math.max(Math.round(lengthM / (1.5 * widthM)), 1), 60);
+  const count = clamp(Math.round(lengthM / (1.5 * widthM)), 1, 60);
   const stepM = lengthM / count;
   const gapM = 0.012 * stepM;
   const weedM = kWeedHeights * heightM;

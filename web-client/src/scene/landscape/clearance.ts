@@ -11,3 +11,8 @@ export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): numb
   const outZ = Math.abs(dz * c - dx * s) - obstacle.widthM / 2;
   return Math.hypot(Math.max(outX, 0), Math.max(outZ, 0)) + Math.min(Math.max(outX, outZ), 0);
 }
+
+/** Returns true inside the outline that an obstacle has at the still water. */
+export function isCovered(obstacles: readonly ObstacleInfo[], xM: number, zM: number): boolean {
+  return obstacles.some((obstacle) => clearanceM(obstacle, xM, zM) < 0);
+}

@@ -2,22 +2,21 @@
 // quays at closed sides without a beach. Pure.
 import type { BufferGeometry } from "three";
 
-import type { SideKind, SideName } from "../../codec/scene_info";
+import { kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
+import { clamp, smoothstep } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
-import { depthAtM, insideM, longSideM, type Bed } from "./terrain";
+import { bedPaint, mixPaint } from "./paints";
+import { depthAtM, insideM, isShoreDepth, longSideM, type Bed } from "./terrain";
 
 export interface Coast {
   bed: Bed;
   sides: Readonly<Record<SideName, SideKind>>;
 }
 
-const kSideNames: readonly SideName[] = ["+x", "-x", "+z", "-z"];
 /** Height of a quay over the still water, as a share of the side, and its bounds in metres. */
 const kQuaySides = 0.03;
 const kQuayMinM = 0.25;
 const kQuayMaxM = 2.5;
-/** A closed side whose bed is shallower than this share of the depth is a shore, otherwise a quay. */
-const kShoreDepths = 0.02;
 /** Where a ground is looked at along a side. */
 const kSideSamples = [-0.45, -0.3, -0.15, 0, 0.15, 0.3, 0.45] as const;
 /** Slope behind a shore that no beach makes. */
@@ -37,34 +36,27 @@ const kGrowth = 1.35;
 const kCoarseGrowth = 1.7;
 const kFewCells = 64;
 
-const kSand: Paint = [0.66, 0.53, 0.36, 0.7];
-const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
 const kGrass: Paint = [0.15, 0.2, 0.075, 1.0];
 const kFarGrass: Paint = [0.11, 0.16, 0.08, 0.6];
 const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
 const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
-
-const smoothstep = (from: number, to: number, at: number): number => {
-  const share = Math.min(Math.max((at - from) / (to - from), 0), 1);
-  return share * share * (3 - 2 * share);
-};
-const mixPaint = (a: Paint, b: Paint, share: number): Paint => [0, 1, 2, 3].map((c) => a[c]! + (b[c]! - a[c]!) * share) as unknown as Paint;
 
 /** Gentle rolling in -1..1: sines with no common period. */
 function rolling(x: number, z: number): number {
   return 0.5 * Math.sin(x + 1.7 * Math.sin(0.31 * z)) * Math.sin(0.83 * z + 0.4) + 0.3 * Math.sin(2.3 * x - 1.1 * z + 2) + 0.2 * Math.sin(0.37 * x + 0.53 * z);
 }
 
+/** A closed side whose bed is shallow is a shore, otherwise a quay. */
 function isShore({ bed }: Coast, side: SideName): boolean {
-  if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && beach.shoreDepthM <= kShoreDepths * bed.depthM);
+  if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && isShoreDepth(bed, beach.shoreDepthM));
   const sign = side[0] === "+" ? 1 : -1;
   const { sideM, widthM } = bed;
   const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, (sign * sideM) / 2, share * widthM) : depthAtM(bed, share * sideM, (sign * widthM) / 2)));
-  return depthsM.every((depthM) => depthM <= kShoreDepths * bed.depthM);
+  return depthsM.every((depthM) => isShoreDepth(bed, depthM));
 }
 
 export function quayHeightM(bed: Bed): number {
-  return Math.min(Math.max(kQuaySides * longSideM(bed), kQuayMinM), kQuayMaxM);
+  return clamp(kQuaySides * longSideM(bed), kQuayMinM, kQuayMaxM);
 }
 
 /** Returns the height of the ground, y = 0 at the still water. `pastQuay`: on the land side of a quay where the point is on its edge. */
@@ -95,7 +87,7 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
   const { bed, sides } = coast;
   const { depthM } = bed;
   const sideM = longSideM(bed);
-  let paint = mixPaint(kSeabed, kSand, Math.min(Math.max(1 + yM / (0.8 * depthM), 0), 1));
+  let paint = bedPaint(yM, depthM);
   for (const side of kSideNames) {
     const outM = -insideM(side, bed, xM, zM);
     if (sides[side] !== "closed" || outM < -1e-9) continue;

@@ -1,5 +1,5 @@
 // The ground of a scene with a bed as a texture, for bed.glsl.
-import { ClampToEdgeWrapping, DataTexture, DataUtils, HalfFloatType, LinearFilter, RedFormat } from "three";
+import { DataTexture, DataUtils, HalfFloatType, LinearFilter, RedFormat } from "three";
 
 import type { Bed } from "./terrain";
 
@@ -9,8 +9,6 @@ export function makeGroundTexture({ ground }: Bed): DataTexture | undefined {
   const depths = Uint16Array.from(ground.riseM, (riseM) => DataUtils.toHalfFloat(-riseM));
   const texture = new DataTexture(depths, ground.countX, ground.countZ, RedFormat, HalfFloatType);
   texture.minFilter = texture.magFilter = LinearFilter;
-  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
-  texture.unpackAlignment = 2;
   texture.needsUpdate = true;
   return texture;
 }

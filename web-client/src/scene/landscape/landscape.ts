@@ -6,11 +6,10 @@ import { kLampColors, type Lamps } from "../light/lamps";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { makeBreakwater, type LightKind } from "./breakwater_mesh";
+import { bedPaint } from "./paints";
 import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
-const kDrySand: Paint = [0.66, 0.53, 0.36, 0.7];
-const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
@@ -25,10 +24,7 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
   const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, (row, column) => {
-    const share = Math.min(Math.max(1 + rows[row]![column]![1] / (0.8 * bed.depthM), 0), 1);
-    return [0, 1, 2, 3].map((c) => kSeabed[c]! + (kDrySand[c]! - kSeabed[c]!) * share) as unknown as Paint;
-  });
+  builder.grid(rows, (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
   for (const edge of edges) builder.grid([edge.map(down), edge], kCut);

@@ -2,9 +2,10 @@
 import type { BufferGeometry } from "three";
 
 import type { RockInfo } from "../../codec/scene_info";
-import { hash } from "../drawing/random";
+import { mix, smooth } from "../maths/interpolate";
+import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
-import { overgrown, shaded } from "./overgrowth";
+import { overgrown, shaded } from "./paints";
 
 /** Rows and columns of a boulder; the second for software renderers. */
 const kCounts = { full: { rings: 16, around: 26 }, plain: { rings: 9, around: 14 } } as const;
@@ -16,10 +17,8 @@ const kWeedHeights = 0.14;
 /** Smooth value noise in 0..1. */
 function bumps(x: number, y: number, z: number, seed: number): number {
   const [ix, iy, iz] = [Math.floor(x), Math.floor(y), Math.floor(z)];
-  const smooth = (t: number): number => t * t * (3 - 2 * t);
   const [fx, fy, fz] = [smooth(x - ix), smooth(y - iy), smooth(z - iz)];
   const at = (dx: number, dy: number, dz: number): number => hash(ix + dx + 57 * (iz + dz), iy + dy, seed);
-  const mix = (a: number, b: number, t: number): number => a + (b - a) * t;
   const layer = (dz: number): number => mix(mix(at(0, 0, dz), at(1, 0, dz), fx), mix(at(0, 1, dz), at(1, 1, dz), fx), fy);
   return mix(layer(0), layer(1), fz);
 }

@@ -2,9 +2,9 @@
 // sends for a scene with a bed. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
 import type { GroundGrid } from "../../codec/ground";
-import type { BeachInfo, SideName } from "../../codec/scene_info";
+import { kSideNames, type BeachInfo, type SideName } from "../../codec/scene_info";
+import { bilinear, clamp } from "../maths/interpolate";
 
-const kSides: readonly SideName[] = ["+x", "-x", "+z", "-z"];
 /** Width of the land behind a shore: kLandBeaches of the beach's width, at most kLandSides of the water's longer side. */
 const kLandBeaches = 0.45;
 const kLandSides = 0.12;
@@ -34,20 +34,6 @@ export function longSideM({ sideM, widthM }: Sides): number {
   return Math.max(sideM, widthM);
 }
 
-/** Bilinear between the centres of cells; outside of them the nearest value. */
-function riseAtM({ countX, countZ, lengthM, widthM, riseM }: GroundGrid, xM: number, zM: number): number {
-  const clamped = (at: number, count: number): number => Math.min(Math.max(at, 0), count - 1);
-  const column = clamped((xM / lengthM + 0.5) * countX - 0.5, countX);
-  const row = clamped((zM / widthM + 0.5) * countZ - 0.5, countZ);
-  const left = Math.floor(column);
-  const before = Math.floor(row);
-  const along = (k: number): number => {
-    const first = riseM[left + countX * k]!;
-    return first + (riseM[Math.min(left + 1, countX - 1) + countX * k]! - first) * (column - left);
-  };
-  return along(before) + (along(Math.min(before + 1, countZ - 1)) - along(before)) * (row - before);
-}
-
 /** Returns the distance from the side to a point inside the water; negative outside. */
 export function insideM(side: SideName, { sideM, widthM }: Sides, xM: number, zM: number): number {
   const isX = side[1] === "x";
@@ -55,18 +41,26 @@ export function insideM(side: SideName, { sideM, widthM }: Sides, xM: number, zM
   return (isX ? sideM : widthM) / 2 - (side[0] === "+" ? along : -along);
 }
 
+/** Returns whether a side with this still-water depth is a shore. */
+export function isShoreDepth(bed: Bed, depthM: number): boolean {
+  return depthM <= kShoreDepths * bed.depthM;
+}
+
 /** Returns the width of the dry land drawn behind this beach; 0 if its side is under water. */
 export function landWidthM(bed: Bed, beach: BeachInfo): number {
-  if (beach.shoreDepthM > kShoreDepths * bed.depthM) return 0;
+  if (!isShoreDepth(bed, beach.shoreDepthM)) return 0;
   return Math.min(kLandBeaches * beach.widthM, kLandSides * longSideM(bed));
 }
 
 /** Returns the still-water depth inside the water, as the server computes it; 0 at a shore, negative on land. */
 export function depthAtM(bed: Bed, xM: number, zM: number): number {
-  if (bed.ground) return -riseAtM(bed.ground, xM, zM);
+  if (bed.ground) {
+    const { countX, countZ, lengthM, widthM, riseM } = bed.ground;
+    return -bilinear({ lengthXM: lengthM, lengthZM: widthM, countX, countZ }, xM, zM, (at) => riseM[at]!);
+  }
   let depthM = bed.depthM;
   for (const beach of bed.beaches) {
-    const share = Math.min(Math.max(insideM(beach.side, bed, xM, zM) / beach.widthM, 0), 1);
+    const share = clamp(insideM(beach.side, bed, xM, zM) / beach.widthM, 0, 1);
     depthM = Math.min(depthM, beach.shoreDepthM + (bed.depthM - beach.shoreDepthM) * share);
   }
   return depthM;
@@ -103,7 +97,7 @@ export function groundExtent(bed: Bed): { minXM: number; maxXM: number; minZM: n
 export function bedUniformValues(bed: Bed): { widthsM: number[]; shoreDepthsM: number[] } {
   const beachOf = (side: SideName): BeachInfo | undefined => bed.beaches.find((beach) => beach.side === side);
   return {
-    widthsM: kSides.map((side) => beachOf(side)?.widthM ?? 1),
-    shoreDepthsM: kSides.map((side) => beachOf(side)?.shoreDepthM ?? bed.depthM),
+    widthsM: kSideNames.map((side) => beachOf(side)?.widthM ?? 1),
+    shoreDepthsM: kSideNames.map((side) => beachOf(side)?.shoreDepthM ?? bed.depthM),
   };
 }

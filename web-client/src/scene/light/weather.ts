@@ -1,5 +1,6 @@
 // How hard it rains in a picture, and how hazy the air is. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
+import { ramp } from "../maths/interpolate";
 
 /** Haze of the open air takes half of the light at this many sides of the square. */
 const kHazeSides = 34;
@@ -17,7 +18,7 @@ const kLeastShare = 0.35;
 export function rainShare(wind: GreetingInfo["wind"]): number {
   if (!wind) return 0;
   const share = (wind.levelRatio * wind.dropsPerM2S) / kHardestPerM2S;
-  return Math.min(Math.max((share - kLeastShare) / (1 - kLeastShare), 0), 1);
+  return ramp(kLeastShare, 1, share);
 }
 
 /** Returns the distance at which haze has half of the light. Rain makes it hazier. */

@@ -1,11 +1,11 @@
 // Rings of the small drops of rain, as slopes in a tile that repeats over the water. Each drop of the tile falls again and again, elsewhere each
 // time. Reads nothing but the time. Writes the rain.
-import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
-import { makeFastRandom } from "../drawing/random";
 import { rainShare } from "../light/weather";
+import { makeFastRandom } from "../maths/random";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { makeDropSeeds } from "./drop_seeds";
 
@@ -38,7 +38,6 @@ export class RainRingsPass implements Pass {
       format: RGFormat,
       type: HalfFloatType,
       minFilter: LinearMipmapLinearFilter,
-      magFilter: LinearFilter,
       wrapS: RepeatWrapping,
       wrapT: RepeatWrapping,
       generateMipmaps: true,

@@ -4,9 +4,9 @@ import { BufferAttribute, BufferGeometry, LineSegments, NormalBlending, Scene, V
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
-import { makeFastRandom } from "../drawing/random";
 import type { Sky } from "../light/sky";
 import { rainShare } from "../light/weather";
+import { makeFastRandom } from "../maths/random";
 import { makeMaterial } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import { makeDropSeeds } from "./drop_seeds";

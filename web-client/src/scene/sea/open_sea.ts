@@ -3,7 +3,7 @@
 // the simulated water by it (docs/wind_sea.md). The shorter one is ripples.
 import { Vector2, Vector4 } from "three";
 
-import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
+import { kSideNames, type SideName, type WaveInfo, type WindInfo } from "../../codec/scene_info";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { Uniforms } from "../shaders/materials";
@@ -27,8 +27,6 @@ const kLeastBlendSides = 0.06;
 /** Never reached: at a closed side the simulated water does not blend with anything. */
 const kNever = 1e6;
 
-export const kSideOrder: readonly SideName[] = ["+x", "-x", "+z", "-z"];
-
 /**
  * Returns the uniforms of sea_blend.glsl for the sides +x, -x, +z, -z: `beyondM`, how far outside a side the simulated water's share
  * becomes 0, and `widthM`, over which it falls from 1.
@@ -41,7 +39,7 @@ export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "widthM" | "spo
     if (kind === "periodic") return [kPeriodicFadeSides * sideM, kPeriodicFadeSides * sideM];
     return [0, Math.max(wave.spongeWidthM, kLeastBlendSides * sideM)];
   };
-  return { beyondM: kSideOrder.map((side) => of(side)[0]), widthM: kSideOrder.map((side) => of(side)[1]) };
+  return { beyondM: kSideNames.map((side) => of(side)[0]), widthM: kSideNames.map((side) => of(side)[1]) };
 }
 
 export class OpenSea implements Pass {

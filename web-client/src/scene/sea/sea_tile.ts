@@ -1,5 +1,5 @@
 // A sum of plane waves as a repeating texture: elevation and slopes, drawn again for every picture.
-import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
+import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
 
 import { FullscreenPass } from "../drawing/fullscreen";
 import type { TexelType } from "../drawing/quality";
@@ -45,10 +45,8 @@ export class SeaTile {
   /** `smooth`: with mip levels; too slow for software renderers, whose shader fades the waves smaller than a pixel itself. */
   constructor(readonly tileM: number, texelsCount: number, smooth: boolean, texelType: TexelType) {
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
-      format: RGBAFormat,
       type: texelType,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
-      magFilter: LinearFilter,
       wrapS: RepeatWrapping,
       wrapT: RepeatWrapping,
       generateMipmaps: smooth,

@@ -1,6 +1,6 @@
 // The shore as one texture, which solids and water read: where water stands, how wet the ground is, and the foam of the swash.
 // Reads the frames around the time shown and the field's level of the water. Writes the shore.
-import { ClampToEdgeWrapping, DataTexture, LinearFilter, RGBAFormat, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget } from "three";
+import { DataTexture, LinearFilter, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget } from "three";
 
 import { FullscreenPass } from "../drawing/fullscreen";
 import type { Pass, Picture } from "../drawing/pass";
@@ -40,15 +40,7 @@ export class ShorePass implements Pass {
     { texelType }: Pick<Quality, "texelType">,
   ) {
     const { width, height } = field.sizes;
-    this.target = new WebGLRenderTarget(width, height, {
-      format: RGBAFormat,
-      type: texelType,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter,
-      wrapS: ClampToEdgeWrapping,
-      wrapT: ClampToEdgeWrapping,
-      depthBuffer: false,
-    });
+    this.target = new WebGLRenderTarget(width, height, { type: texelType, depthBuffer: false });
     this.uniforms = { u_shore: { value: this.target.texture } };
     [this.from, this.to] = [makeTexture(wetness.counts), makeTexture(wetness.counts)];
     this.screen = new FullscreenPass(
@@ -111,8 +103,6 @@ type Frame = Parameters<ShoreWetness["advance"]>[0];
 function makeTexture({ resolutionCount, countZ }: PlaneCounts): DataTexture {
   const texture = new DataTexture(new Uint8Array(2 * resolutionCount * countZ), resolutionCount, countZ, RGFormat, UnsignedByteType);
   texture.minFilter = texture.magFilter = LinearFilter;
-  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
-  texture.unpackAlignment = 1;
   texture.needsUpdate = true;
   return texture;
 }

@@ -14,6 +14,7 @@ import { bedOf } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
+import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { isIndoors, Surroundings } from "./surroundings";
 
@@ -67,7 +68,7 @@ export class SolidsPass implements Pass {
       u_field: { value: field ?? null },
       u_noise: { value: noise },
       u_extent_m: { value: new Vector2(sideM, widthM) },
-      u_grain_m: { value: Math.min(Math.max(kGrainSides * Math.max(sideM, widthM), leastM), mostM) },
+      u_grain_m: { value: clamp(kGrainSides * Math.max(sideM, widthM), leastM, mostM) },
       u_wet_m: { value: kWetDepths * bedOf(greeting).depthM },
       u_haze_m: this.haze,
       u_darkness: this.darkness,

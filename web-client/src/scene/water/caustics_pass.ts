@@ -1,7 +1,7 @@
 // Sunlight that the waves focus on what is below them: a grid of the surface is refracted along the light and drawn with the ratio of its
 // areas, added up (after Stam 1996; Shah, Konttinen & Pattanaik 2007). Two layers: at the floor, and above it, because focus grows with the depth.
 // Reads the field. Writes the caustics: light relative to level water, over the square, mean 1.
-import { AdditiveBlending, DoubleSide, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, RGFormat, Scene, Vector2, Vector3, Camera, Color, WebGLRenderTarget, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
+import { AdditiveBlending, DoubleSide, HalfFloatType, LinearMipmapLinearFilter, Mesh, RGFormat, Scene, Vector2, Vector3, Camera, Color, WebGLRenderTarget, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
@@ -38,7 +38,6 @@ export class CausticsPass implements Pass {
       format: RGFormat,
       type: HalfFloatType,
       minFilter: LinearMipmapLinearFilter,
-      magFilter: LinearFilter,
       generateMipmaps: true,
       depthBuffer: false,
     });

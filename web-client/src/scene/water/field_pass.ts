@@ -1,24 +1,7 @@
 // Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown. Where water moves over its
 // shore, the field is that of the water's level, which goes on over dry ground (level.frag).
 // Reads the surface frames around that time. Writes the field.
-import {
-  ClampToEdgeWrapping,
-  DataTexture,
-  IntType,
-  LinearFilter,
-  NearestFilter,
-  RedIntegerFormat,
-  RepeatWrapping,
-  RGBAFormat,
-  ShortType,
-  Vector2,
-  Vector3,
-  Vector4,
-  WebGLRenderTarget,
-  type IUniform,
-  type Texture,
-  type WebGLRenderer,
-} from "three";
+import { ClampToEdgeWrapping, DataTexture, IntType, NearestFilter, RedIntegerFormat, RepeatWrapping, ShortType, Vector2, Vector3, Vector4, WebGLRenderTarget, type IUniform, type Texture, type WebGLRenderer } from "three";
 
 import { kMaxResolutionCount } from "../../codec/frame_types";
 import type { WaveInfo } from "../../codec/scene_info";
@@ -29,6 +12,7 @@ import type { Quality } from "../drawing/quality";
 import type { Between, FrameRing } from "../frames/frame_ring";
 import { FrameTextures, type PlaneCounts } from "../frames/frame_textures";
 import { timeRateWeights, timeWeights, type FrameTimes } from "../frames/time_weights";
+import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { makeCellsTexture } from "../shore/cells_texture";
 import type { ShoreCells } from "../shore/shore_ground";
@@ -84,13 +68,10 @@ export class FieldPass implements Pass {
     private readonly cellsOf?: (counts: PlaneCounts) => ShoreCells,
   ) {
     this.sideM = sideM;
-    const allowed = (count: number): number => Math.min(Math.max(count, 1), kMaxResolutionCount);
+    const allowed = (count: number): number => clamp(count, 1, kMaxResolutionCount);
     const counts = { resolutionCount: allowed(resolutionCount), countZ: allowed(countZ) };
     this.target = new WebGLRenderTarget(...this.fieldCounts(counts), {
-      format: RGBAFormat,
       type: quality.texelType,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter,
       wrapS: periodicX ? RepeatWrapping : ClampToEdgeWrapping,
       wrapT: periodicZ ? RepeatWrapping : ClampToEdgeWrapping,
       depthBuffer: false,
@@ -262,8 +243,6 @@ function makeElevationTarget({ resolutionCount, countZ }: PlaneCounts): WebGLRen
 function makeTexture({ resolutionCount, countZ }: PlaneCounts): DataTexture {
   const texture = new DataTexture(new Int16Array(resolutionCount * countZ), resolutionCount, countZ, RedIntegerFormat, ShortType);
   texture.internalFormat = "R16I";
-  texture.minFilter = texture.magFilter = NearestFilter;
-  texture.unpackAlignment = 2;
   texture.needsUpdate = true;
   return texture;
 }

@@ -48,7 +48,6 @@ function makeTexture({ resolutionCount, countZ }: PlaneCounts, periodicX: boolea
   texture.minFilter = texture.magFilter = LinearFilter;
   texture.wrapS = periodicX ? RepeatWrapping : ClampToEdgeWrapping;
   texture.wrapT = periodicZ ? RepeatWrapping : ClampToEdgeWrapping;
-  texture.unpackAlignment = 1;
   texture.needsUpdate = true;
   return texture;
 }

@@ -11,6 +11,7 @@ import type { Quality } from "../drawing/quality";
 import { makeGroundTexture } from "../landscape/ground_texture";
 import { bedOf, bedUniformValues, longSideM } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
+import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import { BelowSurface } from "./below_surface";
@@ -78,7 +79,7 @@ export class WaterPass implements Pass {
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
-      u_lace_m: { value: Math.min(Math.max(longSideM(bed) / 7, 1), 9) },
+      u_lace_m: { value: clamp(longSideM(bed) / 7, 1, 9) },
       u_froth: { value: froth },
       ...foam,
       ...rain,
