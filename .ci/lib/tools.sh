@@ -21,10 +21,18 @@ command_study() {
   if wants_help "$@"; then
     cat <<'TEXT'
 usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
+       ./dev study --update
 
 The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down,
 --plot FOLDER as well, for ./dev charts FOLDER.
+--update measures the trade suite anew (about 20 minutes; an interrupted run continues) and writes everything that is made
+of it, with date and commit: numbers and charts in server/study/plots, tables in the documents, the figures of the page.
 TEXT
+    return
+  fi
+  if [[ "${1:-}" == --update ]]; then
+    (($# == 1)) || fail 2 "study --update takes no options; see ./dev study --help"
+    update_study
     return
   fi
   local preset rest
@@ -32,6 +40,23 @@ TEXT
   prepare_server "$preset"
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
   exec "$(binary_of "$preset")" study "${rest[@]}"
+}
+
+# Measures on the software rasteriser, as the tests run: with it the state hashes can be compared everywhere.
+update_study() {
+  local commit
+  git diff --quiet HEAD -- server shaders ':!server/study' || fail 2 "study --update: commit the changes below server and shaders first"
+  commit="$(git rev-parse --short HEAD)"
+  need_packages charts
+  prepare_server release
+  mkdir -p build/study
+  rm -f build/study/trade.json
+  # Exit code 1 with results: something missed its bound, which is printed and no reason to keep older figures.
+  "$(binary_of release)" study --suite trade --device software --plot build/study --journal build/study/trade.journal ||
+    [[ -f build/study/trade.json ]] || fail 1 "the study ended early; ./dev study --update continues it"
+  python3 server/study/write_tables.py --take build/study/trade.json "$commit"
+  rm build/study/trade.journal
+  command_charts "$root/server/study/plots"
 }
 
 command_charts() {

@@ -82,7 +82,7 @@ ProgramCommand addStudy(CLI::App& program) {
       ->capture_default_str();
   command->add_option("--case", options->only,
                       "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
-                      "this, or one scene of the trade suite");
+                      "this, or one scene of the trade suite, known, or cost");
   addDevice(*command, options->device);
   command->add_flag("--quick", options->quick, "Shorter runs, a few minutes in all");
   command

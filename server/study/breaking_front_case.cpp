@@ -137,34 +137,36 @@ core::Result<void> atResolutions(gpu::Context& ctx, const Record& exact, bool qu
   return {};
 }
 
-/// The factors of scene/fidelity.cpp on the cells and the tick rate of a room with 192 cells.
-struct Level {
-  const char* name;
-  std::uint32_t cells;
-  double tick_rate_hz;
-};
-constexpr std::array<Level, 4> kLevels = {
-    {{"draft", 96, 60.0}, {"balanced", 192, 60.0}, {"fine", 288, 60.0}, {"reference", 480, 120.0}}};
+/// Cells and tick rate of BALANCED.
+constexpr double kBalancedCells = 192;
+constexpr double kBalancedTicks_hz = 60.0;
+
+/// Mean difference at the gauges over the height of the wave.
+LevelError differenceAtLevel(gpu::Context& ctx, const Record& exact, const LevelScale& level) {
+  const auto cells = static_cast<std::uint32_t>(kBalancedCells * level.cells);
+  core::Scene scene = shallowChannel(cells, kLength_m / cells, kDepth_m, 0.5);
+  // As a room runs it: the rule chooses the steps.
+  scene.allow_unstable = false;
+  scene.wave->fixed_substeps_count = 0;
+  scene.tick_rate_hz = kBalancedTicks_hz * level.ticks;
+  const auto record = measuredRecord(ctx, scene);
+  if (!record) return record.error();
+  return meanDifference(*record, exact) / kHeight_m;
+}
 
 core::Result<void> atLevels(gpu::Context& ctx, const Record& exact, const std::string& source, std::vector<Row>& rows) {
-  double before_m = 0.0, before_cells = 0.0;
-  for (const Level& level : kLevels) {
-    core::Scene scene = shallowChannel(level.cells, kLength_m / level.cells, kDepth_m, 0.5);
-    // As a room runs it: the rule chooses the steps.
-    scene.allow_unstable = false;
-    scene.wave->fixed_substeps_count = 0;
-    scene.tick_rate_hz = level.tick_rate_hz;
-    const auto record = measuredRecord(ctx, scene);
-    if (!record) return record.error();
-    const double off_m = meanDifference(*record, exact);
-    rows.push_back(
-        {fmt::format("fidelity {}, {} cells: mean difference at the gauges / height", level.name, level.cells), "%",
-         100 * off_m / kHeight_m, 0.0, Tolerance::kNone, 0.0, source});
-    if (before_m > 0)
+  double before = 0.0, before_cells = 0.0;
+  for (const LevelScale& level : kLevelScales) {
+    const auto off = differenceAtLevel(ctx, exact, level);
+    if (!off) return off.error();
+    rows.push_back({fmt::format("fidelity {}, {} cells: mean difference at the gauges / height", level.name,
+                                kBalancedCells * level.cells),
+                    "%", 100 * *off, 0.0, Tolerance::kNone, 0.0, source});
+    if (before > 0)
       rows.push_back({fmt::format("fidelity {}: the difference falls per doubling of the cells by", level.name), "",
-                      std::pow(before_m / off_m, 1 / std::log2(level.cells / before_cells)), 1.6, Tolerance::kAtLeast,
-                      0.0, "first order at fronts"});
-    before_m = off_m;
+                      std::pow(before / *off, 1 / std::log2(level.cells / before_cells)), 1.6, Tolerance::kAtLeast, 0.0,
+                      "first order at fronts"});
+    before = *off;
     before_cells = level.cells;
   }
   return {};
@@ -180,6 +182,11 @@ Outcome breakingFront(gpu::Context& ctx, bool quick) {
   if (auto done = atResolutions(ctx, exact, quick, source, rows); !done) return done.error();
   if (auto done = atLevels(ctx, exact, source, rows); !done) return done.error();
   return CaseResult{std::move(rows), {}};
+}
+
+LevelError boreError(gpu::Context& ctx, const LevelScale& level) {
+  static const Record exact = referenceRecord(3072);
+  return differenceAtLevel(ctx, exact, level);
 }
 
 }  // namespace spindrift::study

@@ -1,11 +1,14 @@
-// The cases, for the list in accuracy.cpp.
+// The cases, for the lists in accuracy.cpp and known_results.cpp.
 #pragma once
 
 #include <spindrift/study/accuracy.h>
+#include <spindrift/study/known_results.h>
 
 namespace spindrift::study {
 
 using Outcome = core::Result<CaseResult>;
+/// Relative error of a KnownResult.
+using LevelError = core::Result<double>;
 
 // wave_cases.cpp
 Outcome eigenmode(gpu::Context& ctx, bool quick);
@@ -33,6 +36,7 @@ Outcome diffraction(gpu::Context& ctx, bool quick);
 // wake_cases.cpp
 Outcome kelvinWake(gpu::Context& ctx, bool quick);
 Outcome shallowWake(gpu::Context& ctx, bool quick);
+LevelError wakeError(gpu::Context& ctx, const LevelScale& level);
 
 // slope_and_side_cases.cpp
 Outcome reflection(gpu::Context& ctx, bool quick);
@@ -54,6 +58,7 @@ Outcome overtopping(gpu::Context& ctx, bool quick);
 
 // breaking_front_case.cpp
 Outcome breakingFront(gpu::Context& ctx, bool quick);
+LevelError boreError(gpu::Context& ctx, const LevelScale& level);
 
 // momentum_cases.cpp
 Outcome momentumAndEnergy(gpu::Context& ctx, bool quick);
@@ -62,6 +67,9 @@ Outcome momentumAndEnergy(gpu::Context& ctx, bool quick);
 Outcome solitaryRunUp(gpu::Context& ctx, bool quick);
 Outcome runUpProfiles(gpu::Context& ctx, bool quick);
 Outcome solitaryWave(gpu::Context& ctx, bool quick);
+LevelError gentleRunUpError(gpu::Context& ctx, const LevelScale& level);
+LevelError breakingRunUpError(gpu::Context& ctx, const LevelScale& level);
+LevelError solitaryHeightError(gpu::Context& ctx, const LevelScale& level);
 
 // shore_cases.cpp
 Outcome damBreakOfShallowWater(gpu::Context& ctx, bool quick);
@@ -82,6 +90,7 @@ Outcome hydrostaticColumn(gpu::Context& ctx, bool quick);
 
 // dam_break.cpp
 Outcome damBreak(gpu::Context& ctx, bool quick);
+LevelError damBreakError(gpu::Context& ctx, const LevelScale& level);
 
 // taylor_green.cpp
 Outcome taylorGreen(gpu::Context& ctx, bool quick);

@@ -41,8 +41,9 @@ double supportRatio(core::KernelSet set) {
   return 2.4;
 }
 
-/// A column of a x 2 a with 40 layers in a dry channel, long enough for T = 9. The channel is periodic across.
-core::Scene damScene(core::PressureSolver solver, core::KernelSet set, double length_m) {
+/// A column of a x 2 a in a dry channel, long enough for T = 9. The channel is periodic across. `layers_count`: even.
+core::Scene damScene(core::PressureSolver solver, core::KernelSet set, double length_m,
+                     std::uint32_t layers_count = 40) {
   core::Scene scene;
   scene.name = "dam";
   // Steps and speeds are those of a column of 1 m, by Froude's law.
@@ -50,13 +51,12 @@ core::Scene damScene(core::PressureSolver solver, core::KernelSet set, double le
   scene.tick_rate_hz = 120.0 / speed_scale;
   scene.particles.emplace();
   core::ParticleScene& p = *scene.particles;
-  constexpr std::uint32_t kLayers = 40;
   const std::uint32_t across_count = set == core::KernelSet::kMuller ? 6 : 8;
-  const double spacing_m = 2 * length_m / kLayers;
-  p.layers_count = kLayers;
+  const double spacing_m = 2 * length_m / layers_count;
+  p.layers_count = layers_count;
   p.box_side_m = 16 * length_m;
   p.box_width_m = across_count * spacing_m;
-  p.count = kLayers * (kLayers / 2) * across_count;
+  p.count = layers_count * (layers_count / 2) * across_count;
   p.fill_x_ratio = 1.0 / 16;
   p.headroom_m = length_m;
   p.max_speed_mps = 12.0 * speed_scale;
@@ -239,6 +239,17 @@ Outcome damBreak(gpu::Context& ctx, bool quick) {
     }
   }
   return CaseResult{std::move(rows), {std::move(fronts), std::move(heights)}};
+}
+
+LevelError damBreakError(gpu::Context& ctx, const LevelScale& level) {
+  const EdgeSeries& series = kEdgeSeries.front();
+  const auto layers_count = 2 * static_cast<std::uint32_t>(std::lround(10 * level.particles));
+  core::Scene scene =
+      damScene(core::PressureSolver::kPositionBased, core::KernelSet::kMuller, series.length_m, layers_count);
+  scene.tick_rate_hz *= level.ticks;
+  const auto computed = collapse(ctx, scene, series.length_m, std::min(series.edge.back().time, kLastT));
+  if (!computed) return computed.error();
+  return errorsOf(computed->edge, series, kGateDelayT).rms;
 }
 
 }  // namespace spindrift::study

@@ -14,9 +14,9 @@ import sys
 
 # Distinguishable for red-green colour-blind readers (Okabe & Ito 2008), and dark enough for print.
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#7a5c00", "#444444"]
-MARKERS = ["o", "s", "^", "D", "v", "P"]
+MARKERS = ["o", "s", "^", "D", "v", "P", "X", "<", "*"]
 LEVEL = "fidelity"  # the knob of the rows that are fidelity levels
-COST_LABEL = "wall time per simulated second [ms]"
+COST_LABEL = "processor time per simulated second [ms]"
 ERROR_LABEL = "RMS error of the water height [%]"
 
 
@@ -134,6 +134,7 @@ def stability_charts(results):
 def trade_charts(results):
     """Cost against error: one chart of the fidelity levels of all scenes, and one for each scene with single changes."""
     scenes = results["scenes"]
+    stamp = f" ({results['date']}, {results['commit']})" if "date" in results else ""
     series = []
     for index, scene in enumerate(scenes):
         points = [point for row, point in trade_points(scene) if row["knob"] == LEVEL]
@@ -141,7 +142,7 @@ def trade_charts(results):
             points = [dataclasses.replace(point, label="") for point in points]
         series.append(Series(scene["scene"], points, "line and dots", 5.5, marker=MARKERS[index % len(MARKERS)]))
     if len(scenes) > 1:
-        yield trade_chart("trade", "Cost of accuracy: fidelity levels", series)
+        yield trade_chart("trade", f"Cost of accuracy: fidelity levels{stamp}", series)
     for scene in scenes:
         levels, changes, front = [], [], []
         for row, point in trade_points(scene):
@@ -151,12 +152,12 @@ def trade_charts(results):
                 levels.append(point)
             else:
                 changes.append(point if row["on_front"] else dataclasses.replace(point, label=""))
-        if len(scenes) > 1 and not changes:
+        if len(scenes) > 1 and not any(row["knob"] == "seed" for row in scene["rows"]):
             continue
         front.sort(key=lambda point: point.x)
         yield trade_chart(
             f"trade_{scene['scene']}",
-            f"Cost of accuracy: {scene['scene']}",
+            f"Cost of accuracy: {scene['scene']}{stamp}",
             [
                 Series("no other is cheaper and closer, beyond chance", front, "line", colour="#999999"),
                 Series("one setting of BALANCED changed", changes, "dots", 4.5, COLOURS[0], "o"),
@@ -170,12 +171,12 @@ def trade_points(scene):
     for row in scene["rows"]:
         if not row["refused"]:
             label = row["setting"] if row["knob"] == LEVEL else f"{row['knob']} {row['setting']}"
-            yield row, Point(row["wall_ms_per_s"], 100 * row["height_rms_ratio"], label)
+            yield row, Point(row["cost_ms_per_s"], 100 * row["height_rms_ratio"], label)
 
 
 def trade_chart(name, title, series):
     series = [one for one in series if one.points]
-    return Chart(name, title, COST_LABEL, ERROR_LABEL, series, True, True, (1000.0, "real time"))
+    return Chart(name, title, COST_LABEL, ERROR_LABEL, series, True, True, (1000.0, "one core, real time"))
 
 
 SUITES = {"accuracy": accuracy_charts, "stability": stability_charts, "trade": trade_charts}

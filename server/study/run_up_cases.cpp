@@ -164,12 +164,50 @@ constexpr std::array<LaboratoryRun, 7> kLaboratory = {{{0.0185, 0.0758, false, "
 /// One roughness for all, as for the concrete of the island. The laboratory's water disperses: without dispersion waves
 /// of more than 0.2 of the depth break too early and reach 10 % less.
 constexpr double kLaboratoryManning = 0.012;
+/// Run-up over depth of a wave of 0.019 by Synolakis's nonlinear theory, at t = 55 sqrt(d/g) (NTHMP benchmark 1).
+constexpr double kClosedFormRunUp = 0.0912;
+/// Cells per depth of 1 m at BALANCED, as in the scene `flume`.
+constexpr double kLevelCells_pm = 10.0;
+
+/// What is left of a solitary wave after 30 depths over a level bed, over its start and its speed in theory.
+struct SolitaryWaveLeft {
+  double height_ratio;
+  double speed_ratio;
+};
+
+core::Result<SolitaryWaveLeft> afterThirtyDepths(gpu::Context& ctx, double height_m, double cells_per_m) {
+  constexpr double kWay_m = 30.0;
+  constexpr double kStart_m = 15.0;
+  const auto cells = static_cast<std::uint32_t>((kStart_m + kWay_m + 15.0) * cells_per_m);
+  core::Scene scene = shallowChannel(cells, 1.0 / cells_per_m, 1.0, 0.3);
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  const double speed_mps = std::sqrt(kGravity_mps2 * (1.0 + height_m));
+  const double from_m = kStart_m - scene.wave->side_m / 2;
+  // The shape of Serre's solitary wave; its water moves as the shape does: u = c eta / (d + eta).
+  const double gamma_pm = std::sqrt(0.75 * height_m / (1.0 + height_m));
+  const auto eta = [&](double x) { return height_m / std::pow(std::cosh(gamma_pm * (x - from_m)), 2); };
+  auto water = sim::WaterSim::create(ctx, scene);
+  if (!water) return water.error();
+  const double half_step_m = 0.5 * speed_mps * (*water)->derived().wave->dt_s;
+  setShallowState(
+      **water, [&](double x, double) { return eta(x); },
+      [&](double x, double) { return speed_mps * eta(x + half_step_m) / (1.0 + eta(x + half_step_m)); });
+  if (auto done = runTo(**water, kWay_m / speed_mps); !done) return done.error();
+  const std::vector<double> eta_m = (*water)->copyState().elevation_m;
+  const auto first = eta_m.begin() + cells;
+  const auto top = std::max_element(first, first + cells);
+  const auto at = static_cast<double>(top - first);
+  const double bend = *(top - 1) - 2 * *top + *(top + 1);
+  const double shift = 0.5 * (*(top - 1) - *(top + 1)) / bend;
+  const double crest_m = *top - 0.25 * (*(top - 1) - *(top + 1)) * shift;
+  const double way_m = (at + 0.5 + shift) / cells_per_m - kStart_m;
+  return SolitaryWaveLeft{crest_m / height_m, way_m / ((*water)->time_s() * speed_mps)};
+}
 
 }  // namespace
 
 Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
-  // The closed form of Synolakis's nonlinear theory reaches 0.0912 d at t = 55 sqrt(d/g) (NTHMP benchmark 1).
   for (const double cells_per_m : {10.0, 20.0, 40.0}) {
     if (quick && cells_per_m != 20.0) continue;
     const auto reached_m = runUp(ctx, 0.019, cells_per_m, 0.0, core::Dispersion::kNone);
@@ -177,7 +215,8 @@ Outcome solitaryRunUp(gpu::Context& ctx, bool quick) {
     const double tolerance = cells_per_m == 40.0 ? 0.012 : cells_per_m == 20.0 ? 0.035 : 0.06;
     rows.push_back(
         {fmt::format("slope 1:19.85, H/d = 0.019, without friction, {:.0f} cells a depth: run-up / d", cells_per_m), "",
-         *reached_m, 0.0912, Tolerance::kRelative, tolerance, "closed form (NTHMP benchmark 1); Celeris -1.27 %"});
+         *reached_m, kClosedFormRunUp, Tolerance::kRelative, tolerance,
+         "closed form (NTHMP benchmark 1); Celeris -1.27 %"});
   }
   for (const LaboratoryRun& run : kLaboratory) {
     if (quick && run.height != 0.0275) continue;
@@ -216,39 +255,36 @@ Outcome solitaryWave(gpu::Context& ctx, bool quick) {
   for (const double height_m : {0.1, 0.3}) {
     for (const double cells_per_m : {10.0, 20.0}) {
       if (quick && cells_per_m != 10.0) continue;
-      constexpr double kWay_m = 30.0;
-      constexpr double kStart_m = 15.0;
-      const auto cells = static_cast<std::uint32_t>((kStart_m + kWay_m + 15.0) * cells_per_m);
-      core::Scene scene = shallowChannel(cells, 1.0 / cells_per_m, 1.0, 0.3);
-      scene.wave->dispersion = core::Dispersion::kAiry;
-      const double speed_mps = std::sqrt(kGravity_mps2 * (1.0 + height_m));
-      const double from_m = kStart_m - scene.wave->side_m / 2;
-      // The shape of Serre's solitary wave; its water moves as the shape does: u = c eta / (d + eta).
-      const double gamma_pm = std::sqrt(0.75 * height_m / (1.0 + height_m));
-      const auto eta = [&](double x) { return height_m / std::pow(std::cosh(gamma_pm * (x - from_m)), 2); };
-      auto water = sim::WaterSim::create(ctx, scene);
-      if (!water) return water.error();
-      const double half_step_m = 0.5 * speed_mps * (*water)->derived().wave->dt_s;
-      setShallowState(
-          **water, [&](double x, double) { return eta(x); },
-          [&](double x, double) { return speed_mps * eta(x + half_step_m) / (1.0 + eta(x + half_step_m)); });
-      if (auto done = runTo(**water, kWay_m / speed_mps); !done) return done.error();
-      const std::vector<double> eta_m = (*water)->copyState().elevation_m;
-      const auto first = eta_m.begin() + cells;
-      const auto top = std::max_element(first, first + cells);
-      const auto at = static_cast<double>(top - first);
-      const double bend = *(top - 1) - 2 * *top + *(top + 1);
-      const double shift = 0.5 * (*(top - 1) - *(top + 1)) / bend;
-      const double crest_m = *top - 0.25 * (*(top - 1) - *(top + 1)) * shift;
-      const double way_m = (at + 0.5 + shift) / cells_per_m - kStart_m;
+      const auto left = afterThirtyDepths(ctx, height_m, cells_per_m);
+      if (!left) return left.error();
       const std::string name = fmt::format("H/d = {}, {:.0f} cells a depth", height_m, cells_per_m);
-      rows.push_back({name + ": height after 30 depths / height", "", crest_m / height_m, 1.0, Tolerance::kRelative,
+      rows.push_back({name + ": height after 30 depths / height", "", left->height_ratio, 1.0, Tolerance::kRelative,
                       0.05, "keeps its height"});
-      rows.push_back({name + ": speed / sqrt(g (d + H))", "", way_m / ((*water)->time_s() * speed_mps), 1.0,
-                      Tolerance::kRelative, 0.035, "solitary wave; REEF3D-SFLOW -0.2 %"});
+      rows.push_back({name + ": speed / sqrt(g (d + H))", "", left->speed_ratio, 1.0, Tolerance::kRelative, 0.035,
+                      "solitary wave; REEF3D-SFLOW -0.2 %"});
     }
   }
   return CaseResult{std::move(rows), {}};
+}
+
+LevelError gentleRunUpError(gpu::Context& ctx, const LevelScale& level) {
+  const auto reached_m = runUp(ctx, 0.019, kLevelCells_pm * level.cells, 0.0, core::Dispersion::kNone);
+  if (!reached_m) return reached_m.error();
+  return std::abs(*reached_m / kClosedFormRunUp - 1);
+}
+
+LevelError breakingRunUpError(gpu::Context& ctx, const LevelScale& level) {
+  const LaboratoryRun& run = kLaboratory[5];
+  const auto reached_m =
+      runUp(ctx, run.height, kLevelCells_pm * level.cells, kLaboratoryManning, core::Dispersion::kAiry);
+  if (!reached_m) return reached_m.error();
+  return std::abs(*reached_m / run.run_up - 1);
+}
+
+LevelError solitaryHeightError(gpu::Context& ctx, const LevelScale& level) {
+  const auto left = afterThirtyDepths(ctx, 0.3, kLevelCells_pm * level.cells);
+  if (!left) return left.error();
+  return std::abs(left->height_ratio - 1);
 }
 
 }  // namespace spindrift::study

@@ -12,7 +12,6 @@ namespace spindrift::study {
 namespace {
 
 constexpr double kMaxTickRate_hz = 240.0;
-constexpr std::uint32_t kMaxResolution = 1024;
 constexpr double kMaxLayers = 64.0;
 
 bool isTwoWay(const core::Scene& scene) {
@@ -36,18 +35,26 @@ core::Scene withFinerParticles(core::Scene scene, double scale) {
 }
 
 core::Scene withResolution(core::Scene scene, double scale) {
-  const double cells = std::round(scene.wave->resolution_count * scale / 16) * 16;
-  scene.wave->resolution_count = std::min(static_cast<std::uint32_t>(cells), kMaxResolution);
-  // Dispersion needs a number of cells that can be halved often enough; the largest one can.
-  const auto layout = [&] {
+  core::WaveScene& wave = *scene.wave;
+  const core::WaveCells before = wave.cells();
+  // Multiples of 16 stay so, and the cells of a rectangle fit its width.
+  const std::uint32_t step = wave.resolution_count % 16 == 0 ? 16 : 1;
+  const double cells = std::round(wave.resolution_count * scale / step) * step;
+  const double most = std::floor(std::sqrt(core::kWaveMaxCellCount * before.length_m / before.width_m));
+  const auto limit = std::min(static_cast<std::uint32_t>(most), core::kWaveMaxSideCount);
+  wave.resolution_count = std::min(static_cast<std::uint32_t>(cells), limit);
+  const auto fits = [&] {
+    const core::WaveCells after = core::waveCellsOf(wave.resolution_count, before.length_m, before.width_m);
+    if (!core::widthFits(after, before.width_m)) return false;
     sim::WaveLayout out;
-    out.count_x = out.count_z = scene.wave->resolution_count;
-    out.is_periodic_x = sim::isPeriodicX(*scene.wave);
-    out.is_periodic_z = sim::isPeriodicZ(*scene.wave);
-    return out;
+    out.count_x = after.count.x;
+    out.count_z = after.count.z;
+    out.is_periodic_x = sim::isPeriodicX(wave);
+    out.is_periodic_z = sim::isPeriodicZ(wave);
+    return wave.dispersion == core::Dispersion::kNone || sim::canDisperse(out);
   };
-  while (scene.wave->dispersion != core::Dispersion::kNone && !sim::canDisperse(layout()))
-    scene.wave->resolution_count += 16;
+  // Dispersion needs a number of cells that can be halved often enough; the largest one of a square can.
+  while (!fits() && wave.resolution_count + step <= limit) wave.resolution_count += step;
   return scene;
 }
 
@@ -128,22 +135,27 @@ std::vector<TradeChoice> singleKnobs(const core::Scene& scene) {
   return out;
 }
 
-core::Scene finerThan(const core::Scene& reference) {
+core::Scene finerThan(const core::Scene& reference, double wave_scale) {
   core::Scene scene = reference;
-  if (scene.wave) scene = withResolution(scene, 4.0 / 3);
+  if (scene.wave) scene = withResolution(scene, wave_scale);
   if (scene.particles) scene = withFinerParticles(scene, 1.25);
   return scene;
 }
 
-std::vector<TradeChoice> withAndWithoutDispersion(const std::vector<TradeChoice>& levels) {
+std::vector<TradeChoice> simplerWaves(const core::Scene& scene) {
   std::vector<TradeChoice> out;
-  for (const core::Dispersion dispersion : {core::Dispersion::kAiry, core::Dispersion::kNone}) {
-    for (const TradeChoice& level : levels) {
-      core::Scene scene = waveAlone(level.scene);
-      scene.wave->dispersion = dispersion;
-      out.push_back({dispersion == core::Dispersion::kAiry ? level.knob : "no dispersion", level.setting, scene});
-    }
-  }
+  if (!scene.wave) return out;
+  const bool disperses = scene.wave->dispersion != core::Dispersion::kNone;
+  const bool is_nonlinear = scene.wave->bulk != core::Bulk::kLinear;
+  const auto add = [&](const char* knob, const char* setting, core::Dispersion dispersion, core::Bulk bulk) {
+    core::Scene simpler = scene;
+    simpler.wave->dispersion = dispersion;
+    simpler.wave->bulk = bulk;
+    out.push_back({knob, setting, std::move(simpler)});
+  };
+  if (disperses) add("dispersion", "off", core::Dispersion::kNone, scene.wave->bulk);
+  if (is_nonlinear) add("bulk", "linear", scene.wave->dispersion, core::Bulk::kLinear);
+  if (disperses && is_nonlinear) add("bulk, dispersion", "linear, off", core::Dispersion::kNone, core::Bulk::kLinear);
   return out;
 }
 

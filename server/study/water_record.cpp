@@ -6,25 +6,28 @@
 #include <numbers>
 #include <numeric>
 
+#include <time.h>
+
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/study/water_record.h>
 
+#include "shallow_water.h"
 #include "ticks.h"
 
 namespace spindrift::study {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 /// Share of a dam's water that counts as ahead of its front.
 constexpr double kAheadShare = 0.01;
 
-/// Averages n cells to m <= n cells over the same length, by the share of each cell in each of the m.
-std::vector<double> averaged(const std::vector<double>& fine, std::size_t n, std::size_t m) {
-  struct Share {
-    std::size_t from, to;
-    double weight;
-  };
+/// Part of a cell that belongs to a cell of another number of cells over the same length.
+struct Share {
+  std::size_t from, to;
+  double weight;
+};
+
+/// Averages n cells to m <= n cells, by the share of each cell in each of the m.
+std::vector<Share> averages(std::size_t n, std::size_t m) {
   std::vector<Share> shares;
   const double ratio = static_cast<double>(m) / static_cast<double>(n);
   for (std::size_t i = 0; i < n; ++i) {
@@ -35,33 +38,34 @@ std::vector<double> averaged(const std::vector<double>& fine, std::size_t n, std
       shares.push_back({i, k, overlap});
     }
   }
-  std::vector<double> along_x(m * n, 0.0);
-  for (std::size_t z = 0; z < n; ++z)
-    for (const Share& s : shares) along_x[s.to + m * z] += s.weight * fine[s.from + n * z];
-  std::vector<double> out(m * m, 0.0);
-  for (const Share& s : shares)
-    for (std::size_t x = 0; x < m; ++x) out[x + m * s.to] += s.weight * along_x[x + m * s.from];
-  return out;
+  return shares;
 }
 
-/// Interpolates n cells bilinearly between the centres of m > n.
-std::vector<double> interpolated(const std::vector<double>& coarse, std::size_t n, std::size_t m) {
-  const auto place = [&](std::size_t i) {
-    const double u = (static_cast<double>(i) + 0.5) * static_cast<double>(n) / static_cast<double>(m) - 0.5;
+/// Interpolates n >= 2 cells linearly between the centres of m > n.
+std::vector<Share> interpolations(std::size_t n, std::size_t m) {
+  std::vector<Share> shares;
+  for (std::size_t k = 0; k < m; ++k) {
+    const double u = (static_cast<double>(k) + 0.5) * static_cast<double>(n) / static_cast<double>(m) - 0.5;
     const double at = std::clamp(u, 0.0, static_cast<double>(n - 1));
     const auto low = std::min(static_cast<std::size_t>(at), n - 2);
-    return std::pair{low, at - static_cast<double>(low)};
-  };
-  std::vector<double> out;
-  out.reserve(m * m);
-  for (std::size_t z = 0; z < m; ++z) {
-    const auto [k, w] = place(z);
-    for (std::size_t x = 0; x < m; ++x) {
-      const auto [i, u] = place(x);
-      const double* at = &coarse[i + n * k];
-      out.push_back(std::lerp(std::lerp(at[0], at[1], u), std::lerp(at[n], at[n + 1], u), w));
-    }
+    const double share = at - static_cast<double>(low);
+    shares.push_back({low, k, 1 - share});
+    shares.push_back({low + 1, k, share});
   }
+  return shares;
+}
+
+/// A field on nx x nz cells, on mx x mz cells over the same area; x fastest.
+std::vector<double> resampled(const std::vector<double>& field, std::size_t nx, std::size_t nz, std::size_t mx,
+                              std::size_t mz) {
+  const std::vector<Share> across_x = (nx >= mx ? averages : interpolations)(nx, mx);
+  const std::vector<Share> across_z = (nz >= mz ? averages : interpolations)(nz, mz);
+  std::vector<double> along_x(mx * nz, 0.0);
+  for (std::size_t z = 0; z < nz; ++z)
+    for (const Share& s : across_x) along_x[s.to + mx * z] += s.weight * field[s.from + nx * z];
+  std::vector<double> out(mx * mz, 0.0);
+  for (const Share& s : across_z)
+    for (std::size_t x = 0; x < mx; ++x) out[x + mx * s.to] += s.weight * along_x[x + mx * s.from];
   return out;
 }
 
@@ -141,12 +145,19 @@ WaterRecord::Sample sampleOf(sim::WaterSim& water) {
   const core::Scene& scene = water.scene();
   const sim::StateCopy state = water.copyState();
   if (scene.wave) {
-    // As in the stream: whole quanta.
+    const sim::WaveLayout& layout = *water.derived().wave;
     std::vector<double> elevation_m = state.elevation_m;
+    // The elevation of dry land is that of the ground: only the water on it counts.
+    if (scene.wave->bulk == core::Bulk::kNonlinear) {
+      const std::vector<double> depth_m = groundDepths(scene, layout);
+      for (std::size_t i = 0; i < depth_m.size(); ++i) elevation_m[i] += std::min(depth_m[i], 0.0);
+    }
+    // As in the stream: whole quanta.
     const double quantum_m = scene.stream.surface_quantum_m;
     for (double& eta_m : elevation_m) eta_m = std::round(eta_m / quantum_m) * quantum_m;
-    const std::size_t n = scene.wave->resolution_count;
-    sample.surface_m = (n >= kSurfaceCells ? averaged : interpolated)(elevation_m, n, kSurfaceCells);
+    const double rows = std::round(kSurfaceCells * layout.width_m / layout.length_m);
+    sample.surface_m = resampled(elevation_m, layout.count_x, layout.count_z, kSurfaceCells,
+                                 static_cast<std::size_t>(std::max(rows, 1.0)));
   }
   if (!scene.particles) return sample;
   sample.density_rms_ratio = densityError(water, state);
@@ -205,11 +216,13 @@ struct FieldDifference {
 
 constexpr int kTimedRuns = 3;
 
-/// Wall times of the intervals of a run, without the time between them.
+/// Cost of the intervals of a run, without the time between them: on a rasteriser in software the processor time of all
+/// threads, which other programs hardly change, otherwise wall time. [s]
 class IntervalTimes {
  public:
-  void begin() { begin_ = Clock::now(); }
-  void end() { seconds_.push_back(std::chrono::duration<double>(Clock::now() - begin_).count()); }
+  explicit IntervalTimes(const gpu::Context& ctx) : is_software_(ctx.device().is_software) {}
+  void begin() { begin_s_ = now_s(); }
+  void end() { seconds_.push_back(now_s() - begin_s_); }
   [[nodiscard]] double sum() const { return std::accumulate(seconds_.begin(), seconds_.end(), 0.0); }
   /// Keeps the shorter time of each interval.
   void keepFastest(const IntervalTimes& other) {
@@ -218,7 +231,17 @@ class IntervalTimes {
   }
 
  private:
-  Clock::time_point begin_;
+  [[nodiscard]] double now_s() const {
+    if (is_software_) {
+      timespec spent{};
+      clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &spent);
+      return static_cast<double>(spent.tv_sec) + 1e-9 * static_cast<double>(spent.tv_nsec);
+    }
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+  }
+
+  bool is_software_;
+  double begin_s_ = 0.0;
   std::vector<double> seconds_;
 };
 
@@ -245,13 +268,18 @@ core::Result<std::unique_ptr<sim::WaterSim>> warm(gpu::Context& ctx, const core:
 
 }  // namespace
 
+core::Result<std::uint64_t> stateHashAfter(gpu::Context& ctx, const core::Scene& scene, int tick_count) {
+  auto water = sim::WaterSim::create(ctx, scene);
+  if (!water) return water.error();
+  if (auto done = run(**water, tick_count); !done) return done.error();
+  return (*water)->stateHash();
+}
+
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options) {
   auto made = warm(ctx, scene);
   if (!made) return made.error();
   sim::WaterSim& water = **made;
   const sim::Derived& d = water.derived();
-  if (d.wave && d.wave->count_x != d.wave->count_z)
-    return core::Error{core::ErrorCode::kInvalidInput, "wave.width_m: the trade suite compares square water only"};
   WaterRecord out;
   out.device_bytes = d.device_bytes;
   out.substeps_per_s_count = static_cast<std::uint32_t>(std::lround(d.substeps_count / d.tick_s));
@@ -262,7 +290,7 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   std::vector<std::uint64_t> sample_ticks;
   double frame_bytes = 0.0;
   std::size_t frame_count = 0;
-  IntervalTimes times;
+  IntervalTimes times(ctx);
   const double begin_s = water.time_s();
   const auto interval_count = static_cast<int>(std::lround(options.seconds / options.sample_interval_s));
   for (int i = 1; i <= interval_count; ++i) {
@@ -289,14 +317,14 @@ core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, co
   for (int run = 1; run < kTimedRuns && once_s < options.repeat_below_s; ++run) {
     auto again = warm(ctx, scene);
     if (!again) return again.error();
-    IntervalTimes again_times;
+    IntervalTimes again_times(ctx);
     for (int i = 1; i <= interval_count; ++i) {
       const double time_s = i * options.sample_interval_s;
       if (auto done = advance(ctx, **again, time_s, again_times, [] {}); !done) return done.error();
     }
     times.keepFastest(again_times);
   }
-  out.wall_ms_per_s = 1e3 * times.sum() / out.seconds;
+  out.cost_ms_per_s = 1e3 * times.sum() / out.seconds;
   for (gpu::PassCost& pass : out.passes) pass.total_ms *= times.sum() / once_s;
   return out;
 }
@@ -316,7 +344,8 @@ RecordErrors compare(const WaterRecord& run, const WaterRecord& reference, const
     energy.add({a.energy_j}, {b.energy_j});
     largest_energy_j = std::max(largest_energy_j, std::abs(b.energy_j));
     density += a.density_rms_ratio * a.density_rms_ratio;
-    if (a.surface_m.empty() || b.surface_m.empty()) continue;
+    constexpr std::size_t kSquare = kSurfaceCells * kSurfaceCells;
+    if (a.surface_m.size() != kSquare || b.surface_m.size() != kSquare) continue;
     const std::vector<double> p = spectrum(a.surface_m, kSurfaceCells);
     const std::vector<double> q = spectrum(b.surface_m, kSurfaceCells);
     for (std::size_t k = 0; k < p.size(); ++k) {

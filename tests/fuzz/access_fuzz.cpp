@@ -6,6 +6,7 @@
 #include <spindrift/access/access.h>
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/digest.h>
+#include <spindrift/core/room_name.h>
 
 #include "fuzz.h"
 

@@ -51,7 +51,7 @@ TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndKeepsTheirNumbers) {
   const auto& rows = json.at("scenes").at(0).at("rows").as_array();
   ASSERT_EQ(rows.size(), 3u) << "draft, balanced, fine";
   for (const auto& row : rows) {
-    EXPECT_GT(row.at("wall_ms_per_s").to_number<double>(), 0.0);
+    EXPECT_GT(row.at("cost_ms_per_s").to_number<double>(), 0.0);
     EXPECT_GT(row.at("stream_mbit_per_s").to_number<double>(), 0.0);
     EXPECT_GT(row.at("height_rms_ratio").to_number<double>(), 0.0);
     EXPECT_LT(row.at("height_rms_ratio").to_number<double>(), 0.5);
@@ -74,6 +74,14 @@ TEST_F(Usage, PortThatIsNoNumberIsRefused) {
 
 TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
   expectOneErrorLine(runProgram({"--log-level", "loud", "info"}), 2, {"--log-level", "loud", "debug"});
+}
+
+TEST_F(Usage, UnknownSceneOfATradeStudyIsRefusedWithTheScenes) {
+  const Outcome outcome =
+      runProgram({"study", "--device", "software", "--suite", "trade", "--quick", "--case", "lagoon"});
+  if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("'lagoon'"), HasSubstr("harbor"), HasSubstr("known")));
 }
 
 class Help : public testing::TestWithParam<std::string> {};

@@ -26,39 +26,40 @@ describe("the fidelity", () => {
 });
 
 describe("what a level costs", () => {
-  // The page's copy of the study's tables must not drift from them.
-  const study = readFileSync(join(import.meta.dirname, "../../server/study/README.md"), "utf8");
-  const rowsOf = (head: string): Map<string, string[]> => {
-    const lines = study.slice(study.indexOf(head)).split("\n");
-    const end = lines.findIndex((line) => !line.startsWith("|"));
-    return new Map(lines.slice(2, end).map((line) => line.split("|").slice(1, -1).map((cell) => cell.trim())).map(([level, ...cells]) => [level!, cells]));
-  };
+  interface Row {
+    knob: string;
+    setting: string;
+    cost_ms_per_s: number;
+    height_rms_ratio: number;
+  }
+  interface Study {
+    date: string;
+    scenes: { scene: string; rows: Row[] }[];
+    over_all_scenes: { setting: string; cost_ratio: number; error_ratio: number }[];
+  }
+  const study = JSON.parse(readFileSync(join(import.meta.dirname, "../../server/study/plots/trade.json"), "utf8")) as Study;
+  const short = (value: number): number => Number(value.toPrecision(2));
 
-  it("is what the study's table says, for the measured scenes", () => {
-    const trade = rowsOf("| level | splash | breaking_wave | boat_wake | thesis | dam_break |");
-    const dispersed = rowsOf("| level | splash, dispersion | splash, none |");
-    ["splash", "breaking_wave", "boat_wake", "thesis", "dam_break"].forEach((scene, column) => {
+  it("is what the study measured, with its day", () => {
+    expect(study.scenes.map(({ scene }) => scene)).toContain("harbor");
+    for (const { scene, rows } of study.scenes) {
       for (const { name } of kFidelities) {
-        const [cost, error] = trade.get(name.toUpperCase())![column]!.match(/[\d.]+/g)!.map(Number);
-        const text = describeCost(scene, name);
-        expect(shortCost(scene, name)).toEqual({ cost: `${Number((cost! / 1000).toPrecision(2))} s`, error: `${error} %` });
-        expect(text).toContain(`${Number((cost! / 1000).toPrecision(2))} s of two cores' time per simulated second, water ${error} % off`);
-        const of_wave = { splash: 0, boat_wake: 2 }[scene];
-        if (of_wave === undefined) expect(text).not.toContain("wave alone");
-        else {
-          const [wave_error, tick_ms] = dispersed.get(name.toUpperCase())![of_wave]!.match(/[\d.]+/g)!.map(Number);
-          expect(text).toContain(`The wave alone: ${tick_ms} ms per tick, ${wave_error} % off.`);
-        }
+        const row = rows.find(({ knob, setting }) => knob === "fidelity" && setting === name)!;
+        const { cost, error } = shortCost(scene, name);
+        expect(parseFloat(cost)).toBeCloseTo(short(row.cost_ms_per_s / 1000), 9);
+        expect(parseFloat(error)).toBeCloseTo(short(100 * row.height_rms_ratio), 9);
+        expect(describeCost(scene, name)).toContain(`on ${study.date}: ${cost} of processor time per simulated second, water ${error} off`);
       }
-    });
+    }
   });
 
-  it("is the mean over the measured scenes for the others", () => {
-    const means = rowsOf("| level | cost | error |");
-    for (const { name } of kFidelities) {
-      const [cost, error] = means.get(name.toUpperCase())!.map((cell) => Number(cell.replace("x", "")));
-      expect(shortCost("harbor", name)).toEqual({ cost: `× ${cost}`, error: `× ${error}` });
-      if (name !== "balanced") expect(describeCost("harbor", name)).toContain(`${cost} times the work of balanced, ${error} times its error`);
+  it("is said to be the mean over the measured scenes for the others", () => {
+    for (const { setting, cost_ratio, error_ratio } of study.over_all_scenes) {
+      const level = kFidelities.find(({ name }) => name === setting)!.name;
+      expect(shortCost("pool", level)).toEqual({ cost: `× ${short(cost_ratio)}`, error: `× ${short(error_ratio)}` });
+      if (level === "balanced") continue;
+      expect(describeCost("pool", level)).toContain(`mean of ${study.scenes.length} measured scenes (${study.date})`);
+      expect(describeCost("pool", level)).toContain(`${short(cost_ratio)} times the work of balanced, ${short(error_ratio)} times its error`);
     }
   });
 });

@@ -26,7 +26,7 @@ boost::json::object toJson(const TradeRow& r) {
   return {{"knob", r.knob},
           {"setting", r.setting},
           {"refused", r.refused},
-          {"wall_ms_per_s", r.wall_ms_per_s},
+          {"cost_ms_per_s", r.cost_ms_per_s},
           {"device_mb", r.device_mb},
           {"stream_mbit_per_s", r.stream_mbit_per_s},
           {"wave_cells", r.wave_cells_count},
@@ -49,7 +49,7 @@ TradeRow rowFromJson(const boost::json::object& json) {
   r.knob = json.at("knob").as_string();
   r.setting = json.at("setting").as_string();
   r.refused = json.at("refused").as_string();
-  r.wall_ms_per_s = json.at("wall_ms_per_s").to_number<double>();
+  r.cost_ms_per_s = json.at("cost_ms_per_s").to_number<double>();
   r.device_mb = json.at("device_mb").to_number<double>();
   r.stream_mbit_per_s = json.at("stream_mbit_per_s").to_number<double>();
   r.wave_cells_count = json.at("wave_cells").to_number<std::uint32_t>();
@@ -82,7 +82,7 @@ TradeRow rowOf(const TradeChoice& choice, const WaterRecord& run) {
   TradeRow row;
   row.knob = choice.knob;
   row.setting = choice.setting;
-  row.wall_ms_per_s = run.wall_ms_per_s;
+  row.cost_ms_per_s = run.cost_ms_per_s;
   row.device_mb = static_cast<double>(run.device_bytes) / 1e6;
   row.stream_mbit_per_s = run.frame_bytes * 8e-6 * choice.scene.stream.frame_rate_hz;
   row.wave_cells_count = run.wave_cells_count;
@@ -109,7 +109,7 @@ void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
       out,
       "{} {:<17} {:<20} {:>8.1f} {:>6.2f} {:>6.1f} {:>7.2f} {:>7.3g} {:>7.2f} {:>8} {:>8} {:>7} {:>8} {:>8} {:>7} "
       "{:>7.3g}{}\n",
-      row.is_on_front ? "*" : " ", row.knob, row.setting, row.wall_ms_per_s, row.wall_ms_per_s / balanced.wall_ms_per_s,
+      row.is_on_front ? "*" : " ", row.knob, row.setting, row.cost_ms_per_s, row.cost_ms_per_s / balanced.cost_ms_per_s,
       row.device_mb, row.stream_mbit_per_s, 100 * e.height_rms_ratio,
       e.height_rms_ratio / balanced.errors.height_rms_ratio, percent(e.surface_rms_ratio), percent(e.surface_max_ratio),
       percent(e.spectrum_ratio), percent(e.column_rms_ratio), percent(e.density_rms_ratio), percent(e.front_rms_ratio),
@@ -120,8 +120,8 @@ void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {
   fmt::print(out, "  {:<26} {:<22} {:>9} {:>9} {:>8} {:>9}   ms a simulated second by pass\n", "parts", "size",
              "ms / s", "real time", "MB", "substeps");
   for (const TradeRow& row : rows) {
-    fmt::print(out, "  {:<26} {:<22} {:>9.1f} {:>9.2f} {:>8.2f} {:>9}  ", row.knob, row.setting, row.wall_ms_per_s,
-               1e3 / row.wall_ms_per_s, row.device_mb, row.substeps_per_s_count);
+    fmt::print(out, "  {:<26} {:<22} {:>9.1f} {:>9.2f} {:>8.2f} {:>9}  ", row.knob, row.setting, row.cost_ms_per_s,
+               1e3 / row.cost_ms_per_s, row.device_mb, row.substeps_per_s_count);
     for (const auto& [name, ms] : row.pass_ms_per_s)
       fmt::print(out, " {} {:.1f}", std::string(name), ms.to_number<double>());
     fmt::print(out, "\n");

@@ -20,8 +20,8 @@ using study::WaterRecord;
 /// Results of one run.
 struct TradeRow {
   std::string knob, setting;
-  std::string refused;  ///< why the scene could not run; empty: it ran
-  double wall_ms_per_s = 0.0;
+  std::string refused;         ///< why the scene could not run; empty: it ran
+  double cost_ms_per_s = 0.0;  ///< as in WaterRecord
   double device_mb = 0.0;
   double stream_mbit_per_s = 0.0;
   std::uint32_t wave_cells_count = 0, particle_count = 0, substeps_per_s_count = 0;

@@ -11,6 +11,7 @@
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/study/known_results.h>
 #include <spindrift/study/trade.h>
 #include <spindrift/study/water_record.h>
 #include <spindrift/study_suites/suites.h>
@@ -20,22 +21,26 @@
 namespace spindrift::study_suites {
 namespace {
 
-/// A shipped scene and the time to simulate.
+/// A shipped scene and the time to simulate from its first event on.
 struct TradeScene {
   const char* name;
   double seconds;
   double quick_seconds;  ///< of the quick form, which compares with REFERENCE itself; 0: not part of it
+  bool has_knobs;        ///< BALANCED also runs with one setting changed
 };
-constexpr TradeScene kTradeScenes[] = {{"splash", 3.0, 1.1},
-                                       {"breaking_wave", 4.5, 0.0},
-                                       {"boat_wake", 4.0, 0.0},
-                                       {"thesis", 3.0, 0.0},
-                                       {"dam_break", 1.4, 0.4}};
+constexpr TradeScene kTradeScenes[] = {
+    {"splash", 1.5, 0.5, true},  {"breaking_wave", 1.5, 0.0, false}, {"boat_wake", 1.5, 0.0, false},
+    {"thesis", 1.0, 0.0, false}, {"dam_break", 1.2, 0.4, true},      {"harbor", 1.2, 0.0, false},
+    {"beach", 3.0, 0.0, false},  {"flume", 4.0, 0.0, false},         {"boat_wake_wave", 2.0, 0.0, false}};
+/// Wave cells per side of the run to judge by over those of REFERENCE. 4/3 would cost a fifth more of the whole study.
+constexpr double kFinestScale = 1.25;
+/// Runs shorter than this are timed three times.
+constexpr double kRepeatBelow_s = 1.0;
+/// Ticks of a state hash: enough for every effect to begin.
+constexpr int kHashTicks = 20;
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
 constexpr const char* kLevelKnob = "fidelity";
-/// Scenes that disperse, run at each level as the wave alone, with dispersion and without.
-constexpr TradeScene kDispersiveScenes[] = {{"splash", 3.0, 0.0}, {"boat_wake", 4.0, 0.0}};
 /// Each shipped effect as it is, with the wave alone, and with particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
 
@@ -61,7 +66,12 @@ core::Result<core::Scene> loadLevel(const std::string& name, v1::Fidelity level)
   if (!file) return file.error();
   auto scene = scene::loadSceneFile(*file, level);
   if (!scene) return scene.error();
-  return scene::toCore(*scene);
+  core::Scene out = scene::toCore(*scene);
+  if (out.events.empty()) return out;
+  // Level water before the first event costs time and tells nothing.
+  const double first_s = std::ranges::min(out.events, {}, &core::TimedEvent::at_s).at_s;
+  for (core::TimedEvent& event : out.events) event.at_s -= first_s;
+  return out;
 }
 
 core::Result<std::vector<TradeChoice>> levelsOf(const TradeScene& scene) {
@@ -74,11 +84,14 @@ core::Result<std::vector<TradeChoice>> levelsOf(const TradeScene& scene) {
   return choices;
 }
 
-/// Returns the levels first, then BALANCED with one change each.
+/// Returns the levels first, then BALANCED with a simpler wave, then with one change each.
 core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool quick) {
   auto choices = levelsOf(scene);
   if (!choices || quick) return choices;
-  for (TradeChoice& knob : study::singleKnobs((*choices)[1].scene)) choices->push_back(std::move(knob));
+  const core::Scene balanced = (*choices)[1].scene;
+  for (TradeChoice& simpler : study::simplerWaves(balanced)) choices->push_back(std::move(simpler));
+  if (!scene.has_knobs) return choices;
+  for (TradeChoice& knob : study::singleKnobs(balanced)) choices->push_back(std::move(knob));
   return choices;
 }
 
@@ -97,13 +110,13 @@ void markFront(std::vector<TradeRow>& rows) {
   study::CostAndError chance{kChance, kChance};
   for (const TradeRow& row : rows) {
     if (row.knob == kSeedKnob && row.refused.empty())
-      chance = chanceOf({row.wall_ms_per_s, row.errors.height_rms_ratio},
-                        {rows[1].wall_ms_per_s, rows[1].errors.height_rms_ratio});
+      chance = chanceOf({row.cost_ms_per_s, row.errors.height_rms_ratio},
+                        {rows[1].cost_ms_per_s, rows[1].errors.height_rms_ratio});
   }
   std::vector<study::CostAndError> points;
   for (const TradeRow& row : rows) {
     const bool counts = row.refused.empty() && isComparable(row);
-    points.push_back(counts ? study::CostAndError{row.wall_ms_per_s, row.errors.height_rms_ratio}
+    points.push_back(counts ? study::CostAndError{row.cost_ms_per_s, row.errors.height_rms_ratio}
                             : study::CostAndError{HUGE_VAL, HUGE_VAL});
   }
   const std::vector<bool> front = study::paretoFront(points, chance);
@@ -128,17 +141,45 @@ class TradeRuns {
     if (options_.quick)
       choices->resize(3);
     else
-      finest_scene = study::finerThan(finest_scene);
-    return compare(scene.name, secondsOf(scene, options_.quick), *choices, finest_scene);
+      finest_scene = study::finerThan(finest_scene, kFinestScale);
+    return compare(scene, *choices, finest_scene);
   }
 
-  /// The wave alone at each level, with dispersion and without; compared with a finer run with dispersion.
-  core::Result<std::vector<TradeRow>> dispersion(const TradeScene& scene) {
-    auto levels = levelsOf(scene);
-    if (!levels) return levels.error();
-    const std::vector<TradeChoice> choices = study::withAndWithoutDispersion(*levels);
-    return compare(std::string(scene.name) + ", wave alone", scene.seconds, choices,
-                   study::finerThan(choices[levels->size() - 1].scene));
+  /// Errors of each known result, level by level.
+  core::Result<boost::json::array> known() {
+    boost::json::array out;
+    for (const study::KnownResult& result : study::knownResults()) {
+      boost::json::array errors;
+      for (const study::LevelScale& level : study::kLevelScales) {
+        const std::string key =
+            journalKey("trade", fmt::format("{}/{}/{}", result.name, level.name, all_hashes_), options_, ctx_);
+        if (const auto kept = journal_.find(key)) {
+          errors.push_back(*kept);
+          continue;
+        }
+        showProgress(fmt::format("{}: {}", result.name, level.name));
+        const auto error_ratio = result.error_ratio(ctx_, level);
+        if (!error_ratio)
+          return core::Error{error_ratio.error().code, result.name + ": " + error_ratio.error().message};
+        if (auto added = journal_.add(key, *error_ratio); !added) return added.error();
+        errors.push_back(*error_ratio);
+      }
+      out.push_back({{"name", result.name}, {"source", result.source}, {"error_ratio", std::move(errors)}});
+    }
+    showProgress("");
+    return out;
+  }
+
+  /// Hash of the water of every scene. A journal's results count for this solver only.
+  core::Result<boost::json::object> hashes() {
+    boost::json::object out;
+    for (const TradeScene& scene : kTradeScenes) {
+      auto hash = tradeStateHash(ctx_, scene.name);
+      if (!hash) return core::Error{hash.error().code, std::string(scene.name) + ": " + hash.error().message};
+      all_hashes_ += hash->substr(0, 4);
+      out[scene.name] = *std::move(hash);
+    }
+    return out;
   }
 
   /// Costs of scenes, without comparing their results.
@@ -146,14 +187,18 @@ class TradeRuns {
     std::vector<TradeRow> rows;
     for (const TradeChoice& choice : choices) {
       const std::string key =
-          journalKey("trade", fmt::format("cost/{}/{}", choice.knob, choice.setting), options_, ctx_);
+          journalKey("trade", fmt::format("cost/{}/{}/{}", choice.knob, choice.setting, all_hashes_), options_, ctx_);
       if (const auto known = journal_.find(key)) {
         rows.push_back(rowFromJson(known->as_object()));
         continue;
       }
       showProgress(fmt::format("cost: {} {}", choice.knob, choice.setting));
-      auto made = study::record(
-          ctx_, choice.scene, {.seconds = seconds, .sample_interval_s = 0.1, .has_samples = false, .frame_bytes = {}});
+      auto made = study::record(ctx_, choice.scene,
+                                {.seconds = seconds,
+                                 .sample_interval_s = 0.1,
+                                 .has_samples = false,
+                                 .frame_bytes = {},
+                                 .repeat_below_s = kRepeatBelow_s});
       if (!made) return made.error();
       rows.push_back(rowOf(choice, *made));
       if (auto kept = journal_.add(key, toJson(rows.back())); !kept) return kept.error();
@@ -163,16 +208,20 @@ class TradeRuns {
   }
 
  private:
-  core::Result<std::vector<TradeRow>> compare(const std::string& name, double seconds,
-                                              const std::vector<TradeChoice>& choices,
+  core::Result<std::vector<TradeRow>> compare(const TradeScene& scene, const std::vector<TradeChoice>& choices,
                                               const core::Scene& finest_scene) {
-    const study::RecordOptions record{.seconds = seconds, .sample_interval_s = 0.1, .frame_bytes = frameBytes()};
+    const std::string name = scene.name;
+    const study::RecordOptions record{.seconds = secondsOf(scene, options_.quick),
+                                      .sample_interval_s = 0.1,
+                                      .frame_bytes = frameBytes(),
+                                      .repeat_below_s = kRepeatBelow_s};
     std::vector<TradeRow> rows;
     std::optional<WaterRecord> finest_run;
     for (std::size_t i = 0; i < choices.size(); ++i) {
       const TradeChoice& choice = choices[i];
-      const std::string key =
-          journalKey("trade", fmt::format("{}/{}/{}", name, choice.knob, choice.setting), options_, ctx_);
+      const std::string key = journalKey(
+          "trade", fmt::format("{}/{}/{}/{} s/{}", name, choice.knob, choice.setting, record.seconds, all_hashes_),
+          options_, ctx_);
       if (const auto known = journal_.find(key)) {
         rows.push_back(rowFromJson(known->as_object()));
         continue;
@@ -207,6 +256,7 @@ class TradeRuns {
   gpu::Context& ctx_;
   const SuiteOptions& options_;
   StudyJournal& journal_;
+  std::string all_hashes_;  ///< empty: hashes() was not called
 };
 
 /// Checks for each scene that no level is closer than REFERENCE by more than chance.
@@ -225,66 +275,61 @@ void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FIL
              100 * finest->errors.height_rms_ratio, 100 * kChance);
 }
 
-/// One choice over all scenes: geometric means of its cost and error over those of BALANCED. A scene without the
-/// changed part counts as BALANCED.
-struct MeanChoice {
-  std::string knob, setting;
+/// A level over all scenes: geometric means of its cost and error over those of BALANCED.
+struct MeanLevel {
+  std::string setting;
   double cost = 1.0;
   double error = 1.0;
-  bool is_on_front = false;
 };
 
-std::vector<MeanChoice> meansOver(const std::vector<std::vector<TradeRow>>& scenes) {
-  std::vector<MeanChoice> means;
+std::vector<MeanLevel> meansOver(const std::vector<std::vector<TradeRow>>& scenes) {
+  std::vector<MeanLevel> means;
   const double share = 1.0 / static_cast<double>(scenes.size());
   for (const std::vector<TradeRow>& rows : scenes) {
     const TradeRow& balanced = rows[1];
     for (const TradeRow& row : rows) {
-      if (!row.refused.empty()) continue;
-      auto mean = std::ranges::find_if(
-          means, [&](const MeanChoice& m) { return m.knob == row.knob && m.setting == row.setting; });
-      if (mean == means.end()) mean = means.insert(means.end(), MeanChoice{row.knob, row.setting});
-      mean->cost *= std::pow(row.wall_ms_per_s / balanced.wall_ms_per_s, share);
+      if (row.knob != kLevelKnob) continue;
+      auto mean = std::ranges::find(means, row.setting, &MeanLevel::setting);
+      if (mean == means.end()) mean = means.insert(means.end(), MeanLevel{row.setting});
+      mean->cost *= std::pow(row.cost_ms_per_s / balanced.cost_ms_per_s, share);
       mean->error *= std::pow(row.errors.height_rms_ratio / balanced.errors.height_rms_ratio, share);
     }
   }
-  study::CostAndError chance{kChance, kChance};
-  std::vector<study::CostAndError> points;
-  for (const MeanChoice& mean : means) {
-    if (mean.knob == kSeedKnob) chance = chanceOf({mean.cost, mean.error}, {1.0, 1.0});
-    points.push_back(isComparable(mean) ? study::CostAndError{mean.cost, mean.error}
-                                        : study::CostAndError{HUGE_VAL, HUGE_VAL});
-  }
-  const std::vector<bool> front = study::paretoFront(points, chance);
-  for (std::size_t i = 0; i < means.size(); ++i) means[i].is_on_front = front[i] && std::isfinite(points[i].cost);
   return means;
 }
 
-/// Checks the levels over all scenes: each is on the front, and finer levels are closer.
-void judgeLevels(const std::vector<MeanChoice>& means, SuiteResult& result, std::FILE* out) {
-  fmt::print(out, "over all scenes, against balanced; * = not beaten in cost and height both\n");
-  const MeanChoice* before = nullptr;
-  for (const MeanChoice& mean : means) {
-    const bool is_level = mean.knob == kLevelKnob;
-    const bool is_closer = before == nullptr || mean.error < before->error;
-    const bool holds = !is_level || (mean.is_on_front && is_closer);
-    fmt::print(out, "{} {:<17} {:<20} cost x {:>6.2f}  error x {:>5.2f}{}\n", mean.is_on_front ? "*" : " ", mean.knob,
-               mean.setting, mean.cost, mean.error,
-               holds       ? ""
-               : is_closer ? "  MISS: beaten in both"
-                           : "  MISS: no closer than the level before");
-    if (!is_level) continue;
+/// Checks over all scenes that finer levels are closer.
+void judgeLevels(const std::vector<MeanLevel>& means, SuiteResult& result, std::FILE* out) {
+  fmt::print(out, "over all scenes, against balanced\n");
+  double before = HUGE_VAL;
+  for (const MeanLevel& mean : means) {
+    const bool holds = mean.error < before;
+    fmt::print(out, "  {:<20} cost x {:>6.2f}  error x {:>5.2f}{}\n", mean.setting, mean.cost, mean.error,
+               holds ? "" : "  MISS: no closer than the level before");
     ++(holds ? result.held_count : result.missed_count);
-    before = &mean;
+    before = mean.error;
   }
 }
 
 }  // namespace
 
+core::Result<std::string> tradeStateHash(gpu::Context& ctx, const std::string& scene_name) {
+  auto scene = loadLevel(scene_name, v1::FIDELITY_BALANCED);
+  if (!scene) return scene.error();
+  const auto hash = study::stateHashAfter(ctx, *scene, kHashTicks);
+  if (!hash) return hash.error();
+  return fmt::format("{:016x}", *hash);
+}
+
 core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
                                      std::FILE* out) {
   SuiteResult result;
   TradeRuns runs(ctx, options, journal);
+  if (!options.quick) {
+    auto hashes = runs.hashes();
+    if (!hashes) return hashes.error();
+    result.json["state_hashes"] = *std::move(hashes);
+  }
   boost::json::array json_scenes;
   bool found = false;
   std::vector<std::vector<TradeRow>> all_rows;
@@ -302,42 +347,39 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
     judgeScene(*rows, result, out);
     all_rows.push_back(*rows);
     std::fflush(out);
-    json_scenes.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
+    json_scenes.push_back(
+        {{"scene", scene.name}, {"seconds", secondsOf(scene, options.quick)}, {"rows", toJson(*rows)}});
   }
   result.json["scenes"] = std::move(json_scenes);
   if (all_rows.size() > 1) {
-    const std::vector<MeanChoice> means = meansOver(all_rows);
+    const std::vector<MeanLevel> means = meansOver(all_rows);
     judgeLevels(means, result, out);
     boost::json::array json_means;
-    for (const MeanChoice& mean : means)
-      json_means.push_back({{"knob", mean.knob},
-                            {"setting", mean.setting},
-                            {"cost_ratio", mean.cost},
-                            {"error_ratio", mean.error},
-                            {"on_front", mean.is_on_front}});
+    for (const MeanLevel& mean : means)
+      json_means.push_back({{"setting", mean.setting}, {"cost_ratio", mean.cost}, {"error_ratio", mean.error}});
     result.json["over_all_scenes"] = std::move(json_means);
   }
 
-  boost::json::array json_dispersion;
-  for (const TradeScene& scene : kDispersiveScenes) {
-    if (options.quick || !(options.only.empty() || options.only == "dispersion")) continue;
+  if (!options.quick && (options.only.empty() || options.only == "known")) {
     found = true;
-    fmt::print(out, "{}, the wave alone with dispersion and without, {} s, against a finer run with dispersion\n",
-               scene.name, scene.seconds);
+    fmt::print(out, "error against theory or experiment at draft, balanced, fine, reference\n");
     std::fflush(out);
-    auto rows = runs.dispersion(scene);
-    if (!rows) return core::Error{rows.error().code, std::string(scene.name) + ": " + rows.error().message};
-    printTradeHeader(out);
-    for (const TradeRow& row : *rows) print(out, row, (*rows)[1]);
-    json_dispersion.push_back({{"scene", scene.name}, {"rows", toJson(*rows)}});
+    auto known = runs.known();
+    if (!known) return known.error();
+    for (const boost::json::value& one : *known) {
+      fmt::print(out, "  {:<80}", std::string(one.at("name").as_string()));
+      for (const boost::json::value& error : one.at("error_ratio").as_array())
+        fmt::print(out, " {:>7.3g}", 100 * error.to_number<double>());
+      fmt::print(out, " %\n");
+    }
+    result.json["known"] = *std::move(known);
   }
-  if (!json_dispersion.empty()) result.json["dispersion"] = std::move(json_dispersion);
 
   if (!options.quick && (options.only.empty() || options.only == "cost")) {
     found = true;
     fmt::print(out, "cost of particles, waves and both, and of the effects in each form\n");
     std::fflush(out);
-    auto sweep = runs.costs(study::costSweep(), 0.5);
+    auto sweep = runs.costs(study::costSweep(), 0.25);
     if (!sweep) return sweep.error();
     std::vector<TradeChoice> effects;
     for (const std::string effect : kEffects) {
@@ -347,16 +389,18 @@ core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& opti
         effects.push_back({effect, *form == '\0' ? "coupled" : form + 1, *std::move(scene)});
       }
     }
-    auto shown = runs.costs(effects, 4.0);
+    auto shown = runs.costs(effects, 1.0);
     if (!shown) return shown.error();
     sweep->insert(sweep->end(), shown->begin(), shown->end());
     printCosts(out, *sweep);
     result.json["costs"] = toJson(*sweep);
   }
   if (!found) {
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "--case: there is no '" + options.only + "'" + (options.quick ? " in the quick form" : "") +
-                           "; choose one of splash, breaking_wave, boat_wake, thesis, dam_break, dispersion, cost"};
+    return core::Error{core::ErrorCode::kInvalidInput, "--case: there is no '" + options.only + "'" +
+                                                           (options.quick ? " in the quick form" : "") +
+                                                           "; choose one of splash, breaking_wave, boat_wake, thesis, "
+                                                           "dam_break, harbor, beach, flume, boat_wake_wave, "
+                                                           "known, cost"};
   }
   return result;
 }

@@ -95,18 +95,18 @@ TEST(SingleKnobs, ChangeOneThingEach) {
   }
 }
 
-TEST(DispersionChoices, AreTheWaveAloneOfEachLevelWithAndWithoutIt) {
+TEST(SimplerWaves, LeaveOutDispersionAndTheNonlinearBulk) {
   core::Scene scene = waveOnly();
+  EXPECT_TRUE(simplerWaves(scene).empty());
   scene.wave->dispersion = core::Dispersion::kAiry;
-  scene.particles.emplace();
-  scene.coupling.emplace();
-  const auto choices = withAndWithoutDispersion({{"fidelity", "draft", scene}, {"fidelity", "balanced", scene}});
-  ASSERT_EQ(choices.size(), 4u);
+  ASSERT_EQ(simplerWaves(scene).size(), 1u);
+  EXPECT_EQ(simplerWaves(scene)[0].scene.wave->dispersion, core::Dispersion::kNone);
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  const auto choices = simplerWaves(scene);
+  ASSERT_EQ(choices.size(), 3u);
   for (std::size_t i = 0; i < choices.size(); ++i) {
-    EXPECT_FALSE(choices[i].scene.particles);
-    EXPECT_EQ(choices[i].scene.wave->dispersion, i < 2 ? core::Dispersion::kAiry : core::Dispersion::kNone);
-    EXPECT_EQ(choices[i].knob, i < 2 ? "fidelity" : "no dispersion");
-    EXPECT_EQ(choices[i].setting, i % 2 == 0 ? "draft" : "balanced");
+    EXPECT_EQ(choices[i].scene.wave->dispersion, i == 1 ? core::Dispersion::kAiry : core::Dispersion::kNone);
+    EXPECT_EQ(choices[i].scene.wave->bulk, i == 0 ? core::Bulk::kNonlinear : core::Bulk::kLinear);
   }
 }
 
@@ -115,9 +115,20 @@ TEST(FinerScenes, CanDisperse) {
     core::Scene scene = waveOnly();
     scene.wave->dispersion = core::Dispersion::kAiry;
     scene.wave->resolution_count = cells;
-    const auto derived = sim::derive(finerThan(scene));
+    const auto derived = sim::derive(finerThan(scene, 4.0 / 3));
     EXPECT_TRUE(derived) << cells << ": " << derived.error().message;
   }
+}
+
+TEST(FinerScenes, KeepTheShapeOfARectangle) {
+  core::Scene scene = waveOnly();
+  scene.wave->resolution_count = 150;
+  scene.wave->side_m = 24.0;
+  scene.wave->width_m = 17.28;
+  const auto derived = sim::derive(finerThan(scene, 1.25));
+  ASSERT_TRUE(derived) << derived.error().message;
+  EXPECT_GE(derived->wave->count_x, 187u);
+  EXPECT_NEAR(derived->wave->width_m, 17.28, 1e-9);
 }
 
 class OnSoftware : public ::testing::Test {
@@ -143,12 +154,26 @@ TEST_F(OnSoftware, FinerRunsOfAWaveComeCloserToTheFinest) {
   };
   const WaterRecord finest = run(384);
   ASSERT_EQ(finest.samples.size(), 15u);
-  EXPECT_GT(finest.wall_ms_per_s, 0.0);
+  EXPECT_GT(finest.cost_ms_per_s, 0.0);
   EXPECT_EQ(finest.recovered_count, 0u);
   const double coarse = compare(run(48), finest, waveOnly()).height_rms_ratio;
   const double middle = compare(run(96), finest, waveOnly()).height_rms_ratio;
   EXPECT_LE(middle, 0.5 * coarse) << "a quarter in theory, for an error of second order";
   EXPECT_GT(middle, 0.0);
+}
+
+TEST_F(OnSoftware, RectanglesAreComparedAndDryLandIsLevel) {
+  core::Scene scene = waveOnly();
+  scene.wave->resolution_count = 128;
+  scene.wave->side_m = 16.0;
+  scene.wave->width_m = 4.0;
+  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  scene.wave->bulk = core::Bulk::kNonlinear;
+  scene.beaches = {core::Beach{core::Side::kPlusX, 8.0, -0.5}};
+  const auto run = study::record(*ctx_, scene, {.seconds = 0.1, .frame_bytes = {}, .repeat_below_s = 0.0});
+  ASSERT_TRUE(run) << run.error().message;
+  ASSERT_EQ(run->samples[0].surface_m.size(), kSurfaceCells * 16);
+  for (const double level_m : run->samples[0].surface_m) EXPECT_NEAR(level_m, 0.0, 1e-9);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@ import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { CommandAction } from "../net/messages";
 import { make, setText } from "./dom";
-import { describeCost, shortCost } from "./fidelity_costs";
+import { describeCost, kMeasuredOn, shortCost } from "./fidelity_costs";
 import { PaceWatch } from "./pace_watch";
 import { SelectRow } from "./select_row";
 
@@ -32,7 +32,7 @@ export class FidelityRow {
       kFidelities.map(({ name }) => ({ value: name, label: name })),
       this.level,
     );
-    const costs = make("details", { class: "costs" }, [make("summary", {}, ["What each level costs"]), this.table]);
+    const costs = make("details", { class: "costs" }, [make("summary", {}, [`What each level costs (measured ${kMeasuredOn})`]), this.table]);
     this.element = make("div", {}, [this.row.element, this.cost, this.pace, costs]);
   }
 

@@ -18,11 +18,12 @@ struct TradeChoice {
 /// coupling, the thesis's parameters, and another seed, which shows the effect of chance.
 std::vector<TradeChoice> singleKnobs(const core::Scene& scene);
 
-/// Returns a scene to compare others with: finer in every direction than `reference`, the finest level.
-core::Scene finerThan(const core::Scene& reference);
+/// Returns a scene to compare others with: finer in every direction than `reference`, the finest level. `wave_scale`:
+/// factor on the wave's cells per side; particles per length get 1.25 times as many.
+core::Scene finerThan(const core::Scene& reference, double wave_scale);
 
-/// Returns the wave alone of each fidelity level with dispersion, and then without it, under the knob "no dispersion".
-std::vector<TradeChoice> withAndWithoutDispersion(const std::vector<TradeChoice>& levels);
+/// Returns the scene without the dispersion and the nonlinear bulk that it has: each alone, then both.
+std::vector<TradeChoice> simplerWaves(const core::Scene& scene);
 
 /// Particles alone, the wave alone, and both (thesis, tables 3.7 to 3.10): 8,192 to 65,536 particles, 64 to 1,024 cells
 /// per side.

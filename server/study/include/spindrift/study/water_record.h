@@ -25,14 +25,15 @@ struct RecordOptions {
   double sample_interval_s = 0.1;  ///< simulated
   bool has_samples = true;         ///< false: costs only
   FrameBytes frame_bytes;          ///< may be empty
-  /// A run with less wall time than this is run three times, and the fastest time of each interval counts: the speed of
-  /// a virtual machine changes by a factor of two from minute to minute.
+  /// A run that costs less time than this is run three times, and the fastest time of each interval counts: the speed
+  /// of a virtual machine changes by a factor of two from minute to minute.
   double repeat_below_s = 3.0;
 };
 
 struct WaterRecord {
   // Cost, without the time for sampling.
-  double wall_ms_per_s = 0.0;  ///< wall time of a simulated second
+  double cost_ms_per_s =
+      0.0;  ///< of a simulated second: processor time on a rasteriser in software, otherwise wall time
   std::vector<gpu::PassCost> passes;
   double seconds = 0.0;  ///< simulated
   std::uint64_t device_bytes = 0;
@@ -42,7 +43,8 @@ struct WaterRecord {
   std::uint32_t wave_cells_count = 0;
   std::uint64_t recovered_count = 0;
 
-  /// Fields of a sample, x fastest: elevation on kSurfaceCells^2 cells, averaged or interpolated [m]; volume of
+  /// Fields of a sample, x fastest: elevation on kSurfaceCells cells along x and as many across as make them about
+  /// square, averaged or interpolated, on land in a nonlinear bulk the depth of the water on it [m]; volume of
   /// particles in columns of the box over the mean volume. Empty if the scene lacks the part.
   struct Sample {
     std::vector<double> surface_m;
@@ -60,11 +62,15 @@ inline constexpr std::size_t kColumnsAlong = 20;
 /// Runs the scene from its start; a repetition gives the same samples.
 core::Result<WaterRecord> record(gpu::Context& ctx, const core::Scene& scene, const RecordOptions& options);
 
+/// Returns the hash of the water after its first ticks (sim::WaterSim::stateHash()).
+core::Result<std::uint64_t> stateHashAfter(gpu::Context& ctx, const core::Scene& scene, int tick_count);
+
 /// Difference of a run from another run of the same scene. Ratios are relative to the root mean square of the other
 /// run's field, or to its largest energy.
 struct RecordErrors {
   std::optional<double> surface_rms_ratio, surface_max_ratio;
-  std::optional<double> spectrum_ratio;  ///< of the surface: sum |P - P_ref| / sum P_ref over rings of wave numbers
+  std::optional<double> spectrum_ratio;  ///< of the surface: sum |P - P_ref| / sum P_ref over rings of wave numbers;
+                                         ///< square water only
   std::optional<double> column_rms_ratio;
   std::optional<double> front_rms_ratio;
   std::optional<double> density_rms_ratio;  ///< of this run, not a difference

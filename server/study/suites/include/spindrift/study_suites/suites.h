@@ -31,6 +31,10 @@ core::Result<SuiteResult> studyStability(gpu::Context& ctx, const SuiteOptions& 
 core::Result<SuiteResult> studyTrade(gpu::Context& ctx, const SuiteOptions& options, StudyJournal& journal,
                                      std::FILE* out);
 
+/// Returns the hash, in hexadecimal digits, that the trade suite writes as `state_hashes` for a scene: of its water at
+/// BALANCED some ticks after its first event. Another hash means that the suite's figures are those of another solver.
+core::Result<std::string> tradeStateHash(gpu::Context& ctx, const std::string& scene_name);
+
 /// Shows what is running, on standard error if that is a terminal; an empty text clears the line.
 void showProgress(const std::string& text);
 
