@@ -22,7 +22,7 @@ const folder = await mkdtemp(path.join(tmpdir(), "spindrift-bench-"));
 try {
   await build({
     configFile: false, root, logLevel: "error",
-    build: { outDir: folder, emptyOutDir: true, minify: false, target: "es2022", lib: { entry: path.join(root, "src/codec/bench_decode.ts"), formats: ["es"], fileName: () => "bench.mjs" } },
+    build: { outDir: folder, emptyOutDir: true, minify: false, target: "es2022", lib: { entry: path.join(root, "scripts/decode_times.ts"), formats: ["es"], fileName: () => "bench.mjs" } },
   });
   const times = options.includes("--chromium") ? await inChromium() : await inNode();
   print(options.includes("--chromium") ? "chromium, worker" : `node ${process.version}`, times);

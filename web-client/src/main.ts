@@ -4,7 +4,7 @@ import { App } from "./app/app";
 import { connectInput } from "./app/input";
 import { installTestHooks } from "./app/test_hooks";
 import { wantsSteppedPictures } from "./app/stepped_pictures";
-import { makeRenderer } from "./scene/renderer";
+import { makeRenderer } from "./scene/drawing/renderer";
 import { byId } from "./ui/dom";
 import { showNotice } from "./ui/notice";
 

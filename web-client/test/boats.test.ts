@@ -1,6 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import { makePose, mixAngle, mixBodies, unpackBodies, wrapAngle, type BodiesState, type BodyPose } from "../src/scene/bodies";
+import { mixAngle, wrapAngle } from "../src/scene/maths/interpolate";
+import { makePose, mixBodies, unpackBodies, type BodiesState, type BodyPose } from "../src/scene/frames/bodies";
 import type { BodiesFrame } from "../src/net/messages";
 import { bodiesPayload, type BodyRecord } from "./wire";
 

@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 
 import type { ObstacleInfo, SideKind, SideName } from "../src/codec/scene_info";
-import { Buoys, buoyPlaces, makeBuoyGeometry, pushedAside } from "../src/scene/buoys";
-import { clearanceM } from "../src/scene/clearance";
-import { Lamps } from "../src/scene/lamps";
-import { depthAtM } from "../src/scene/terrain";
+import { Buoys, buoyPlaces, makeBuoyGeometry, pushedAside } from "../src/scene/boats/buoys";
+import { clearanceM } from "../src/scene/landscape/clearance";
+import { Lamps } from "../src/scene/light/lamps";
+import { depthAtM } from "../src/scene/landscape/terrain";
 import { RawShaderMaterial } from "three";
 
 const sides: Record<SideName, SideKind> = { "-x": "open", "+x": "closed", "-z": "open", "+z": "closed" };

@@ -2,7 +2,7 @@
 import { PerspectiveCamera } from "three";
 import { beforeEach, describe, expect, it } from "vitest";
 
-import { CameraViews, type Followed } from "../src/scene/camera_views";
+import { CameraViews, type Followed } from "../src/scene/camera/camera_views";
 
 const kHeightPx = 600;
 const kBoat: Followed = { xM: 3, yM: 0, zM: -2, headingRad: 0.4, lengthM: 2 };

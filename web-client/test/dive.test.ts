@@ -4,8 +4,8 @@ import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../src/codec/greeting";
 import type { SideKind } from "../src/codec/scene_info";
-import { clearanceM } from "../src/scene/clearance";
-import { diveView, diveWater, keepClear } from "../src/scene/dive";
+import { clearanceM } from "../src/scene/landscape/clearance";
+import { diveView, diveWater, keepClear } from "../src/scene/camera/dive";
 
 const kNearM = 0.1;
 const kSides: Record<"-x" | "+x" | "-z" | "+z", SideKind> = { "-x": "open", "+x": "closed", "-z": "open", "+z": "open" };

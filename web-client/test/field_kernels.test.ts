@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { kCurvature, kSlope, kSmooth } from "../src/scene/field_kernels";
+import { kCurvature, kSlope, kSmooth } from "../src/scene/water/field_kernels";
 
 type Taps = readonly [number, number, number];
 

@@ -4,12 +4,11 @@ import { join } from "node:path";
 import { describe, expect, it, vi } from "vitest";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 
-import { crc32c } from "../src/codec/crc32c";
-import { readerFault } from "../src/codec/frame_reader";
-import { isPacked } from "../src/codec/frame_types";
+import { crc32c, readerFault } from "../src/codec/frame_reader";
 import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse } from "../src/codec/parse";
 import { ServerMessageSchema, type LayerFrame, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
+import { isPacked } from "./wire";
 
 /** Long enough for thousands of frames on a busy machine. */
 vi.setConfig({ testTimeout: 60_000 });

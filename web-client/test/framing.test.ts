@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/framing";
+import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/camera/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
 const waters: ViewedBox[] = [

@@ -4,11 +4,12 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import type { Malformed } from "../src/codec/malformed";
-import { isPacked, type PackedFrame } from "../src/codec/frame_types";
+import type { PackedFrame } from "../src/codec/frame_types";
 import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse, type ParsedMessage } from "../src/codec/parse";
-import { unpackBodies, type BodyPose } from "../src/scene/bodies";
-import { elevationAtM } from "../src/scene/height_field";
+import { unpackBodies, type BodyPose } from "../src/scene/frames/bodies";
+import { elevationAtM } from "../src/scene/frames/height_field";
+import { isPacked } from "./wire";
 
 interface GoldenCase {
   file: string;

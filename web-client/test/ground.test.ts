@@ -5,9 +5,9 @@ import { readGround, type GroundGrid } from "../src/codec/ground";
 import { isMalformed } from "../src/codec/malformed";
 import { GroundRequests } from "../src/net/ground_request";
 import { GroundSchema } from "../src/gen/spindrift/v1/api_pb";
-import { makeGroundGeometry } from "../src/scene/landscape";
-import { coastHeightM } from "../src/scene/sea/coast";
-import { depthAtM, type Bed } from "../src/scene/terrain";
+import { makeGroundGeometry } from "../src/scene/landscape/landscape";
+import { coastHeightM } from "../src/scene/landscape/coast";
+import { depthAtM, type Bed } from "../src/scene/landscape/terrain";
 
 /** The wire holds differences along rows, and of first numbers from the row before. */
 function bytesOf(rises: number[][], change: { quantumM?: number; countX?: number } = {}): Uint8Array {

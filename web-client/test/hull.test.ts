@@ -3,10 +3,10 @@ import type { BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { BoatDetail } from "../src/codec/greeting";
-import { addShell, makeBoatParts } from "../src/scene/hull/boat_geometry";
-import { HullLines, hullKind } from "../src/scene/hull/lines";
-import { liveryOf, paintOf } from "../src/scene/hull/livery";
-import { MeshBuilder } from "../src/scene/mesh_builder";
+import { addShell, makeBoatParts } from "../src/scene/boats/boat_geometry";
+import { HullLines, hullKind } from "../src/scene/boats/lines";
+import { liveryOf, paintOf } from "../src/scene/boats/livery";
+import { MeshBuilder } from "../src/scene/meshes/mesh_builder";
 
 const kBoats: Record<string, BoatDetail> = {
   "the shortest boat": { boatId: 1, lengthM: 0.3, beamM: 0.1, heightM: 0.05, draughtM: 0.0025 },

@@ -3,9 +3,9 @@ import { BufferGeometry, Group, RawShaderMaterial, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { ObstacleInfo } from "../src/codec/scene_info";
-import { addBoatLamps, lampShare } from "../src/scene/hull/boat_lamps";
-import { Lamps } from "../src/scene/lamps";
-import { beamHeadingRad, Landscape } from "../src/scene/landscape";
+import { addBoatLamps, lampShare } from "../src/scene/boats/boat_lamps";
+import { Lamps } from "../src/scene/light/lamps";
+import { beamHeadingRad, Landscape } from "../src/scene/landscape/landscape";
 
 const boat = { boatId: 1, lengthM: 2.5, beamM: 1, heightM: 0.6, draughtM: 0.2 };
 

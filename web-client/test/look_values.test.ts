@@ -4,11 +4,11 @@ import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
-import { isCovered } from "../src/scene/looks/dry_places";
-import { densityRatio, pickParticle, placeM, speedMps, type ShownParticles } from "../src/scene/looks/particle_values";
+import { isCovered } from "../src/scene/landscape/clearance";
+import { densityRatio, pickParticle, placeM, speedMps, type ShownParticles } from "../src/scene/frames/particle_values";
 import { breakingCriterion, foamAt, kLeastDepths, ShownSurface, type Rectangle } from "../src/scene/looks/surface_values";
-import type { ShownSurfaces } from "../src/scene/passes/field_pass";
-import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/time_weights";
+import type { ShownSurfaces } from "../src/scene/water/field_pass";
+import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/frames/time_weights";
 import { describePlace, describeValue } from "../src/ui/probe_label";
 
 const kSquare: Rectangle = { sideM: 8, widthM: 8, periodicX: false, periodicZ: false };

@@ -4,7 +4,7 @@ import { join } from "node:path";
 import { fromBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { crc32c } from "../src/codec/crc32c";
+import { crc32c } from "../src/codec/frame_reader";
 import { Packing, ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
 import { greeting, type ServerBody } from "./wire";

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { crc32c } from "../src/codec/crc32c";
+import { crc32c } from "../src/codec/frame_reader";
 import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
 import { parse } from "../src/codec/parse";
 import { CouplingMode, Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";

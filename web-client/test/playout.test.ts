@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { PlayoutClock } from "../src/scene/playout_clock";
+import { PlayoutClock } from "../src/scene/frames/playout_clock";
 
 describe("a held playout clock", () => {
   it("shows the held time, whatever arrives", () => {

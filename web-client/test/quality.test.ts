@@ -1,8 +1,8 @@
 // The tiers of the drawing's quality, and the choice of one by the time that pictures take.
 import { describe, expect, it } from "vitest";
 
-import { chooseQuality, firstTier, isSoftware, kTierNames, kTiers, type TierName } from "../src/scene/quality";
-import { QualityGovernor } from "../src/scene/quality_governor";
+import { chooseQuality, firstTier, isSoftware, kTierNames, kTiers, type TierName } from "../src/scene/drawing/quality";
+import { QualityGovernor } from "../src/scene/drawing/quality_governor";
 
 /** Settings of a tier that cost time, as numbers that grow with it. */
 function costsOf(tier: TierName): number[] {

@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
 
 import type { WindInfo } from "../src/codec/scene_info";
-import { makeDropSeeds, rainShare } from "../src/scene/rain/rain";
+import { hazeM, rainShare } from "../src/scene/light/weather";
+import { makeDropSeeds } from "../src/scene/rain/drop_seeds";
 import { withParameter } from "../src/scene/sea/sea_state";
-import { hazeM } from "../src/scene/settings/surroundings";
 
 const storm: WindInfo = { seed: 1n, gravityMps2: 9.81, comesIn: false, levelRatio: 1, dropsPerM2S: 0.08, waveHeightM: 0.3, directionDeg: 0, speedMps: 15, fetchM: 2000 };
 

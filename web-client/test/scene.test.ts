@@ -1,8 +1,8 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { elevationAtM, elevationRangeM } from "../src/scene/height_field";
-import { pickWater, type WaterShape } from "../src/scene/pick";
+import { elevationAtM, elevationRangeM } from "../src/scene/frames/height_field";
+import { pickWater, type WaterShape } from "../src/scene/frames/pick";
 import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
 
 const flat: WaterShape = { sideM: 16, widthM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };

@@ -3,13 +3,13 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import type { SideKind, SideName, WaveInfo, WindInfo } from "../src/codec/scene_info";
-import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/sea/coast";
-import { blendOf, kSideOrder } from "../src/scene/sea/open_sea";
+import { kSideNames, type SideKind, type SideName, type WaveInfo, type WindInfo } from "../src/codec/scene_info";
+import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/landscape/coast";
+import { blendOf } from "../src/scene/sea/open_sea";
 import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";
 import { fitToTile, slopeVariance } from "../src/scene/sea/sea_tile";
 import { seaStateOf, waveFrequencyRadps } from "../src/scene/sea/sea_state";
-import { gridLines } from "../src/scene/water_grid";
+import { gridLines } from "../src/scene/water/water_grid";
 
 const sidesOf = (plusX: SideKind, minusX: SideKind, plusZ: SideKind, minusZ: SideKind): Record<SideName, SideKind> => ({ "+x": plusX, "-x": minusX, "+z": plusZ, "-z": minusZ });
 
@@ -91,7 +91,7 @@ describe("the blend with the simulated water", () => {
     expect(shareAt(wave, 15, 3)).toBe(0);
     expect(shareAt(wave, 13, 3)).toBeGreaterThan(0);
     expect(shareAt(wave, 11, 3)).toBe(1);
-    expect(kSideOrder.length).toBe(4);
+    expect(kSideNames.length).toBe(4);
   });
 
   it("keeps the simulated water up to a closed side, and repeats it beyond a periodic one", () => {

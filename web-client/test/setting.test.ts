@@ -4,8 +4,8 @@ import { describe, expect, it } from "vitest";
 
 import { readSetting, readWind } from "../src/codec/scene_info";
 import { Boundary, Dispersion, SceneSchema, Setting, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
-import { makeGlassGeometry, makeStandGeometry, tankSize } from "../src/scene/settings/glass_tank";
-import { makeBasinGeometries } from "../src/scene/settings/pool_basin";
+import { makeGlassGeometry, makeStandGeometry, tankSize } from "../src/scene/solids/glass_tank";
+import { makeBasinGeometries } from "../src/scene/solids/pool_basin";
 
 const wall = { boundaryMinusX: WaveBoundary.REFLECT, boundaryPlusX: WaveBoundary.REFLECT, boundaryMinusZ: WaveBoundary.REFLECT, boundaryPlusZ: WaveBoundary.REFLECT };
 const sized = { sideM: 16, depthM: 1.5, resolutionCount: 192 };

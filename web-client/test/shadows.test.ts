@@ -3,7 +3,7 @@ import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
 import { lightAt } from "../src/scene/light/light";
-import { shadowMatrix, toClip, type ShadowBox } from "../src/scene/light/shadow_frame";
+import { shadowMatrix, toClip, type ShadowBox } from "../src/scene/shadows/shadow_frame";
 
 const kBox: ShadowBox = { halfM: 20, lowM: -1.2, highM: 5 };
 const corners = [-1, 1].flatMap((x) => [kBox.lowM, kBox.highM].flatMap((y) => [-1, 1].map((z) => new Vector3(x * kBox.halfM, y, z * kBox.halfM))));

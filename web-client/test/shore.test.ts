@@ -5,7 +5,7 @@ import type { ObstacleInfo } from "../src/codec/scene_info";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { meansOver, obstacleRiseM, shoreCells, shoreOf, type ShoreCells } from "../src/scene/shore/shore_ground";
 import { frontFoam, kDryingS, kFilmM, ShoreWetness, wetnessAfter } from "../src/scene/shore/shore_wetness";
-import type { Bed } from "../src/scene/terrain";
+import type { Bed } from "../src/scene/landscape/terrain";
 
 const kRock: ObstacleInfo = { shape: "rock", xM: 1, zM: 0, radiusM: 2, heightM: 0.8 };
 const kWall: ObstacleInfo = { shape: "breakwater", xM: 0, zM: 0, lengthM: 4, widthM: 1, headingRad: Math.PI / 2, heightM: 0.5 };

@@ -2,12 +2,12 @@ import type { BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { BreakwaterInfo, RockInfo } from "../src/codec/scene_info";
-import { makeBreakwater } from "../src/scene/breakwater_mesh";
-import { clearanceM } from "../src/scene/clearance";
-import { makeGroundGeometry } from "../src/scene/landscape";
-import { makeLace } from "../src/scene/noise_texture";
-import { makeRockGeometry } from "../src/scene/obstacle_mesh";
-import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/terrain";
+import { makeBreakwater } from "../src/scene/landscape/breakwater_mesh";
+import { clearanceM } from "../src/scene/landscape/clearance";
+import { makeGroundGeometry } from "../src/scene/landscape/landscape";
+import { makeLace } from "../src/scene/drawing/noise_texture";
+import { makeRockGeometry } from "../src/scene/landscape/rock_mesh";
+import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/landscape/terrain";
 import { spawnPlace } from "../src/ui/spawn_place";
 
 const bed: Bed = { sideM: 40, widthM: 40, depthM: 3, beaches: [{ side: "-x", widthM: 12, shoreDepthM: 0 }, { side: "+z", widthM: 5, shoreDepthM: 1 }] };

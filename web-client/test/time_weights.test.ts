@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/time_weights";
+import { timeRateWeights, timeWeights, type FrameTimes } from "../src/scene/frames/time_weights";
 
 type Weights = [number, number, number, number];
 

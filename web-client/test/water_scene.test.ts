@@ -6,8 +6,8 @@ import type { GreetingInfo } from "../src/codec/greeting";
 import type { SideKind, WaveInfo, WindInfo } from "../src/codec/scene_info";
 import type { Frame } from "../src/net/messages";
 import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
-import type { Pass } from "../src/scene/passes/pass";
-import { kTiers, type TierName } from "../src/scene/quality";
+import type { Pass } from "../src/scene/drawing/pass";
+import { kTiers, type TierName } from "../src/scene/drawing/quality";
 import { WaterScene } from "../src/scene/water_scene";
 
 /** Takes every call; only what WaterScene reads has a value. */

@@ -2,10 +2,12 @@
 import { describe, expect, it } from "vitest";
 
 import type { FoamFrame, ParticleFrame, SurfaceFrame } from "../src/net/messages";
-import { makePose } from "../src/scene/bodies";
+import { makePose } from "../src/scene/frames/bodies";
 import { DiffuseParticles, kFloatsPerParticle, kinds, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
 import { MovingSurface } from "../src/scene/whitewater/moving_surface";
-import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, share, type Births } from "../src/scene/whitewater/sources";
+import { ramp } from "../src/scene/maths/interpolate";
+import { makeFastRandom } from "../src/scene/maths/random";
+import { addCrests, addFromParticles, addHulls, addRims, rimOf, type Births } from "../src/scene/whitewater/sources";
 
 const kSideM = 16;
 const kCount = 32;
@@ -143,8 +145,8 @@ describe("breaking crests", () => {
     addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(1, -0.5));
     // 30 drops and 12 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
     const drops = made.particles.countOf(kinds.spray);
-    expect(drops).toBeGreaterThan(0.8 * 30 * 256 * share(1, 0.25, 1.2));
-    expect(drops).toBeLessThan(1.2 * 30 * 256 * share(1, 0.25, 1.2));
+    expect(drops).toBeGreaterThan(0.8 * 30 * 256 * ramp(0.25, 1.2, 1));
+    expect(drops).toBeLessThan(1.2 * 30 * 256 * ramp(0.25, 1.2, 1));
     expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.8 * 12 * 256);
     let forward = 0;
     for (let n = 0; n < made.particles.count; ++n) {

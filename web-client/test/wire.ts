@@ -1,7 +1,8 @@
 // Builds server messages as bytes, the way a server would send them.
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
-import { crc32c } from "../src/codec/crc32c";
+import { crc32c } from "../src/codec/frame_reader";
+import type { PackedFrame } from "../src/codec/frame_types";
 import { Layer, ServerMessageSchema, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
 
 export type ServerBody = Exclude<NonNullable<MessageInitShape<typeof ServerMessageSchema>["message"]>, { case: undefined }>;
@@ -9,6 +10,10 @@ export type ServerBody = Exclude<NonNullable<MessageInitShape<typeof ServerMessa
 export function encode(message: ServerBody): ArrayBuffer {
   const bytes = toBinary(ServerMessageSchema, create(ServerMessageSchema, { message } as MessageInitShape<typeof ServerMessageSchema>));
   return bytes.slice().buffer;
+}
+
+export function isPacked(message: { kind: string }): message is PackedFrame {
+  return message.kind.startsWith("packed");
 }
 
 type FrameInit = Extract<ServerMessage["message"], { case: "frame" }>["value"];

@@ -1,7 +1,7 @@
 // Turns pointer, key, button and window events into calls of the App.
 import { Vector3 } from "three";
 
-import { pickWater } from "../scene/pick";
+import { pickWater } from "../scene/frames/pick";
 import { byId, isTyping } from "../ui/dom";
 import { TapDetector, toDeviceCoordinates, type PointerSample } from "../ui/tap";
 import type { App } from "./app";

@@ -1,5 +1,5 @@
 // The panel: open or closed, and which part of the canvas it leaves free.
-import type { PixelRect } from "../scene/framing";
+import type { PixelRect } from "../scene/camera/framing";
 import { byId } from "../ui/dom";
 
 /** As in style.css: below this width the panel is a sheet at the bottom. */

@@ -2,7 +2,7 @@
 import { Vector3 } from "three";
 
 import { kLayerNames, type LayerName } from "../codec/layers";
-import { elevationRangeM } from "../scene/height_field";
+import { elevationRangeM } from "../scene/frames/height_field";
 import { describeState } from "../ui/hud";
 import type { App } from "./app";
 import { SteppedPictures } from "./stepped_pictures";

@@ -54,12 +54,22 @@ class Reader {
   }
 }
 
-export class ChecksumReader extends Reader {
-  /** CRC-32C; undefined if there is no memory for the payload. */
+class ChecksumReader extends Reader {
+  /** Undefined if there is no memory for the payload. */
   read(payload: Uint8Array): number | undefined {
     if (!this.put(payload, this.exports.prepareChecksum(payload.length))) return undefined;
     return this.exports.checksum() >>> 0;
   }
+}
+
+let checksumReader: ChecksumReader | undefined;
+
+/** Returns the CRC-32C (Castagnoli, reflected polynomial 0x82F63B78), an unsigned 32-bit number; 0xE3069283 for "123456789". */
+export function crc32c(bytes: Uint8Array): number {
+  checksumReader ??= new ChecksumReader();
+  const crc = checksumReader.read(bytes);
+  if (crc === undefined) throw new RangeError(`no memory for a payload of ${bytes.length} bytes`);
+  return crc;
 }
 
 export class ParticleReader extends Reader {

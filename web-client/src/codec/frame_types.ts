@@ -1,7 +1,6 @@
 // Frames as plain data: headers, and payloads as views into the message. A plain frame holds the samples or records themselves;
 // a packed frame has to be unpacked first.
-import type { FrameLayer } from "./layers";
-import type { LevelName } from "./level";
+import type { FrameLayer, LevelName } from "./layers";
 
 /** Limits of this client; all far above what a server sends. */
 export const kMaxResolutionCount = 4096;
@@ -103,9 +102,3 @@ export type PackedFrame =
   | ({ kind: "packedSurface" } & PackedPlane<SurfaceHeader>)
   | ({ kind: "packedFoam" } & PackedPlane<FoamHeader>)
   | ({ kind: "packedParticles" } & PackedParticles);
-
-const kPackedKinds: ReadonlySet<string> = new Set<PackedFrame["kind"]>(["packedSurface", "packedFoam", "packedParticles"]);
-
-export function isPacked(message: { kind: string }): message is PackedFrame {
-  return kPackedKinds.has(message.kind);
-}

@@ -2,8 +2,8 @@
 import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { fidelityName, type FidelityName } from "./fidelity";
-import { kLayerNames, kLayers, type LayerName } from "./layers";
 import type { GroundGrid } from "./ground";
+import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 import {
   readBeaches,

@@ -5,17 +5,10 @@
 // the type of the page's handlers follow from it.
 import { fromBinary } from "@bufbuild/protobuf";
 
-import {
-  RejectReason,
-  RoomEventKind,
-  ServerMessageSchema,
-  type Diagnostics,
-  type ServerMessage,
-} from "../gen/spindrift/v1/wire_pb";
-import { readDraining } from "./draining";
-import { readBoatList, readGreeting } from "./greeting";
+import { RejectReason, RoomEventKind, ServerMessageSchema, type Diagnostics, type Draining, type ServerMessage } from "../gen/spindrift/v1/wire_pb";
 import type { PackedFrame, PlainFrame } from "./frame_types";
-import { levelName } from "./level";
+import { readBoatList, readGreeting } from "./greeting";
+import { levelName } from "./layers";
 import { isMalformed, malformed, type Malformed } from "./malformed";
 import { parseFrame } from "./parse_frame";
 import { readPeople, readWelcome } from "./people";
@@ -42,10 +35,7 @@ const kReaders = {
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
   people: (people) => ({ people: readPeople(people), unlistedCount: people.unlistedCount }),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
-  draining: ({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS }) => {
-    const draining = readDraining({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS });
-    return typeof draining === "string" ? malformed(draining) : { draining };
-  },
+  draining: (draining) => readDraining(draining),
   pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),
   refusal: ({ message }) => ({ message }),
 } satisfies { [K in Kind]: ReaderOf<K> };
@@ -79,4 +69,14 @@ function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "fidelity" 
   if (kind === RoomEventKind.RECOVERED) return "recovered";
   if (kind === RoomEventKind.FIDELITY) return "fidelity";
   return kind === RoomEventKind.RESET ? "reset" : "other";
+}
+
+/** The server is about to end. `goTo`: ws://HOST or wss://HOST; empty: the same server. */
+export type DrainingInfo = Pick<Draining, "closesInS" | "goTo" | "reconnectAfterMinS" | "reconnectAfterMaxS">;
+
+function readDraining({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS }: Draining): { draining: DrainingInfo } | Malformed {
+  if (![closesInS, reconnectAfterMinS, reconnectAfterMaxS].every((value) => Number.isFinite(value) && value >= 0) || reconnectAfterMaxS < reconnectAfterMinS)
+    return malformed(`draining: times ${closesInS}, ${reconnectAfterMinS} and ${reconnectAfterMaxS} s`);
+  if (goTo !== "" && !/^wss?:\/\/[^/?#@]+\/?$/.test(goTo)) return malformed(`draining: ${goTo} is no address of a server`);
+  return { draining: { closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS } };
 }

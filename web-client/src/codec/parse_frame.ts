@@ -1,7 +1,6 @@
 // A LayerFrame → its header as plain data and its payload as a view, or the reason why it cannot be trusted. Pure.
 import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
-import { crc32c } from "./crc32c";
-import { kWeightCount } from "./frame_reader";
+import { crc32c, kWeightCount } from "./frame_reader";
 import {
   kBodyBytes,
   kMaxBodyCount,
@@ -13,7 +12,7 @@ import {
   type PlaneExtents,
   type PlainFrame,
 } from "./frame_types";
-import { levelName } from "./level";
+import { levelName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 
 const kMaxOffsetBits = 8;

@@ -5,7 +5,9 @@ import { Bulk, Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveSce
 const kMaxObstacleCount = 256;
 
 export type SettingName = "openSea" | "pool" | "glassTank" | "flume";
-export type SideName = "+x" | "-x" | "+z" | "-z";
+/** In the order of shader uniforms. */
+export const kSideNames = ["+x", "-x", "+z", "-z"] as const;
+export type SideName = (typeof kSideNames)[number];
 /** What waves do at a side: come in again opposite, stay inside, or leave. */
 export type SideKind = "periodic" | "closed" | "open";
 

@@ -2,20 +2,18 @@
 // Socket, clock and timers are injected, so tests need no network. Runs in the worker.
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
-import type { DrainingInfo } from "../codec/draining";
 import type { PlainFrame } from "../codec/frame_types";
 import { FrameUnpacker } from "../codec/frame_unpacker";
 import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
-import { kLayers } from "../codec/layers";
-import { coarserLevel, kFinestLevel, wireLevel, type LevelName } from "../codec/level";
-import { parse } from "../codec/parse";
+import { coarserLevel, kFinestLevel, kLayers, wireLevel, type LevelName } from "../codec/layers";
+import { parse, type DrainingInfo } from "../codec/parse";
 import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import type { ConnectionSink, ConnectionWorld, SocketLike } from "./connection_world";
 import { LinkMeter } from "./link_meter";
 import { LoadGovernor } from "./load_governor";
-import { planMove, type MovePlan } from "./move_plan";
 import type { CommandAction, ConnectionCalls, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import { planMove, type MovePlan } from "./move_plan";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
 

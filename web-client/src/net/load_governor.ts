@@ -1,6 +1,6 @@
 // Chooses the level of detail that this device can unpack in time, by the share of time that the worker spends on messages. The
 // server adapts to the link, from the frames that wait in its outbox.
-import { kLevels, type LevelName } from "../codec/level";
+import { kLevels, type LevelName } from "../codec/layers";
 
 const kTooBusy = 0.6;
 /** A level has up to four times the samples of the next coarser one. */

@@ -4,8 +4,7 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
 import type { FrameHeaders, PackedFrame, PlainFrame } from "../codec/frame_types";
-import type { FrameLayer, LayerName } from "../codec/layers";
-import type { LevelName } from "../codec/level";
+import type { FrameLayer, LayerName, LevelName } from "../codec/layers";
 import type { Malformed } from "../codec/malformed";
 import type { ParsedMessage } from "../codec/parse";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";

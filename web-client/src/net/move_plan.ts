@@ -1,5 +1,5 @@
 // What a Draining message asks for: when to connect anew, and to which address.
-import type { DrainingInfo } from "../codec/draining";
+import type { DrainingInfo } from "../codec/parse";
 
 export interface MovePlan {
   atMs: number;

@@ -2,8 +2,8 @@
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { CommandAction } from "../net/messages";
-import type { BodyPose } from "../scene/bodies";
-import type { Followed } from "../scene/camera_views";
+import type { BodyPose } from "../scene/frames/bodies";
+import type { Followed } from "../scene/camera/camera_views";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
 import { Helm, helmKey, type HelmKey } from "./helm";

@@ -4,8 +4,8 @@ import { Matrix4, Vector4, type PerspectiveCamera } from "three";
 
 import type { BoatDetail } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
-import type { BodyPose } from "../scene/bodies";
-import type { PixelRect } from "../scene/framing";
+import type { BodyPose } from "../scene/frames/bodies";
+import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
 
 /** Only the nearest boats have tags. */

@@ -1,5 +1,5 @@
 // Chooses the quality of the drawing, and names the one that is drawn.
-import { kTierNames, type QualityChoice, type TierName } from "../scene/quality";
+import { kTierNames, type QualityChoice, type TierName } from "../scene/drawing/quality";
 import { byId, make, setText } from "./dom";
 import { SelectRow } from "./select_row";
 

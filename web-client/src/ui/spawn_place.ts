@@ -1,7 +1,7 @@
 // Finds a place for a new boat: deep enough, and clear of obstacles and other boats. Pure.
 import type { GreetingInfo } from "../codec/greeting";
-import { clearanceM } from "../scene/clearance";
-import { bedOf, depthAtM, type Bed } from "../scene/terrain";
+import { clearanceM } from "../scene/landscape/clearance";
+import { bedOf, depthAtM, type Bed } from "../scene/landscape/terrain";
 
 const kTriesCount = 160;
 /** The golden angle: candidates fill the water evenly from the middle outward. */

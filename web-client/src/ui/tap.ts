@@ -1,5 +1,5 @@
 // Distinguishes a click or tap from a drag.
-import { kClickRadiusPx } from "../scene/camera_hand";
+import { kClickRadiusPx } from "../scene/camera/camera_hand";
 
 export interface PointerSample {
   id: number;

@@ -1,5 +1,5 @@
 // The camera's buttons: which view is shown, and whether there is a boat to follow.
-import type { CameraViews, ViewName } from "../scene/camera_views";
+import type { CameraViews, ViewName } from "../scene/camera/camera_views";
 import { byId } from "./dom";
 
 const kViewNames: readonly ViewName[] = ["above", "side", "overview", "below", "boat"];

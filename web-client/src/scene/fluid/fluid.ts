@@ -9,11 +9,11 @@
 //   surface    all of these, sky, solids -> canvas
 import type { Texture } from "three";
 
-import type { Pass } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import type { FluidQuality } from "../quality";
-import type { Sky } from "../sky";
-import type { StreamedFrames } from "../streamed_frames";
+import type { Pass } from "../drawing/pass";
+import type { FluidQuality } from "../drawing/quality";
+import type { StreamedFrames } from "../frames/streamed_frames";
+import type { Sky } from "../light/sky";
+import type { SolidsPass } from "../solids/solids_pass";
 import { FluidDepthPass } from "./fluid_depth_pass";
 import { FluidNormalPass } from "./fluid_normal_pass";
 import { FluidParticles } from "./fluid_particles";

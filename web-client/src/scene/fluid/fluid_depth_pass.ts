@@ -1,10 +1,10 @@
 // Draws the particles' nearest surface. Reads the particles. Writes 1 / distance [1/m] and foam.
 import { Vector2, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { makeFrontTarget } from "./fluid_targets";
-import { makeMaterial } from "../shaders";
 
 export class FluidDepthPass implements Pass {
   readonly name = "fluid depth";

@@ -1,11 +1,11 @@
 // Normals of the smoothed surface. Reads 1 / distance [1/m] and foam. Writes the normal in view space and foam.
 import { Vector4, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { FluidSmoothPass } from "./fluid_smooth_pass";
 import { makeHalfTarget } from "./fluid_targets";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
-import { makeMaterial } from "../shaders";
 import { viewRay } from "./view_ray";
 
 export class FluidNormalPass implements Pass {

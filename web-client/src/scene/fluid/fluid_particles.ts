@@ -3,15 +3,14 @@
 // the particles.
 import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector2, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer, type WebGLRenderTarget } from "three";
 
-import { kParticleBytes } from "../../codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
-import type { FrameRing } from "../frame_ring";
-import type { ShownParticles } from "../looks/particle_values";
-import type { Pass, Picture } from "../passes/pass";
-import type { PlayoutClock } from "../playout_clock";
-import type { Uniforms } from "../shaders";
+import type { Pass, Picture } from "../drawing/pass";
+import type { FrameRing } from "../frames/frame_ring";
+import { kWordsPerParticle, type ShownParticles } from "../frames/particle_values";
+import type { PlayoutClock } from "../frames/playout_clock";
+import { clamp } from "../maths/interpolate";
+import type { Uniforms } from "../shaders/materials";
 
-const kWordsPerParticle = kParticleBytes / 2;
 /** Particles are extrapolated for at most this many frame intervals. */
 const kMaxAdvanceIntervals = 1.5;
 
@@ -60,7 +59,7 @@ export class FluidParticles implements Pass {
   /** Takes the particles of the time shown: those of the frame before, extrapolated by their velocities. */
   draw({ shownS }: Picture): void {
     const frames = shownS === undefined ? undefined : this.frames.around(shownS);
-    if (frames) this.show(frames.from, Math.min(Math.max(shownS! - frames.from.timeS, 0), kMaxAdvanceIntervals * this.clock.intervalS()));
+    if (frames) this.show(frames.from, clamp(shownS! - frames.from.timeS, 0, kMaxAdvanceIntervals * this.clock.intervalS()));
   }
 
   /** The particles of the last picture, for values on the CPU; undefined if there are none. */

@@ -1,12 +1,12 @@
 // Shades the floor under a tank of particles. Reads the particles and the depth of the solids. Writes the colour of the solids.
 import { BufferAttribute, BufferGeometry, DstColorFactor, CustomBlending, Mesh, Scene, Vector2, ZeroFactor, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
 import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
-import { makeMaterial } from "../shaders";
-import type { Sky } from "../sky";
 
 const kTargetPx = 256;
 /** The floor that is shaded, in sides of the tank. */

@@ -1,12 +1,12 @@
 // Smooths the particles' surface (fluid_smooth.frag), along x and y in turn. Reads and writes 1 / distance [1/m] and foam.
 import { Vector2, type RawShaderMaterial, type Texture, type WebGLRenderTarget, type WebGLRenderer } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { FluidDepthPass } from "./fluid_depth_pass";
 import type { FluidParticles } from "./fluid_particles";
 import { makeFrontTarget } from "./fluid_targets";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
-import { makeMaterial } from "../shaders";
 
 /** Lengths of the filter in particle radii: half the kernel, and how far a pair's mean may lie from the pixel. */
 const kReachRadii = 5;

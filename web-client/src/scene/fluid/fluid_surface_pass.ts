@@ -2,14 +2,14 @@
 // and depth. Writes the canvas and its depth.
 import { Matrix4, Vector2, Vector3, Vector4, type RawShaderMaterial, type Texture } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidNormalPass } from "./fluid_normal_pass";
 import type { FluidSmoothPass } from "./fluid_smooth_pass";
 import type { FluidThicknessPass } from "./fluid_thickness_pass";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
-import { makeMaterial, type Uniforms } from "../shaders";
-import type { Sky } from "../sky";
 import { viewRay } from "./view_ray";
 
 /** What the surface is shaded from. */

@@ -1,5 +1,5 @@
 // Render targets of the fluid's passes.
-import { AddEquation, CustomBlending, FloatType, HalfFloatType, LinearFilter, NearestFilter, OneFactor, OneMinusDstAlphaFactor, RGBAFormat, RGFormat, WebGLRenderTarget, type ShaderMaterialParameters } from "three";
+import { AddEquation, CustomBlending, FloatType, HalfFloatType, NearestFilter, OneFactor, OneMinusDstAlphaFactor, RGFormat, WebGLRenderTarget, type ShaderMaterialParameters } from "three";
 
 /** 1 / distance and foam. Full floats: normals come from differences of neighbours. */
 export function makeFrontTarget(depthBuffer: boolean): WebGLRenderTarget {
@@ -8,7 +8,7 @@ export function makeFrontTarget(depthBuffer: boolean): WebGLRenderTarget {
 
 /** Four half floats, filtered and blendable. */
 export function makeHalfTarget(): WebGLRenderTarget {
-  return new WebGLRenderTarget(1, 1, { format: RGBAFormat, type: HalfFloatType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
+  return new WebGLRenderTarget(1, 1, { type: HalfFloatType, depthBuffer: false });
 }
 
 /** Blending of fluid_thickness.frag. */

@@ -2,10 +2,10 @@
 // among others, coverage.
 import { Vector2, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
-import { makeMaterial } from "../shaders";
 
 export class FluidThicknessPass implements Pass {
   readonly name = "fluid thickness";

@@ -1,10 +1,10 @@
 // Finds the tiles of the screen that particles touch, and draws screen passes over those tiles only.
 // Reads the particles. Writes one byte per tile.
-import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
+import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, Vector2, WebGLRenderTarget, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
-import { makeMaterial, type Uniforms } from "../shaders";
 
 const kColumnsCount = 48;
 const kRowsCount = 32;
@@ -22,13 +22,7 @@ export class FluidTilesPass implements Pass {
   private readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
 
   constructor(private readonly particles: FluidParticles) {
-    this.target = new WebGLRenderTarget(kColumnsCount, kRowsCount, {
-      format: RedFormat,
-      type: UnsignedByteType,
-      minFilter: NearestFilter,
-      magFilter: NearestFilter,
-      depthBuffer: false,
-    });
+    this.target = new WebGLRenderTarget(kColumnsCount, kRowsCount, { format: RedFormat, minFilter: NearestFilter, magFilter: NearestFilter, depthBuffer: false });
     this.uniforms = { u_tiles: { value: this.target.texture }, u_tiles_count: { value: new Vector2(kColumnsCount, kRowsCount) } };
     const countPx = { u_target_px: { value: new Vector2(kColumnsCount, Math.max(kRowsCount, kColumnsCount)) } };
     this.material = makeMaterial("fluidTileMark", { ...particles.uniforms, ...countPx }, { defines: { TILES: 1 }, depthTest: false, depthWrite: false });

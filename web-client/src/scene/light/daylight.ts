@@ -1,4 +1,5 @@
 // Which light is shown: the hour and the weather that the user chose, or the room's storm. Changes are gradual. Pure: no renderer.
+import { clamp, mix, smooth } from "../maths/interpolate";
 import { lightAt, type Light } from "./light";
 
 /** Points of the day by name. `storm` undefined: the room's. */
@@ -39,7 +40,7 @@ export class Daylight {
 
   /** Chooses an hour (0..24) in the weather of the room, without a transition: a slider is one. */
   chooseHour(hour: number): void {
-    this.chosen = { hour: Math.min(Math.max(hour, 0), 24), storm: undefined };
+    this.chosen = { hour: clamp(hour, 0, 24), storm: undefined };
     this.shown = this.target();
     this.travel = undefined;
     this.isNew = true;
@@ -47,7 +48,7 @@ export class Daylight {
 
   /** Follows the storm of the room, 0..1. `atOnce`: the room is new. */
   setRoomStorm(storm: number, atOnce = false): void {
-    this.roomStorm = Math.min(Math.max(storm, 0), 1);
+    this.roomStorm = clamp(storm, 0, 1);
     if (!atOnce) return;
     this.shown = this.target();
     this.travel = undefined;
@@ -68,9 +69,9 @@ export class Daylight {
     this.isNew = false;
     if (!this.travel) return lightAt(this.shown.hour, this.shown.storm);
     const share = Math.min((nowS - this.travel.beganS) / kTravelS, 1);
-    const eased = share * share * (3 - 2 * share);
+    const eased = smooth(share);
     const { from } = this.travel;
-    this.shown = share < 1 ? { hour: from.hour + (to.hour - from.hour) * eased, storm: from.storm + (to.storm - from.storm) * eased } : to;
+    this.shown = share < 1 ? { hour: mix(from.hour, to.hour, eased), storm: mix(from.storm, to.storm, eased) } : to;
     if (share >= 1) this.travel = undefined;
     return lightAt(this.shown.hour, this.shown.storm);
   }

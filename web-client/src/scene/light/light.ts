@@ -2,6 +2,7 @@
 // water. Colours are linear and relative: a white surface that faces the noon sun has about 1.6. Pure: no renderer.
 //
 // The sky's colours are keyframes over the sun's altitude, chosen by eye (no scattering model): today's clear noon is the last one.
+import { mix, smoothstep } from "../maths/interpolate";
 
 export type Rgb = readonly [red: number, green: number, blue: number];
 
@@ -77,12 +78,6 @@ function unit([x, y, z]: Rgb): Rgb {
   return [x / length, y / length, z / length];
 }
 
-function smoothstep(from: number, to: number, at: number): number {
-  const share = Math.min(Math.max((at - from) / (to - from), 0), 1);
-  return share * share * (3 - 2 * share);
-}
-
-const mix = (a: number, b: number, share: number): number => a + (b - a) * share;
 const map = (a: Rgb, b: Rgb, of: (a: number, b: number) => number): Rgb => [of(a[0], b[0]), of(a[1], b[1]), of(a[2], b[2])];
 const mixRgb = (a: Rgb, b: Rgb, share: number): Rgb => map(a, b, (x, y) => mix(x, y, share));
 const scale = (a: Rgb, by: number): Rgb => map(a, a, (x) => x * by);

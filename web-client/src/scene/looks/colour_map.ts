@@ -3,6 +3,7 @@
 //   cividis   J. Nuñez, C. Anderton and R. Renslow, PLoS ONE 13(7), 2018: likewise; also for readers with impaired colour vision
 //   coolWarm, purpleGreen   K. Moreland, "Diverging color maps for scientific visualization", 2009: computed between two colours
 // Between the published colours lightness, a* and b* of CIELAB are linear.
+import { clamp } from "../maths/interpolate";
 
 type Triple = [number, number, number];
 export type ColourMapName = "viridis" | "cividis" | "coolWarm" | "purpleGreen";
@@ -40,7 +41,7 @@ function srgbOf([lightness, a, b]: Triple): Triple {
   const cube = (t: number): number => (t > 6 / 29 ? t ** 3 : 3 * (6 / 29) ** 2 * (t - 4 / 29));
   const xyz = [y + a / 500, y, y - b / 200].map((t, i) => cube(t) * kWhite[i]!) as Triple;
   return kRgb.map((row) => {
-    const c = Math.min(Math.max(dot(row, xyz), 0), 1);
+    const c = clamp(dot(row, xyz), 0, 1);
     return c <= 0.0031308 ? 12.92 * c : 1.055 * c ** (1 / 2.4) - 0.055;
   }) as Triple;
 }

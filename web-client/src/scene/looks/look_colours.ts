@@ -1,7 +1,7 @@
 // The colour map of a look as a texture, and the range of values that it spans, for the materials of look_map.glsl.
 import { ClampToEdgeWrapping, DataTexture, LinearFilter, Vector2 } from "three";
 
-import type { Uniforms } from "../shaders";
+import type { Uniforms } from "../shaders/materials";
 import { colourMap, kColoursCount } from "./colour_map";
 import type { Quantity } from "./looks";
 import { RangeFollower, type ValueRange } from "./value_range";

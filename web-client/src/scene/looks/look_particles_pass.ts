@@ -2,11 +2,11 @@
 // solids and of the surface. Writes the canvas and its depth.
 import { Matrix3, Vector2, type RawShaderMaterial } from "three";
 
+import type { Pass, Picture } from "../drawing/pass";
 import type { FluidParticles } from "../fluid/fluid_particles";
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import { makeMaterial } from "../shaders";
-import type { Sky } from "../sky";
+import type { Sky } from "../light/sky";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
 import type { LookColours } from "./look_colours";
 
 export class LookParticlesPass implements Pass {

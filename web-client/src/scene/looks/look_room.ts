@@ -6,24 +6,24 @@
 //   present    solids -> canvas where there is no water
 // There is no liquid, refraction or glass: they would change the colours.
 import type { GreetingInfo } from "../../codec/greeting";
+import type { Pass } from "../drawing/pass";
+import type { Quality } from "../drawing/quality";
 import { FluidParticles } from "../fluid/fluid_particles";
-import type { FieldPass } from "../passes/field_pass";
-import type { FoamPass } from "../passes/foam_pass";
-import type { Pass } from "../passes/pass";
-import { PresentPass } from "../passes/present_pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import { pickWater, type Ray } from "../pick";
-import type { Quality } from "../quality";
-import type { Sky } from "../sky";
-import type { StreamedFrames } from "../streamed_frames";
-import { bedOf, depthAtM } from "../terrain";
-import { isCovered } from "./dry_places";
+import { densityRatio, kDensityRatios, pickParticle, placeM, speedMps } from "../frames/particle_values";
+import { pickWater, type Ray } from "../frames/pick";
+import type { StreamedFrames } from "../frames/streamed_frames";
+import { isCovered } from "../landscape/clearance";
+import { bedOf, depthAtM } from "../landscape/terrain";
+import type { Sky } from "../light/sky";
+import type { SolidsPass } from "../solids/solids_pass";
+import type { FieldPass } from "../water/field_pass";
+import type { FoamPass } from "../water/foam_pass";
+import { PresentPass } from "../water/present_pass";
 import { LookColours } from "./look_colours";
 import { LookParticlesPass } from "./look_particles_pass";
 import { kBluePaint, kGreyPaint, LookSurfacePass, type SurfaceColour } from "./look_surface_pass";
 import { LookValuePass } from "./look_value_pass";
 import { kLooks, type LookName, type Quantity } from "./looks";
-import { densityRatio, kDensityRatios, pickParticle, placeM, speedMps } from "./particle_values";
 import { breakingCriterion, foamAt, ShownSurface, type Rectangle } from "./surface_values";
 import { kBeyondShares, reachOf, ticksOf, type ValueRange } from "./value_range";
 import { waterMagnitudes } from "./water_magnitudes";

@@ -3,14 +3,14 @@
 import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { Pass, Picture, Resource } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import type { Quality } from "../quality";
-import { makeMaterial, type Uniforms } from "../shaders";
-import type { Sky } from "../sky";
-import { makeGroundTexture } from "../ground_texture";
-import { bedOf, bedUniformValues } from "../terrain";
-import { makeWaterGeometries } from "../water_grid";
+import type { Pass, Picture, Resource } from "../drawing/pass";
+import type { Quality } from "../drawing/quality";
+import { makeGroundTexture } from "../landscape/ground_texture";
+import { bedOf, bedUniformValues } from "../landscape/terrain";
+import type { Sky } from "../light/sky";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
+import { makeWaterGeometries } from "../water/water_grid";
 import type { LookColours } from "./look_colours";
 import type { LookValuePass } from "./look_value_pass";
 import { kLeastDepths } from "./surface_values";

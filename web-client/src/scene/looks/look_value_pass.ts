@@ -1,11 +1,11 @@
 // The surface's elevation or vertical velocity at full resolution and without the field's smoothing (look_value.frag). Reads the frames
 // around the time shown, as the field pass chose and uploaded them. Writes the look's value, filtered linearly between samples.
-import { ClampToEdgeWrapping, HalfFloatType, LinearFilter, RedFormat, RepeatWrapping, Vector4, WebGLRenderTarget, type Texture } from "three";
+import { ClampToEdgeWrapping, HalfFloatType, RedFormat, RepeatWrapping, Vector4, WebGLRenderTarget, type Texture } from "three";
 
-import { FullscreenPass } from "../fullscreen";
-import type { FieldPass } from "../passes/field_pass";
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial } from "../shaders";
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
+import type { FieldPass } from "../water/field_pass";
 import type { Rectangle } from "./surface_values";
 
 export class LookValuePass implements Pass {
@@ -23,8 +23,6 @@ export class LookValuePass implements Pass {
     this.target = new WebGLRenderTarget(1, 1, {
       format: RedFormat,
       type: HalfFloatType,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter,
       wrapS: periodicX ? RepeatWrapping : ClampToEdgeWrapping,
       wrapT: periodicZ ? RepeatWrapping : ClampToEdgeWrapping,
       depthBuffer: false,

@@ -1,8 +1,8 @@
 // The looks of the water: its natural one, data in colours, and the plain one of the thesis. Which quantities they show, how they are
 // named, and which of them a room has data for. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
+import { kDensityRatios } from "../frames/particle_values";
 import type { ColourMapName } from "./colour_map";
-import { kDensityRatios } from "./particle_values";
 
 const kLookNames = ["natural", "height", "velocity", "breaking", "foam", "speed", "density", "thesis"] as const;
 export type LookName = (typeof kLookNames)[number];

@@ -1,11 +1,12 @@
 // Values of the water's surface at a place, from the samples of the frames: the same that look_value.frag and look_surface.frag draw,
 // without the rounding of textures. Pure.
 import type { FoamFrame } from "../../net/messages";
-import type { Between } from "../frame_ring";
-import type { PlaneCounts } from "../frame_textures";
-import { elevationRangeM } from "../height_field";
-import type { ShownSurfaces } from "../passes/field_pass";
-import { depthAtM, type Bed } from "../terrain";
+import type { Between } from "../frames/frame_ring";
+import type { PlaneCounts } from "../frames/frame_textures";
+import { elevationRangeM } from "../frames/height_field";
+import { depthAtM, type Bed } from "../landscape/terrain";
+import { bilinear } from "../maths/interpolate";
+import type { ShownSurfaces } from "../water/field_pass";
 
 /** A rectangle of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */
 export interface Rectangle {
@@ -15,15 +16,8 @@ export interface Rectangle {
   periodicZ: boolean;
 }
 
-/** Returns the bilinear value at a place; `at`: value of sample (i, k). */
-function bilinear({ sideM, widthM, periodicX, periodicZ }: Rectangle, { resolutionCount, countZ }: PlaneCounts, xM: number, zM: number, at: (i: number, k: number) => number): number {
-  const u = (xM / sideM + 0.5) * resolutionCount - 0.5;
-  const v = (zM / widthM + 0.5) * countZ - 0.5;
-  const held = (i: number, n: number, periodic: boolean): number => (periodic ? ((i % n) + n) % n : Math.min(Math.max(i, 0), n - 1));
-  const [i, k] = [Math.floor(u), Math.floor(v)];
-  const [fu, fv] = [u - i, v - k];
-  const [i0, i1, k0, k1] = [held(i, resolutionCount, periodicX), held(i + 1, resolutionCount, periodicX), held(k, countZ, periodicZ), held(k + 1, countZ, periodicZ)];
-  return (at(i0, k0) * (1 - fu) + at(i1, k0) * fu) * (1 - fv) + (at(i0, k1) * (1 - fu) + at(i1, k1) * fu) * fv;
+function samplesOf({ sideM, widthM, periodicX, periodicZ }: Rectangle, { resolutionCount, countZ }: PlaneCounts): Parameters<typeof bilinear>[0] {
+  return { lengthXM: sideM, lengthZM: widthM, countX: resolutionCount, countZ, periodicX, periodicZ };
 }
 
 /** The surface of one picture, for evaluation at many places. Valid until the next frame arrives. */
@@ -80,10 +74,7 @@ export class ShownSurface {
   private weighted(weights: readonly number[], xM: number, zM: number): number {
     const { counts, planes } = this;
     const [a, b, c, d] = this.shown.frames.map(({ quantumM }, i) => weights[i]! * quantumM) as [number, number, number, number];
-    return bilinear(this.rectangle, counts, xM, zM, (i, k) => {
-      const at = k * counts.resolutionCount + i;
-      return a * planes[0]![at]! + b * planes[1]![at]! + c * planes[2]![at]! + d * planes[3]![at]!;
-    });
+    return bilinear(samplesOf(this.rectangle, counts), xM, zM, (at) => a * planes[0]![at]! + b * planes[1]![at]! + c * planes[2]![at]! + d * planes[3]![at]!);
   }
 }
 
@@ -104,7 +95,7 @@ export const kLeastDepths = 0.02;
 export function foamAt(rectangle: Rectangle, { from, to, mix }: Readonly<Between<FoamFrame>>, xM: number, zM: number): number {
   const at = (frame: FoamFrame): number => {
     const bytes = new Uint8Array(frame.buffer);
-    return bilinear(rectangle, frame, xM, zM, (i, k) => bytes[k * frame.resolutionCount + i]!);
+    return bilinear(samplesOf(rectangle, frame), xM, zM, (at) => bytes[at]!);
   };
   const first = from.resolutionCount === to.resolutionCount && from.countZ === to.countZ ? from : to;
   return first === to || mix === 0 ? at(first) : at(first) * (1 - mix) + at(to) * mix;

@@ -1,7 +1,7 @@
 // How far the surface is from rest, over the water alone: the values that a range follows. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
-import { bedOf, depthAtM } from "../terrain";
-import { isCovered } from "./dry_places";
+import { isCovered } from "../landscape/clearance";
+import { bedOf, depthAtM } from "../landscape/terrain";
 import { kLeastDepths, type ShownSurface } from "./surface_values";
 
 const kPerSide = 64;

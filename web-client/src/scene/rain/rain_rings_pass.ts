@@ -1,12 +1,13 @@
 // Rings of the small drops of rain, as slopes in a tile that repeats over the water. Each drop of the tile falls again and again, elsewhere each
 // time. Reads nothing but the time. Writes the rain.
-import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial, type Uniforms } from "../shaders";
-import { makeFastRandom } from "../whitewater/sources";
-import { makeDropSeeds, rainShare } from "./rain";
+import type { Pass, Picture } from "../drawing/pass";
+import { rainShare } from "../light/weather";
+import { makeFastRandom } from "../maths/random";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { makeDropSeeds } from "./drop_seeds";
 
 const kTileM = 4;
 /** Rings at a time in the hardest rain, per m^2. */
@@ -37,7 +38,6 @@ export class RainRingsPass implements Pass {
       format: RGFormat,
       type: HalfFloatType,
       minFilter: LinearMipmapLinearFilter,
-      magFilter: LinearFilter,
       wrapS: RepeatWrapping,
       wrapT: RepeatWrapping,
       generateMipmaps: true,

@@ -3,12 +3,13 @@
 import { BufferAttribute, BufferGeometry, LineSegments, NormalBlending, Scene, Vector2, Vector3, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import { makeMaterial } from "../shaders";
-import type { Sky } from "../sky";
-import { makeFastRandom } from "../whitewater/sources";
-import { makeDropSeeds, rainShare } from "./rain";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { rainShare } from "../light/weather";
+import { makeFastRandom } from "../maths/random";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
+import { makeDropSeeds } from "./drop_seeds";
 
 /** Both ends of a streak. */
 const kEnds = 2;

@@ -3,13 +3,13 @@
 // the simulated water by it (docs/wind_sea.md). The shorter one is ripples.
 import { Vector2, Vector4 } from "three";
 
-import type { SideName, WaveInfo, WindInfo } from "../../codec/scene_info";
-import type { Pass, Picture } from "../passes/pass";
-import type { Quality } from "../quality";
-import type { Uniforms } from "../shaders";
+import { kSideNames, type SideName, type WaveInfo, type WindInfo } from "../../codec/scene_info";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Quality } from "../drawing/quality";
+import type { Uniforms } from "../shaders/materials";
 import { makeRipples, rippleSlope } from "./ripples";
-import { SeaTile, slopeVariance } from "./sea_tile";
 import { seaStateOf, withParameter, type PlaneWave } from "./sea_state";
+import { SeaTile, slopeVariance } from "./sea_tile";
 
 /** As in the server: a sea fades into the next one in this time (wind_sea.cpp). */
 const kFadeS = 4;
@@ -27,8 +27,6 @@ const kLeastBlendSides = 0.06;
 /** Never reached: at a closed side the simulated water does not blend with anything. */
 const kNever = 1e6;
 
-export const kSideOrder: readonly SideName[] = ["+x", "-x", "+z", "-z"];
-
 /**
  * Returns the uniforms of sea_blend.glsl for the sides +x, -x, +z, -z: `beyondM`, how far outside a side the simulated water's share
  * becomes 0, and `widthM`, over which it falls from 1.
@@ -41,7 +39,7 @@ export function blendOf(wave: Pick<WaveInfo, "sides" | "sideM" | "widthM" | "spo
     if (kind === "periodic") return [kPeriodicFadeSides * sideM, kPeriodicFadeSides * sideM];
     return [0, Math.max(wave.spongeWidthM, kLeastBlendSides * sideM)];
   };
-  return { beyondM: kSideOrder.map((side) => of(side)[0]), widthM: kSideOrder.map((side) => of(side)[1]) };
+  return { beyondM: kSideNames.map((side) => of(side)[0]), widthM: kSideNames.map((side) => of(side)[1]) };
 }
 
 export class OpenSea implements Pass {

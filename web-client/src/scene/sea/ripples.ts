@@ -1,5 +1,6 @@
 // Ripples: waves too short for the simulation's grid, as the second cascade of the open sea. They change the normals only, inside and
 // outside the simulated square alike. Pure.
+import { clamp } from "../maths/interpolate";
 import { makeRandom, type PlaneWave } from "./sea_state";
 
 /** Surface tension over density, m^3/s^2. */
@@ -11,7 +12,7 @@ const kStormSlope = 0.11;
 
 /** Returns the root mean square slope of the ripples at a storm level. */
 export function rippleSlope(levelRatio: number): number {
-  return kCalmSlope + kStormSlope * Math.min(Math.max(levelRatio, 0), 1);
+  return kCalmSlope + kStormSlope * clamp(levelRatio, 0, 1);
 }
 
 /**

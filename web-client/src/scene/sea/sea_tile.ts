@@ -1,9 +1,9 @@
 // A sum of plane waves as a repeating texture: elevation and slopes, drawn again for every picture.
-import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, RGBAFormat, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
+import { LinearFilter, LinearMipmapLinearFilter, RepeatWrapping, Vector4, WebGLRenderTarget, type Texture, type WebGLRenderer } from "three";
 
-import { FullscreenPass } from "../fullscreen";
-import type { TexelType } from "../quality";
-import { makeMaterial } from "../shaders";
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { TexelType } from "../drawing/quality";
+import { makeMaterial } from "../shaders/materials";
 import type { PlaneWave } from "./sea_state";
 
 /** As in sea_tile.frag. Two seas of 32 waves while one fades into the next. */
@@ -45,10 +45,8 @@ export class SeaTile {
   /** `smooth`: with mip levels; too slow for software renderers, whose shader fades the waves smaller than a pixel itself. */
   constructor(readonly tileM: number, texelsCount: number, smooth: boolean, texelType: TexelType) {
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
-      format: RGBAFormat,
       type: texelType,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
-      magFilter: LinearFilter,
       wrapS: RepeatWrapping,
       wrapT: RepeatWrapping,
       generateMipmaps: smooth,

@@ -1,4 +1,4 @@
-// Include: sunlight focused by the waves, from passes/caustics_pass.ts.
+// Include: sunlight focused by the waves, from water/caustics_pass.ts.
 uniform sampler2D u_caustics;       // light relative to level water, at the floor and at kUpperLayer of its depth
 uniform float u_caustic_depth_m;    // of the floor
 uniform vec2 u_caustic_extent_m;

@@ -1,4 +1,4 @@
-// Include: what stands between a point and the sun, from passes/shadow_pass.ts. After <sky>.
+// Include: what stands between a point and the sun, from shadows/shadow_pass.ts. After <sky>.
 uniform highp sampler2DShadow u_shadow;
 uniform mat4 u_shadow_matrix;    // world → map, all three in 0..1
 uniform vec2 u_shadow_texel_m;

@@ -1,5 +1,5 @@
 // The ground under the samples as a texture, for level.frag and shore.frag.
-import { DataTexture, FloatType, NearestFilter, RGFormat } from "three";
+import { DataTexture, FloatType, RGFormat } from "three";
 
 import type { ShoreCells } from "./shore_ground";
 
@@ -11,7 +11,6 @@ export function makeCellsTexture({ resolutionCount, countZ, groundM, bedM }: Sho
     heights[2 * at + 1] = bedM[at]!;
   }
   const texture = new DataTexture(heights, resolutionCount, countZ, RGFormat, FloatType);
-  texture.minFilter = texture.magFilter = NearestFilter;
   texture.needsUpdate = true;
   return texture;
 }

@@ -1,8 +1,8 @@
 // The ground under the cells of a nonlinear wave, from which real depths follow. Pure.
 import type { GreetingInfo } from "../../codec/greeting";
 import type { ObstacleInfo, WaveInfo } from "../../codec/scene_info";
-import type { PlaneCounts } from "../frame_textures";
-import { bedOf, depthAtM, type Bed } from "../terrain";
+import type { PlaneCounts } from "../frames/frame_textures";
+import { bedOf, depthAtM, type Bed } from "../landscape/terrain";
 
 /** Higher land counts as this high, as on the server (`kHighestLand_m` in sim_setup/ground.h). */
 const kHighestLandM = 60;

@@ -1,16 +1,21 @@
 // The shore as one texture, which solids and water read: where water stands, how wet the ground is, and the foam of the swash.
 // Reads the frames around the time shown and the field's level of the water. Writes the shore.
-import { ClampToEdgeWrapping, DataTexture, LinearFilter, RGBAFormat, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget, type Texture } from "three";
+import { DataTexture, LinearFilter, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget } from "three";
 
-import type { FieldPass } from "../passes/field_pass";
-import type { Pass, Picture } from "../passes/pass";
-import { FullscreenPass } from "../fullscreen";
-import type { PlaneCounts } from "../frame_textures";
-import type { Quality } from "../quality";
-import { makeMaterial, type Uniforms } from "../shaders";
-import type { StreamedFrames } from "../streamed_frames";
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Quality } from "../drawing/quality";
+import type { PlaneCounts } from "../frames/frame_textures";
+import type { StreamedFrames } from "../frames/streamed_frames";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { ShoreCells } from "./shore_ground";
 import type { ShoreWetness } from "./shore_wetness";
+
+/** What the pass takes from that of the field. */
+interface FieldLevel {
+  readonly sizes: { width: number; height: number; counts: PlaneCounts };
+  readonly levelUniforms: Uniforms;
+}
 
 export class ShorePass implements Pass {
   readonly name = "shore";
@@ -29,21 +34,13 @@ export class ShorePass implements Pass {
   /** `cellsOf`: the ground by the counts of a frame. `wetness` belongs to the caller, and outlives this pass. */
   constructor(
     private readonly frames: StreamedFrames,
-    private readonly field: FieldPass,
+    private readonly field: FieldLevel,
     private readonly wetness: ShoreWetness,
     private readonly cellsOf: (counts: PlaneCounts) => ShoreCells,
     { texelType }: Pick<Quality, "texelType">,
   ) {
     const { width, height } = field.sizes;
-    this.target = new WebGLRenderTarget(width, height, {
-      format: RGBAFormat,
-      type: texelType,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter,
-      wrapS: ClampToEdgeWrapping,
-      wrapT: ClampToEdgeWrapping,
-      depthBuffer: false,
-    });
+    this.target = new WebGLRenderTarget(width, height, { type: texelType, depthBuffer: false });
     this.uniforms = { u_shore: { value: this.target.texture } };
     [this.from, this.to] = [makeTexture(wetness.counts), makeTexture(wetness.counts)];
     this.screen = new FullscreenPass(
@@ -53,10 +50,6 @@ export class ShorePass implements Pass {
         { depthTest: false, depthWrite: false },
       ),
     );
-  }
-
-  get texture(): Texture {
-    return this.target.texture;
   }
 
   draw({ renderer, shownS }: Picture): void {
@@ -110,8 +103,6 @@ type Frame = Parameters<ShoreWetness["advance"]>[0];
 function makeTexture({ resolutionCount, countZ }: PlaneCounts): DataTexture {
   const texture = new DataTexture(new Uint8Array(2 * resolutionCount * countZ), resolutionCount, countZ, RGFormat, UnsignedByteType);
   texture.minFilter = texture.magFilter = LinearFilter;
-  texture.wrapS = texture.wrapT = ClampToEdgeWrapping;
-  texture.unpackAlignment = 1;
   texture.needsUpdate = true;
   return texture;
 }

@@ -1,7 +1,8 @@
 // How wet the ground is and how much foam the swash leaves, per sample of the surface's frames. Kept on the page: real depth = elevation -
 // ground says where water stands; the rest follows from when it stood there last. Pure.
 import type { FoamFrame, SurfaceFrame } from "../../net/messages";
-import type { PlaneCounts } from "../frame_textures";
+import type { PlaneCounts } from "../frames/frame_textures";
+import { clamp, ramp } from "../maths/interpolate";
 import type { ShoreCells } from "./shore_ground";
 
 /** Thinner water counts as none: three steps of a frame with the usual quantum, so that rounding does not wet dry ground. */
@@ -21,8 +22,6 @@ const kThinM = 0.06;
 const kFrontFramesS = 0.3;
 /** Deeper ground than this share of the depth never falls dry. */
 const kAlwaysWetDepths = 0.6;
-
-const ramp = (from: number, to: number, at: number): number => Math.min(Math.max((at - from) / (to - from), 0), 1);
 
 /** Returns the wetness (1 to 0) of ground from which water went away `sinceS` ago. */
 export function wetnessAfter(sinceS: number): number {
@@ -88,7 +87,7 @@ export class ShoreWetness {
   at(shareX: number, shareZ: number): { wetness: number; foam: number } | undefined {
     if (this.timeS === undefined) return undefined;
     const { resolutionCount, countZ } = this.counts;
-    const index = (share: number, count: number): number => Math.min(Math.max(Math.floor(share * count), 0), count - 1);
+    const index = (share: number, count: number): number => clamp(Math.floor(share * count), 0, count - 1);
     const at = index(shareX, resolutionCount) + resolutionCount * index(shareZ, countZ);
     return { wetness: this.texels[2 * at]! / 255, foam: this.texels[2 * at + 1]! / 255 };
   }

@@ -2,10 +2,10 @@
 // depth. Writes the solids.
 import { Vector2, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import { makeMaterial } from "../shaders";
-import type { Sky } from "../sky";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
 import type { WhitePoints } from "./white_points";
 
 export class BubblesPass implements Pass {

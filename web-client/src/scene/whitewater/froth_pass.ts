@@ -1,9 +1,9 @@
 // Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
-// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (passes/flat_shadow_pass.ts).
-import { ClampToEdgeWrapping, CustomBlending, LinearFilter, MaxEquation, OneFactor, RGFormat, UnsignedByteType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (shadows/flat_shadow_pass.ts).
+import { CustomBlending, MaxEquation, OneFactor, RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import { makeMaterial } from "../shaders";
+import type { Pass, Picture } from "../drawing/pass";
+import { makeMaterial } from "../shaders/materials";
 import type { WhitePoints } from "./white_points";
 
 export class FrothPass implements Pass {
@@ -21,15 +21,7 @@ export class FrothPass implements Pass {
   ) {
     const texelsPerM = texelsCount / Math.max(sideM, widthM);
     const along = (lengthM: number): number => Math.max(Math.round(lengthM * texelsPerM), 1);
-    this.target = new WebGLRenderTarget(along(sideM), along(widthM), {
-      format: RGFormat,
-      type: UnsignedByteType,
-      minFilter: LinearFilter,
-      magFilter: LinearFilter,
-      wrapS: ClampToEdgeWrapping,
-      wrapT: ClampToEdgeWrapping,
-      depthBuffer: false,
-    });
+    this.target = new WebGLRenderTarget(along(sideM), along(widthM), { format: RGFormat, depthBuffer: false });
     this.material = makeMaterial("froth", { u_extent_m: { value: new Vector2(sideM, widthM) }, u_target_px: { value: texelsCount } }, {
       defines: { FROTH: 1 },
       blending: CustomBlending,

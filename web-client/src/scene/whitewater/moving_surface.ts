@@ -1,6 +1,6 @@
 // The streamed surface between two frames, on the CPU: elevation, its rate of change and its slope. Pure.
 import type { SurfaceFrame } from "../../net/messages";
-import type { Between } from "../frame_ring";
+import type { Between } from "../frames/frame_ring";
 
 export interface SurfaceMotion {
   elevationM: number;

@@ -2,28 +2,13 @@
 // and breakwaters, and among fast white particles. Every source adds a mean number per second and area, length or particle, so that the
 // picture does not depend on the rates of frames and pictures. Pure: no renderer.
 import type { BoatDetail } from "../../codec/greeting";
-import { kParticleBytes } from "../../codec/frame_types";
 import type { ObstacleInfo } from "../../codec/scene_info";
 import type { FoamFrame, ParticleFrame } from "../../net/messages";
-import type { BodyPose } from "../bodies";
+import type { BodyPose } from "../frames/bodies";
+import { kWordsPerParticle, placeM, velocityMps, whiteOf } from "../frames/particle_values";
+import { clamp, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
 import type { MovingSurface } from "./moving_surface";
-
-/** Marsaglia's xorshift (2003) with 32 bits: fast, and the same in every run. Returns 0..1. */
-export function makeFastRandom(seed: number): () => number {
-  let state = seed | 1;
-  return () => {
-    state ^= state << 13;
-    state ^= state >>> 17;
-    state ^= state << 5;
-    return (state >>> 0) / 2 ** 32;
-  };
-}
-
-/** Ihmsen et al. (2012), equation 1: 0 below `least`, 1 above `most`, linear between. */
-export function share(value: number, least: number, most: number): number {
-  return Math.min(Math.max((value - least) / (most - least), 0), 1);
-}
 
 /** What the sources add to. `scale`: 1 for the densities below, less where fewer particles are wanted. */
 export interface Births {
@@ -88,7 +73,7 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
     const slope = Math.hypot(slopeX, slopeZ);
     const alongMps = slope > 0.02 ? Math.min(Math.max(riseMps, 0) / slope, kMostCrestMps) : 0;
     const [dx, dz] = slope > 0 ? [-slopeX / slope, -slopeZ / slope] : [0, 0];
-    const drops = countOf(kCrestDropsPerM2 * fresh * share(riseMps, ...kCrestSpeedsMps), random);
+    const drops = countOf(kCrestDropsPerM2 * fresh * ramp(...kCrestSpeedsMps, riseMps), random);
     for (let left = drops; left > 0; --left) {
       const speedMps = alongMps * (0.7 + 0.5 * random());
       const upMps = 0.4 + 1.3 * riseMps * (0.4 + random());
@@ -119,7 +104,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
     if (!bow) continue;
     const { elevationM, riseMps } = bow;
     // The bow meets a rising surface harder.
-    const hit = above * above * (1 + 2 * share(riseMps, 0, 1.5));
+    const hit = above * above * (1 + 2 * ramp(0, 1.5, riseMps));
     for (let left = countOf(kBowDropsPerMS * hit * lengthM * stepS * scale, random); left > 0; --left) {
       const side = random() < 0.5 ? -1 : 1;
       const [px, pz] = place(lengthM * (0.46 - 0.22 * random()), side * beamM * (0.15 + 0.3 * random()));
@@ -128,7 +113,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
       const upMps = speedMps * (0.2 + 0.35 * random());
       particles.add(drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
     }
-    const wake = share(froude, 0.1, 0.6) * lengthM * stepS * scale;
+    const wake = ramp(0.1, 0.6, froude) * lengthM * stepS * scale;
     for (let left = countOf(kWakeFrothPerMS * wake, random); left > 0; --left) {
       const [px, pz] = place(-0.5 * lengthM, spread(random, 0.4 * beamM));
       // The screw throws the water astern.
@@ -161,7 +146,7 @@ export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
   for (const obstacle of obstacles) {
     if (obstacle.shape === "rock") {
       const radiusM = obstacle.radiusM + kRimAwayM;
-      const count = Math.min(Math.max(Math.ceil((2 * Math.PI * radiusM) / kRimSpacingM), 6), kMostRimPoints);
+      const count = clamp(Math.ceil((2 * Math.PI * radiusM) / kRimSpacingM), 6, kMostRimPoints);
       for (let n = 0; n < count; ++n) {
         const [normalX, normalZ] = [Math.cos((2 * Math.PI * n) / count), Math.sin((2 * Math.PI * n) / count)];
         rim.push({ xM: obstacle.xM + radiusM * normalX, zM: obstacle.zM + radiusM * normalZ, normalX, normalZ, lengthM: (2 * Math.PI * radiusM) / count });
@@ -170,7 +155,7 @@ export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
       const { xM, zM, lengthM, widthM, headingRad } = obstacle;
       const [ax, az] = [Math.cos(headingRad), Math.sin(headingRad)];
       const edge = (halfM: number, alongM: number, ux: number, uz: number, vx: number, vz: number): void => {
-        const count = Math.min(Math.max(Math.ceil(alongM / kRimSpacingM), 1), kMostRimPoints);
+        const count = clamp(Math.ceil(alongM / kRimSpacingM), 1, kMostRimPoints);
         for (let n = 0; n < count; ++n)
           for (const side of [-1, 1]) {
             const at = ((n + 0.5) / count - 0.5) * alongM;
@@ -197,7 +182,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Movin
     const motion = surface.motionAt(xM, zM);
     if (!motion) continue;
     const { elevationM, riseMps } = motion;
-    const hit = share(riseMps, ...kRimSpeedsMps);
+    const hit = ramp(...kRimSpeedsMps, riseMps);
     if (hit <= 0) continue;
     for (let left = countOf(kRimDropsPerMS * hit * lengthM * stepS * scale, random); left > 0; --left) {
       const along = spread(random, lengthM / 2);
@@ -219,22 +204,17 @@ const kLookedAtCount = 4000;
 /** Fast white particles of the server tear off finer drops (kinetic energy, Ihmsen et al. 2012, equation 6, with the speed for its root). */
 export function addFromParticles(births: Births, frame: ParticleFrame, surface: MovingSurface, intervalS: number): void {
   const { particles, random, scale } = births;
-  const words = new Uint16Array(frame.buffer, 0, frame.count * (kParticleBytes / 2));
+  const words = new Uint16Array(frame.buffer, 0, frame.count * kWordsPerParticle);
+  const shown = { frame, words, advanceS: 0 };
   const stride = Math.max(Math.ceil(frame.count / kLookedAtCount), 1);
-  const signed = (byte: number): number => ((byte << 24) >> 24) / 127;
-  const { wordMinM, wordMaxM, maxSpeedMps } = frame;
-  const placeM = (word: number, axis: 0 | 1 | 2): number => wordMinM[axis] + (word / 65535) * (wordMaxM[axis] - wordMinM[axis]);
   for (let n = 0; n < frame.count; n += stride) {
-    const at = (n * kParticleBytes) / 2;
-    if ((words[at + 5]! & 255) < kWhite) continue;
-    const vx = signed(words[at + 3]! & 255) * maxSpeedMps;
-    const vy = signed(words[at + 3]! >> 8) * maxSpeedMps;
-    const vz = signed(words[at + 4]! & 255) * maxSpeedMps;
-    const fast = share(Math.hypot(vx, vy, vz), ...kParticleSpeedsMps);
+    if (whiteOf(shown, n) < kWhite) continue;
+    const [vx, vy, vz] = velocityMps(shown, n);
+    const fast = ramp(...kParticleSpeedsMps, Math.hypot(vx, vy, vz));
     if (fast <= 0) continue;
     const drops = countOf(kParticleDropsPerS * fast * stride * intervalS * scale, random);
     if (drops === 0) continue;
-    const [xM, yM, zM] = [placeM(words[at]!, 0), placeM(words[at + 2]!, 1), placeM(words[at + 1]!, 2)];
+    const [xM, yM, zM] = placeM(shown, n);
     const surfaceM = surface.elevationAtM(xM, zM);
     if (surfaceM === undefined || yM < surfaceM) continue;
     for (let left = drops; left > 0; --left) {

@@ -1,10 +1,10 @@
 // Drops and mist in the air, over the picture. Reads the white water, the solids' depth and the canvas. Writes the canvas.
 import { NormalBlending, Vector2, type RawShaderMaterial } from "three";
 
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import { makeMaterial } from "../shaders";
-import type { Sky } from "../sky";
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
 import type { WhitePoints } from "./white_points";
 
 export class SprayPass implements Pass {

@@ -4,11 +4,11 @@
 //   bubbles     bubbles -> solids, before the water
 //   spray       drops -> canvas, after the water
 import type { GreetingInfo } from "../../codec/greeting";
-import type { Pass } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import type { WhitewaterQuality } from "../quality";
-import type { Sky } from "../sky";
-import type { StreamedFrames } from "../streamed_frames";
+import type { Pass } from "../drawing/pass";
+import type { WhitewaterQuality } from "../drawing/quality";
+import type { StreamedFrames } from "../frames/streamed_frames";
+import type { Sky } from "../light/sky";
+import type { SolidsPass } from "../solids/solids_pass";
 import { BubblesPass } from "./bubbles_pass";
 import type { DiffuseParticles } from "./diffuse_particles";
 import { FrothPass } from "./froth_pass";

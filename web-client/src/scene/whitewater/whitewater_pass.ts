@@ -2,13 +2,14 @@
 // Reads the frames and the boats as drawn. Writes the white water: points for the passes of white_points.ts.
 import type { GreetingInfo } from "../../codec/greeting";
 import type { FoamFrame, ParticleFrame } from "../../net/messages";
-import type { Pass, Picture } from "../passes/pass";
-import type { SolidsPass } from "../passes/solids_pass";
-import type { WhitewaterQuality } from "../quality";
-import type { StreamedFrames } from "../streamed_frames";
+import type { Pass, Picture } from "../drawing/pass";
+import type { WhitewaterQuality } from "../drawing/quality";
+import type { StreamedFrames } from "../frames/streamed_frames";
+import { makeFastRandom } from "../maths/random";
+import type { SolidsPass } from "../solids/solids_pass";
 import { DiffuseParticles, kMaxStepS, type Medium } from "./diffuse_particles";
 import { MovingSurface } from "./moving_surface";
-import { addCrests, addFromParticles, addHulls, addRims, makeFastRandom, rimOf, type Births, type RimPoint } from "./sources";
+import { addCrests, addFromParticles, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
 
 /** After a longer gap, or when time goes back, the white water starts anew. Of shorter ones the last kLongestS are computed. */

@@ -1,0 +1,249 @@
+// What stands on and in a hull: wheelhouse, cuddy, seats, motor, mast, rails. Sizes follow from the hull's.
+import type { MeshBuilder, Paint, Point } from "../meshes/mesh_builder";
+import { addPlate, addRod, addTurned, addWindow } from "../meshes/shapes";
+import type { HullLines } from "./lines";
+import { kBlack, kCanvas, kGlass, kMetal, kSteel, type Livery } from "./livery";
+
+/** A navigation light: its place on the boat, and its kind, from which colour and sector follow (boat_lamps.ts). */
+export interface BoatLamp {
+  at: Point;
+  kind: "port" | "starboard" | "masthead" | "stern" | "allRound";
+}
+
+const kWhiteLamp: Paint = [0.95, 0.92, 0.80, -1];
+const kLampPaints: Record<BoatLamp["kind"], Paint> = { port: [0.75, 0.05, 0.04, -1], starboard: [0.04, 0.55, 0.20, -1], masthead: kWhiteLamp, stern: kWhiteLamp, allRound: kWhiteLamp };
+
+export interface Detail {
+  /** Sides of round things. */
+  sidesCount: number;
+  /** With rails, more windows, and set in. */
+  isFine: boolean;
+}
+
+/** Adds what a hull carries, and returns its lights. */
+export function addFittings(builder: MeshBuilder, lines: HullLines, livery: Livery, detail: Detail): BoatLamp[] {
+  const lamps = { dinghy: fitDinghy, launch: fitLaunch, cutter: fitCutter }[lines.kind](builder, lines, livery, detail);
+  const size = Math.min(0.022 * lines.boat.beamM + 0.006, 0.05);
+  for (const { at, kind } of lamps) {
+    const [x, y, z] = at;
+    if (detail.isFine) builder.block(x, z, { yM: y - 1.6 * size, halfX: 0.7 * size, halfZ: 0.7 * size }, { yM: y - size, halfX: size, halfZ: size }, kBlack);
+    builder.block(x, z, { yM: y - size, halfX: size, halfZ: size }, { yM: y + size, halfX: size, halfZ: size }, kLampPaints[kind], kBlack);
+  }
+  return lamps;
+}
+
+/** A seat across the hull, from side to side. */
+function addThwart(builder: MeshBuilder, lines: HullLines, along: number, wide: number, yM: number, paint: Paint): void {
+  const half = wide / 2;
+  const [aft, ahead] = [lines.inside(along - half, yM), lines.inside(along + half, yM)];
+  addPlate(builder, [[aft[0], yM, -aft[2]], [aft[0], yM, aft[2]], [ahead[0], yM, ahead[2]], [ahead[0], yM, -ahead[2]]], 0.035 * lines.boat.heightM, paint);
+}
+
+/** Outboard motor behind the transom: cowl, leg, and the bracket that holds it. */
+function addMotor(builder: MeshBuilder, lines: HullLines, livery: Livery): void {
+  const { heightM, beamM } = lines.boat;
+  const top = lines.sheerM(0);
+  const x = lines.xM(0, top) - 0.035 * beamM;
+  const size = 0.1 * beamM;
+  builder.block(x, 0, { yM: -0.45 * heightM, halfX: 0.45 * size, halfZ: 0.2 * size }, { yM: top, halfX: 0.6 * size, halfZ: 0.4 * size }, kMetal);
+  builder.block(x, 0, { yM: top - 0.04 * heightM, halfX: 0.8 * size, halfZ: 0.62 * size }, { yM: top + 0.16 * heightM, halfX: 0.9 * size, halfZ: 0.66 * size }, kBlack);
+  builder.block(x, 0, { yM: top + 0.16 * heightM, halfX: 0.9 * size, halfZ: 0.66 * size }, { yM: top + 0.28 * heightM, halfX: 0.6 * size, halfZ: 0.5 * size }, livery.side);
+  addRod(builder, [x, top + 0.1 * heightM, 0], [x + 4.2 * size, top + 0.2 * heightM, 0.6 * size], 0.12 * size, kBlack);
+}
+
+/** A flag on a staff at the stern, both sides of it. */
+function addFlag(builder: MeshBuilder, foot: Point, highM: number, paint: Paint): void {
+  const [x, y] = foot;
+  const tip: Point = [x - 0.25 * highM, y + highM, 0];
+  addRod(builder, [x, y, 0], tip, 0.012 * highM + 0.003, kSteel);
+  const at = (out: number, up: number): Point => [x - 0.25 * highM * up - 0.62 * highM * out, y + highM * (up - 0.16 * out), 0.05 * highM * Math.sin(5 * out)];
+  const columns = [1, 0.75, 0.5, 0.25, 0];
+  const rows = [0.56, 0.97].map((up) => columns.map((out) => at(out, up)));
+  builder.grid(rows, paint);
+  builder.grid(rows.map((row) => [...row].reverse()), paint);
+}
+
+function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery): BoatLamp[] {
+  const { heightM, beamM } = lines.boat;
+  const seatM = 0.2 * heightM;
+  for (const [along, wide] of [[0.14, 0.13], [0.43, 0.09], [0.7, 0.09]] as const) addThwart(builder, lines, along, wide, seatM, livery.gunwale);
+  addMotor(builder, lines, livery);
+  // A pair of oars along the sides, on the thwarts.
+  for (const side of [-1, 1]) {
+    const z = side * 0.24 * beamM;
+    const y = seatM + 0.035 * heightM;
+    addRod(builder, [lines.xM(0.2, y), y, z], [lines.xM(0.72, y), y, 0.86 * z], 0.016 * beamM, kCanvas);
+    addPlate(builder, [[lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z - 0.05 * beamM], [lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z + 0.05 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z + 0.04 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z - 0.04 * beamM]], 0.02 * heightM, kCanvas);
+  }
+  const bowM = lines.sheerM(0.93);
+  const half = lines.halfM(0.93, bowM);
+  const staff: Point = [lines.xM(0.04, heightM), lines.sheerM(0.04), 0.3 * beamM];
+  addRod(builder, staff, [staff[0], staff[1] + 0.75 * heightM, staff[2]], 0.012 * beamM, kSteel);
+  return [
+    { at: [lines.xM(0.93, bowM), bowM + 0.05 * heightM, -half], kind: "port" },
+    { at: [lines.xM(0.93, bowM), bowM + 0.05 * heightM, half], kind: "starboard" },
+    { at: [staff[0], staff[1] + 0.8 * heightM, staff[2]], kind: "allRound" },
+  ];
+}
+
+/** A house with sloping sides and a window in each of its faces; the front leans by `lean` (positive: forward, as on tugs). */
+interface House {
+  /** From its back to its front along the hull [m]. */
+  backM: number;
+  frontM: number;
+  halfM: number;
+  lowM: number;
+  highM: number;
+  lean: number;
+  /** Windows in each side and in the front. */
+  panesCount: number;
+  /** Height of the windows' lower and upper edge, as shares. */
+  sill: number;
+  lintel: number;
+  roofM: number;
+}
+
+function addHouse(builder: MeshBuilder, house: House, livery: Livery, deepM: number, eavesM: number): void {
+  const { backM, frontM, halfM, lowM, highM, lean, panesCount, sill, lintel, roofM } = house;
+  const cut = 0.2 * halfM;
+  const tallM = highM - lowM;
+  // Corners are cut off, so that the house has eight faces. Counter-clockwise seen from above.
+  const ring = (yM: number, out = 0): Point[] => {
+    const up = (yM - lowM) / tallM;
+    const wide = halfM * (1 - 0.1 * up) + out;
+    const [front, back] = [frontM + lean * tallM * up + out, backM + 0.06 * tallM * up - out];
+    return [[back, yM, -wide + cut], [back, yM, wide - cut], [back + cut, yM, wide], [front - cut, yM, wide], [front, yM, wide - cut], [front, yM, -wide + cut], [front - cut, yM, -wide], [back + cut, yM, -wide]];
+  };
+  const [foot, low, high] = [ring(lowM), ring(lowM + sill * tallM), ring(lowM + lintel * tallM)];
+  const top = ring(highM);
+  for (let n = 0; n < 8; ++n) {
+    const next = (n + 1) % 8;
+    builder.quad(foot[n]!, foot[next]!, low[next]!, low[n]!, livery.house);
+    builder.quad(high[n]!, high[next]!, top[next]!, top[n]!, livery.house);
+    const isSide = n === 2 || n === 6;
+    const panes = isSide || n === 4 ? panesCount : 1;
+    for (let pane = 0; pane < panes; ++pane) {
+      const at = (row: readonly Point[], share: number): Point => [0, 1, 2].map((k) => row[n]![k]! + (row[next]![k]! - row[n]![k]!) * share) as unknown as Point;
+      const [a, b] = [pane / panes, (pane + 1) / panes];
+      addWindow(builder, [at(low, a), at(low, b), at(high, b), at(high, a)], { side: isSide ? 0.08 : 0.09, low: 0.04, high: 0.04 }, deepM, livery.house, kGlass);
+    }
+  }
+  // A roof that stands out all round, with a camber.
+  const eaves = ring(highM, eavesM);
+  const edge = eaves.map(([x, y, z]): Point => [x, y + 0.6 * roofM, z]);
+  const crown = ring(highM, -0.35 * halfM).map(([x, y, z]): Point => [x, y + roofM, z]);
+  const closed = (row: readonly Point[]): Point[] => [...row, row[0]!];
+  builder.grid([closed(top), closed(eaves)], livery.house);
+  builder.grid([closed(eaves), closed(edge)], livery.roof);
+  const middle: Point = [(backM + frontM) / 2, highM + 1.15 * roofM, 0];
+  builder.grid([closed(edge), closed(crown), closed(crown).map(() => middle)], livery.roof);
+}
+
+function fitLaunch(builder: MeshBuilder, lines: HullLines, livery: Livery, { sidesCount, isFine }: Detail): BoatLamp[] {
+  const { heightM, beamM, lengthM } = lines.boat;
+  const deckM = heightM / 2;
+  const [backM, frontM] = [lines.xM(0.47, deckM), lines.xM(0.72, deckM)];
+  const halfM = 0.31 * beamM;
+  const highM = deckM + 0.34 * heightM;
+  // A low cabin; its after end stands on the bulkhead of the cockpit.
+  addHouse(builder, { backM, frontM, halfM, lowM: deckM - 0.02 * heightM, highM, lean: -0.75, panesCount: isFine ? 2 : 1, sill: 0.3, lintel: 0.78, roofM: 0.06 * heightM }, livery, isFine ? 0.012 * beamM : 0, 0.05 * beamM);
+  // The windscreen on it, in a frame, seen from both sides.
+  const screen = (z: number, up: number): Point => [backM + 0.13 * lengthM - 0.03 * lengthM * up - 0.08 * lengthM * (Math.abs(z) / halfM) ** 2, highM + 0.05 * heightM + 0.3 * heightM * up, z * (1 - 0.06 * up)];
+  const across = [-0.94, -0.62, -0.22, 0.22, 0.62, 0.94].map((share) => share * halfM);
+  for (let n = 0; n + 1 < across.length; ++n) {
+    const [a, b] = [across[n]!, across[n + 1]!];
+    const frame = { side: 0.08, low: 0.08, high: 0.1 };
+    // From ahead, the starboard side is on the left.
+    addWindow(builder, [screen(b, 0), screen(a, 0), screen(a, 1), screen(b, 1)], frame, 0, kSteel, kGlass);
+    addWindow(builder, [screen(a, 0), screen(b, 0), screen(b, 1), screen(a, 1)], frame, 0, kSteel, kGlass);
+  }
+  // Helm: console with a wheel to starboard, a seat before it, a bench at the stern.
+  const soleM = launchSoleM(lines);
+  const consoleX = backM - 0.045 * lengthM;
+  builder.block(consoleX, 0.15 * beamM, { yM: soleM, halfX: 0.04 * lengthM, halfZ: 0.1 * beamM }, { yM: deckM + 0.12 * heightM, halfX: 0.03 * lengthM, halfZ: 0.09 * beamM }, livery.house, kBlack);
+  addRod(builder, [consoleX - 0.03 * lengthM, deckM - 0.02 * heightM, 0.15 * beamM], [consoleX - 0.055 * lengthM, deckM + 0.02 * heightM, 0.15 * beamM], 0.085 * beamM, kBlack, sidesCount);
+  builder.block(lines.xM(0.3, 0), 0.15 * beamM, { yM: soleM, halfX: 0.03 * lengthM, halfZ: 0.09 * beamM }, { yM: 0.12 * heightM, halfX: 0.035 * lengthM, halfZ: 0.11 * beamM }, kCanvas);
+  addThwart(builder, lines, 0.12, 0.12, 0.14 * heightM, kCanvas);
+  addMotor(builder, lines, livery);
+  const sternM = lines.sheerM(0.03);
+  addFlag(builder, [lines.xM(0.03, sternM) + 0.02 * lengthM, sternM, 0], 0.85 * heightM, livery.side);
+  if (isFine) addRailing(builder, lines, 0.72, 0.985, 0.24 * heightM, 5, 0.9);
+  const mastX = backM + 0.02 * lengthM;
+  const mastM = highM + 0.62 * heightM;
+  addRod(builder, [mastX, highM + 0.05 * heightM, 0], [mastX - 0.02 * lengthM, mastM, 0], 0.012 * beamM, kSteel);
+  const bowM = highM + 0.05 * heightM;
+  return [
+    { at: [frontM - 0.1 * lengthM, bowM, -0.72 * halfM], kind: "port" },
+    { at: [frontM - 0.1 * lengthM, bowM, 0.72 * halfM], kind: "starboard" },
+    { at: [mastX - 0.02 * lengthM, mastM + 0.05 * heightM, 0], kind: "masthead" },
+    { at: [lines.xM(0.01, sternM), sternM + 0.08 * heightM, -0.3 * beamM], kind: "stern" },
+  ];
+}
+
+/** Height of the floor boards in a launch's cockpit. */
+export function launchSoleM({ boat }: HullLines): number {
+  return -0.24 * boat.heightM;
+}
+
+/** A rail on posts along both sides, meeting at the bow. */
+function addRailing(builder: MeshBuilder, lines: HullLines, from: number, to: number, highM: number, postsCount: number, inward: number): void {
+  const rod = 0.009 * lines.boat.beamM;
+  const at = (n: number, up: number, side: number): Point => {
+    const along = from + ((to - from) * n) / (postsCount - 1);
+    const sheerM = lines.sheerM(along);
+    return [lines.xM(along, sheerM) - 0.01 * lines.boat.lengthM, sheerM + up * highM, side * inward * lines.halfM(along, sheerM)];
+  };
+  for (const side of [-1, 1]) {
+    for (let n = 0; n < postsCount; ++n) addRod(builder, at(n, 0, side), at(n, 1, side), rod, kSteel);
+    for (let n = 0; n + 1 < postsCount; ++n) addRod(builder, at(n, 1, side), at(n + 1, 1, side), rod, kSteel);
+  }
+  addRod(builder, at(postsCount - 1, 1, -1), at(postsCount - 1, 1, 1), rod, kSteel);
+}
+
+function fitCutter(builder: MeshBuilder, lines: HullLines, livery: Livery, { sidesCount, isFine }: Detail): BoatLamp[] {
+  const { heightM, beamM, lengthM } = lines.boat;
+  const deckM = heightM / 2;
+  const houseM = Math.min(0.85 * heightM, 0.62 * beamM);
+  const [backM, frontM] = [lines.xM(0.42, deckM), lines.xM(0.64, deckM)];
+  const halfM = 0.29 * beamM;
+  const highM = deckM + houseM;
+  addHouse(builder, { backM, frontM, halfM, lowM: deckM - 0.03 * heightM, highM, lean: 0.1, panesCount: isFine ? 2 : 1, sill: 0.45, lintel: 0.9, roofM: 0.08 * houseM }, livery, isFine ? 0.012 * beamM : 0, 0.05 * beamM);
+  // Engine casing with a funnel behind the house, in the boat's colour.
+  const casingX = lines.xM(0.34, deckM);
+  builder.block(casingX, 0, { yM: deckM - 0.02 * heightM, halfX: 0.075 * lengthM, halfZ: 0.19 * beamM }, { yM: deckM + 0.32 * houseM, halfX: 0.068 * lengthM, halfZ: 0.17 * beamM }, livery.house, livery.deck);
+  const funnelM = 0.085 * beamM;
+  addTurned(builder, [casingX, deckM + 0.32 * houseM, 0], [
+    { yM: 0, radiusM: 1.05 * funnelM, paint: livery.side },
+    { yM: 0.62 * houseM, radiusM: 0.9 * funnelM, paint: kBlack },
+    { yM: 0.82 * houseM, radiusM: 0.86 * funnelM, paint: kBlack },
+    { yM: 0.82 * houseM, radiusM: 0.6 * funnelM, paint: kBlack },
+    { yM: 0.7 * houseM, radiusM: 0, paint: kBlack },
+  ], sidesCount);
+  // Mast with a yard on the roof.
+  const mastX = backM + 0.3 * (frontM - backM);
+  const mastM = highM + 0.95 * houseM;
+  addRod(builder, [mastX, highM, 0], [mastX - 0.03 * lengthM, mastM, 0], 0.022 * beamM, livery.house, 6, 0.014 * beamM);
+  addRod(builder, [mastX - 0.02 * lengthM, highM + 0.62 * houseM, -0.16 * beamM], [mastX - 0.02 * lengthM, highM + 0.62 * houseM, 0.16 * beamM], 0.01 * beamM, livery.house);
+  // Towing bitts aft and on the foredeck.
+  for (const along of [0.16, 0.83]) {
+    const yM = lines.deckM(along);
+    const x = lines.xM(along, yM);
+    const wide = 0.09 * beamM;
+    for (const z of [-wide, wide]) addRod(builder, [x, yM - 0.03 * heightM, z], [x, yM + 0.2 * heightM, z], 0.026 * beamM, kBlack, Math.min(sidesCount, 8));
+    addRod(builder, [x, yM + 0.12 * heightM, -1.8 * wide], [x, yM + 0.12 * heightM, 1.8 * wide], 0.018 * beamM, kBlack);
+  }
+  // A hatch before the house.
+  const hatchX = lines.xM(0.73, deckM);
+  const hatchM = lines.deckM(0.73);
+  builder.block(hatchX, 0, { yM: hatchM - 0.05 * heightM, halfX: 0.035 * lengthM, halfZ: 0.1 * beamM }, { yM: hatchM + 0.09 * heightM, halfX: 0.032 * lengthM, halfZ: 0.09 * beamM }, livery.house, livery.gunwale);
+  const sternM = lines.sheerM(0.02);
+  addFlag(builder, [lines.xM(0.02, sternM) + 0.015 * lengthM, sternM, 0], 0.75 * heightM, livery.side);
+  if (isFine) addRailing(builder, lines, 0.74, 0.98, 0.2 * heightM, 5, 0.94);
+  const lampM = highM - 0.02 * houseM;
+  return [
+    { at: [backM + 0.6 * (frontM - backM), lampM, -1.07 * halfM], kind: "port" },
+    { at: [backM + 0.6 * (frontM - backM), lampM, 1.07 * halfM], kind: "starboard" },
+    { at: [mastX - 0.03 * lengthM, mastM + 0.04 * heightM, 0], kind: "masthead" },
+    { at: [lines.xM(0.01, sternM), sternM + 0.09 * heightM, -0.2 * beamM], kind: "stern" },
+  ];
+}

@@ -1,0 +1,61 @@
+// A repeating noise tile ("lace"): cells with bright walls over cloudy noise, every brightness equally frequent. Foam shows where the
+// tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it.
+import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from "three";
+
+import { smooth } from "../maths/interpolate";
+import { hash } from "../maths/random";
+
+const kSide = 256;
+
+/** Worley noise, F2 - F1: distance to the second nearest minus distance to the nearest of one random point per cell. Repeats after `period` cells. */
+function cellWalls(x: number, y: number, period: number, seed: number): number {
+  let nearest = 9;
+  let next = 9;
+  const cx = Math.floor(x);
+  const cy = Math.floor(y);
+  for (let dy = -1; dy <= 1; ++dy)
+    for (let dx = -1; dx <= 1; ++dx) {
+      const px = (cx + dx + period) % period;
+      const py = (cy + dy + period) % period;
+      const away = (cx + dx + hash(px, py, seed) - x) ** 2 + (cy + dy + hash(px, py, seed + 1) - y) ** 2;
+      if (away < nearest) [nearest, next] = [away, nearest];
+      else if (away < next) next = away;
+    }
+  return Math.sqrt(next) - Math.sqrt(nearest);
+}
+
+function cloud(x: number, y: number, period: number, seed: number): number {
+  const cx = Math.floor(x);
+  const cy = Math.floor(y);
+  const [fx, fy] = [smooth(x - cx), smooth(y - cy)];
+  const at = (dx: number, dy: number): number => hash((cx + dx) % period, (cy + dy) % period, seed);
+  return (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
+}
+
+/** Returns one byte per sample, row by row; the square repeats. */
+export function makeLace(side: number): Uint8Array<ArrayBuffer> {
+  const raw = new Float32Array(side * side);
+  for (let k = 0; k < side; ++k)
+    for (let i = 0; i < side; ++i) {
+      const [u, v] = [i / side, k / side];
+      const clouds = 0.5 * cloud(6 * u, 6 * v, 6, 3) + 0.3 * cloud(15 * u, 15 * v, 15, 4) + 0.2 * cloud(40 * u, 40 * v, 40, 5);
+      const [wu, wv] = [u + 0.03 * clouds, v + 0.03 * (1 - clouds)];
+      const walls = 0.62 * (1 - Math.min(cellWalls(9 * wu, 9 * wv, 9, 20), 0.7) / 0.7) + 0.38 * (1 - Math.min(cellWalls(24 * wu, 24 * wv, 24, 30), 0.7) / 0.7);
+      raw[k * side + i] = 0.6 * walls + 0.55 * clouds;
+    }
+  // Rank instead of value: uniformly distributed.
+  const order = Array.from(raw.keys()).sort((a, b) => raw[a]! - raw[b]!);
+  const lace = new Uint8Array(side * side);
+  order.forEach((at, rank) => (lace[at] = Math.floor((256 * rank) / raw.length)));
+  return lace;
+}
+
+export function makeNoiseTexture(): DataTexture {
+  const texture = new DataTexture(makeLace(kSide), kSide, kSide, RedFormat, UnsignedByteType);
+  texture.wrapS = texture.wrapT = RepeatWrapping;
+  texture.magFilter = LinearFilter;
+  texture.minFilter = LinearMipmapLinearFilter;
+  texture.generateMipmaps = true;
+  texture.needsUpdate = true;
+  return texture;
+}

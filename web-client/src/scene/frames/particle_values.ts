@@ -1,0 +1,82 @@
+// Values of single particles, from the 12 bytes that the server streams, and the particle under a ray. Pure.
+import { kParticleBytes } from "../../codec/frame_types";
+import type { ParticleFrame } from "../../net/messages";
+import type { Ray } from "./pick";
+
+export const kWordsPerParticle = kParticleBytes / 2;
+
+/** The particles of one picture. */
+export interface ShownParticles {
+  frame: Pick<ParticleFrame, "count" | "wordMinM" | "wordMaxM" | "maxSpeedMps" | "radiusM">;
+  /** As streamed, six u16 per particle. */
+  words: Uint16Array;
+  /** Time by which they are moved along their velocities. */
+  advanceS: number;
+}
+
+const signedByte = (byte: number): number => (byte << 24) >> 24;
+
+/** Returns the streamed velocity. */
+export function velocityMps({ frame, words }: ShownParticles, index: number): [number, number, number] {
+  const at = index * kWordsPerParticle;
+  const [low, high] = [words[at + 3]!, words[at + 4]!];
+  const unit = frame.maxSpeedMps / 127;
+  return [unit * signedByte(low & 255), unit * signedByte(low >> 8), unit * signedByte(high & 255)];
+}
+
+export function speedMps(shown: ShownParticles, index: number): number {
+  return Math.hypot(...velocityMps(shown, index));
+}
+
+/** Returns how white a particle is, 0 to 255. */
+export function whiteOf({ words }: ShownParticles, index: number): number {
+  return words[index * kWordsPerParticle + 5]! & 255;
+}
+
+/** The streamed range of density over rest density. Values beyond it are sent as its ends. */
+export const kDensityRatios = { low: 0.5, high: 1.1 };
+
+/** Returns the streamed density over rest density. */
+export function densityRatio({ words }: ShownParticles, index: number): number {
+  const byte = words[index * kWordsPerParticle + 4]! >> 8;
+  return kDensityRatios.low + (byte / 255) * (kDensityRatios.high - kDensityRatios.low);
+}
+
+/** Returns where a particle is drawn. */
+export function placeM(shown: ShownParticles, index: number): [number, number, number] {
+  const { wordMinM, wordMaxM } = shown.frame;
+  const at = index * kWordsPerParticle;
+  // The order on the wire is x, z, y.
+  const share = [shown.words[at]! / 65535, shown.words[at + 2]! / 65535, shown.words[at + 1]! / 65535];
+  const velocity = velocityMps(shown, index);
+  return [0, 1, 2].map((axis) => wordMinM[axis]! + (wordMaxM[axis]! - wordMinM[axis]!) * share[axis]! + velocity[axis]! * shown.advanceS) as [number, number, number];
+}
+
+/** Returns the first particle whose sphere the ray meets within `farM`; undefined if there is none. */
+export function pickParticle({ originM, direction }: Ray, shown: ShownParticles, farM = Infinity): number | undefined {
+  const { frame, words, advanceS } = shown;
+  const { wordMinM, wordMaxM, radiusM } = frame;
+  const [minX, minY, minZ] = wordMinM;
+  const [perX, perY, perZ] = [0, 1, 2].map((axis) => (wordMaxM[axis]! - wordMinM[axis]!) / 65535) as [number, number, number];
+  const advance = (advanceS * frame.maxSpeedMps) / 127;
+  const [ox, oy, oz] = originM;
+  const [dx, dy, dz] = direction;
+  let nearestM = farM;
+  let found: number | undefined;
+  // Without objects: there may be hundreds of thousands of particles.
+  for (let index = 0, at = 0; index < frame.count; ++index, at += kWordsPerParticle) {
+    const low = words[at + 3]!;
+    const x = minX + perX * words[at]! + advance * signedByte(low & 255) - ox;
+    const y = minY + perY * words[at + 2]! + advance * signedByte(low >> 8) - oy;
+    const z = minZ + perZ * words[at + 1]! + advance * signedByte(words[at + 4]! & 255) - oz;
+    const alongM = x * dx + y * dy + z * dz;
+    const inside2 = radiusM * radiusM - (x * x + y * y + z * z - alongM * alongM);
+    if (inside2 < 0) continue;
+    const hitM = alongM - Math.sqrt(inside2);
+    if (hitM > 0 && hitM < nearestM) {
+      nearestM = hitM;
+      found = index;
+    }
+  }
+  return found;
+}

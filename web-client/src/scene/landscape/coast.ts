@@ -1,0 +1,169 @@
+// The ground of an open sea: the bed under the square and around it, beaches that go on along the coast, dunes and hills behind them, and
+// quays at closed sides without a beach. Pure.
+import type { BufferGeometry } from "three";
+
+import { kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
+import { clamp, smoothstep } from "../maths/interpolate";
+import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
+import { bedPaint, mixPaint } from "./paints";
+import { depthAtM, insideM, isShoreDepth, longSideM, type Bed } from "./terrain";
+
+export interface Coast {
+  bed: Bed;
+  sides: Readonly<Record<SideName, SideKind>>;
+}
+
+/** Height of a quay over the still water, as a share of the side, and its bounds in metres. */
+const kQuaySides = 0.03;
+const kQuayMinM = 0.25;
+const kQuayMaxM = 2.5;
+/** Where a ground is looked at along a side. */
+const kSideSamples = [-0.45, -0.3, -0.15, 0, 0.15, 0.3, 0.45] as const;
+/** Slope behind a shore that no beach makes. */
+const kShoreSlope = 0.1;
+/** Dunes and hills, in sides of the square: height, and the distances over which the hills rise. */
+const kDuneSides = 0.05;
+const kHillSides = 0.5;
+const kHillsFromSides = 2.5;
+const kHillsToSides = 14;
+/** Width of the paving behind a quay, in sides. */
+const kPavingSides = 0.06;
+/** The ground is drawn out to this many sides, under water only out to kBedReachSides. */
+const kReachSides = 40;
+const kBedReachSides = 0.45;
+/** Cells outside the square become larger by this factor; the second if there are few of them. */
+const kGrowth = 1.35;
+const kCoarseGrowth = 1.7;
+const kFewCells = 64;
+
+const kGrass: Paint = [0.15, 0.2, 0.075, 1.0];
+const kFarGrass: Paint = [0.11, 0.16, 0.08, 0.6];
+const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
+const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
+
+/** Gentle rolling in -1..1: sines with no common period. */
+function rolling(x: number, z: number): number {
+  return 0.5 * Math.sin(x + 1.7 * Math.sin(0.31 * z)) * Math.sin(0.83 * z + 0.4) + 0.3 * Math.sin(2.3 * x - 1.1 * z + 2) + 0.2 * Math.sin(0.37 * x + 0.53 * z);
+}
+
+/** A closed side whose bed is shallow is a shore, otherwise a quay. */
+function isShore({ bed }: Coast, side: SideName): boolean {
+  if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && isShoreDepth(bed, beach.shoreDepthM));
+  const sign = side[0] === "+" ? 1 : -1;
+  const { sideM, widthM } = bed;
+  const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, (sign * sideM) / 2, share * widthM) : depthAtM(bed, share * sideM, (sign * widthM) / 2)));
+  return depthsM.every((depthM) => isShoreDepth(bed, depthM));
+}
+
+export function quayHeightM(bed: Bed): number {
+  return clamp(kQuaySides * longSideM(bed), kQuayMinM, kQuayMaxM);
+}
+
+/** Returns the height of the ground, y = 0 at the still water. `pastQuay`: on the land side of a quay where the point is on its edge. */
+export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = false): number {
+  const { bed, sides } = coast;
+  const sideM = longSideM(bed);
+  let heightM = -depthAtM(bed, xM, zM);
+  for (const side of kSideNames) {
+    if (sides[side] !== "closed") continue;
+    const outM = -insideM(side, bed, xM, zM);
+    if (outM < -1e-9) continue;
+    const hillsM = kHillSides * sideM * smoothstep(kHillsFromSides, kHillsToSides, outM / sideM) * (0.55 + 0.45 * rolling((3.1 * xM) / sideM / 3, (3.1 * zM) / sideM / 3));
+    const roll = rolling((9 * xM) / sideM, (9 * zM) / sideM);
+    if (isShore(coast, side)) {
+      const beach = bed.ground ? undefined : bed.beaches.find((each) => each.side === side);
+      const edgeM = beach ? -beach.shoreDepthM : heightM;
+      const topM = kDuneSides * sideM * (0.75 + 0.35 * roll);
+      const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
+      heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
+    } else if (outM > 1e-9 || pastQuay) {
+      heightM = Math.max(heightM, quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
+    }
+  }
+  return heightM;
+}
+
+function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
+  const { bed, sides } = coast;
+  const { depthM } = bed;
+  const sideM = longSideM(bed);
+  let paint = bedPaint(yM, depthM);
+  for (const side of kSideNames) {
+    const outM = -insideM(side, bed, xM, zM);
+    if (sides[side] !== "closed" || outM < -1e-9) continue;
+    const out = outM / sideM;
+    const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));
+    const patchy = 0.06 * rolling((23 * xM) / sideM, (23 * zM) / sideM);
+    if (isShore(coast, side)) paint = mixPaint(paint, grass, smoothstep(0.16, 0.42, out + patchy) * smoothstep(0.4, 0.8, yM / (kDuneSides * sideM)));
+    else if (yM > 0) paint = mixPaint(kPaving, grass, smoothstep(kPavingSides, kPavingSides + 0.01, out));
+  }
+  return paint;
+}
+
+/** Lines along one axis: dense over the square, growing beyond. Split into bands where a quay makes a step. */
+function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: boolean): { at: number[]; low: boolean; high: boolean }[] {
+  const sideM = longSideM(coast.bed);
+  const lengthM = axis === "x" ? coast.bed.sideM : coast.bed.widthM;
+  const half = lengthM / 2;
+  const beyond: number[] = [];
+  let step = lengthM / cellsCount;
+  for (let at = half; at < kReachSides * sideM; ) {
+    step *= cellsCount < kFewCells ? kCoarseGrowth : kGrowth;
+    at += step;
+    beyond.push(at);
+  }
+  // Where paving becomes grass.
+  const extra = [kPavingSides, kPavingSides + 0.01].map((out) => half + out * sideM);
+  const outer = [...beyond, ...extra].sort((a, b) => a - b);
+  const inside = Array.from({ length: cellsCount + 1 }, (_, i) => (i / cellsCount - 0.5) * lengthM);
+  const isQuay = (side: SideName): boolean => coast.sides[side] === "closed" && !isShore(coast, side);
+  const below = outer.map((at) => -at).reverse();
+  const bands: { at: number[]; low: boolean; high: boolean }[] = [];
+  let lines = below;
+  if (isQuay(`-${axis}`)) {
+    bands.push({ at: [...lines, -half], low: false, high: true });
+    lines = [];
+  }
+  lines = [...lines, ...inside];
+  if (isQuay(`+${axis}`)) {
+    bands.push({ at: lines, low: false, high: false });
+    bands.push({ at: [half, ...outer], low: true, high: false });
+  } else bands.push({ at: [...lines, ...outer], low: false, high: false });
+  return descending ? bands.map(({ at, low, high }) => ({ at: [...at].reverse(), low: high, high: low })).reverse() : bands;
+}
+
+/** Returns the ground as coloured triangles. `hasFlatBed` false: without the bed at the scene's depth, for which the water has a colour. */
+export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: boolean): BufferGeometry {
+  const { bed } = coast;
+  const builder = new MeshBuilder();
+  const [reachXM, reachZM] = [bed.sideM, bed.widthM].map((lengthM) => 0.5 * lengthM + kBedReachSides * longSideM(bed)) as [number, number];
+  const isNear = ([x, y, z]: Point): boolean => (hasFlatBed || y > -0.999 * bed.depthM) && Math.abs(x) <= reachXM && Math.abs(z) <= reachZM;
+  const isSeen = (points: readonly Point[]): boolean => points.some((point) => point[1] > -0.6 * bed.depthM || isNear(point));
+  for (const zBand of bandsOf(coast, "z", cellsCount, true))
+    for (const xBand of bandsOf(coast, "x", cellsCount, false)) {
+      const pastQuay = [xBand, zBand].some(({ low, high }) => low || high);
+      const rows = zBand.at.map((z) => xBand.at.map((x): Point => [x, coastHeightM(coast, x, z, pastQuay), z]));
+      builder.grid(rows, (row, column) => paintAt(coast, rows[row]![column]!), isSeen);
+    }
+  addQuayWalls(coast, builder, cellsCount);
+  return builder.build();
+}
+
+function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): void {
+  for (const side of kSideNames) {
+    const half = (side[1] === "x" ? coast.bed.sideM : coast.bed.widthM) / 2;
+    if (coast.sides[side] !== "closed" || isShore(coast, side)) continue;
+    const sign = side[0] === "+" ? 1 : -1;
+    const along = bandsOf(coast, side[1] === "x" ? "z" : "x", cellsCount, false).flatMap(({ at }) => at);
+    // The face looks toward the water: columns go right as seen from there.
+    const ordered = (side[1] === "z") === (sign > 0) ? [...along].reverse() : along;
+    const at = (t: number, past: boolean): Point => {
+      const [x, z] = side[1] === "x" ? [sign * half, t] : [t, sign * half];
+      const inward = 1 - 1e-6;
+      return [x, past ? coastHeightM(coast, x, z, true) : coastHeightM(coast, side[1] === "x" ? x * inward : x, side[1] === "z" ? z * inward : z), z];
+    };
+    const low = ordered.map((t) => at(t, false));
+    const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
+    builder.grid([low, high], kQuayWall);
+  }
+}

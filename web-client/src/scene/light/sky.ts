@@ -1,0 +1,172 @@
+// The sky, or a room: baked into a cube map that the dome, the water's reflection and the particles' gloss read, and the light of the
+// hour and the weather (light/light.ts) as uniforms of every material. A new light shows at once in the uniforms; the cube map follows a
+// few times per second.
+import {
+  BackSide,
+  BoxGeometry,
+  CubeCamera,
+  LinearFilter,
+  LinearMipmapLinearFilter,
+  Matrix4,
+  Mesh,
+  Scene,
+  Vector3,
+  WebGLCubeRenderTarget,
+  type PerspectiveCamera,
+  type RawShaderMaterial,
+  type WebGLRenderer,
+} from "three";
+
+import { makeFullscreenGeometry } from "../drawing/fullscreen";
+import type { Quality } from "../drawing/quality";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { derive, indoors, lightAt, type Light, type Rgb } from "./light";
+
+const kFaceCount = 512;
+/** Height of the lowest direction in which the sky is seen over a horizon of land or sea. */
+const kLowestShown = -0.03;
+/** Least time between two bakes: six faces cost a software renderer more than a picture. */
+const kRebakeS = 0.25;
+
+const vector = (): { value: Vector3 } => ({ value: new Vector3() });
+
+export class Sky {
+  /** Unit vector toward what gives the direct light. */
+  readonly sunDirection = new Vector3();
+  /** For every material that is lit or reflects the sky. */
+  readonly uniforms: Uniforms;
+  readonly dome: Mesh;
+  private readonly cube: WebGLCubeRenderTarget;
+  private readonly domeUniforms: Uniforms;
+  private readonly bakeUniforms: Uniforms;
+  private readonly box: Mesh<BoxGeometry, RawShaderMaterial>;
+  private readonly outdoors: RawShaderMaterial;
+  private readonly room: RawShaderMaterial;
+  private readonly scene = new Scene();
+  private light = lightAt(12, 0);
+  private isRoom = false;
+  private isStale = true;
+  private bakedS = Number.NEGATIVE_INFINITY;
+
+  /** Plain: without mip levels, which prevent flicker in distant reflections but are too slow for software renderers. */
+  constructor({ plain, texelType }: Pick<Quality, "plain" | "texelType">) {
+    const smooth = !plain;
+    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
+      type: texelType,
+      generateMipmaps: smooth,
+      minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
+      magFilter: LinearFilter,
+    });
+    this.uniforms = {
+      u_sky: { value: this.cube.texture },
+      u_sun_direction: { value: this.sunDirection },
+      u_sun_light: vector(),
+      u_sun_below: vector(),
+      u_ambient_up: vector(),
+      u_ambient_down: vector(),
+      u_water_light: vector(),
+      u_glow: vector(),
+      u_veiled_sky: { value: [new Vector3(), new Vector3(), new Vector3()] },
+      u_sun_sharp: { value: 1 },
+      u_exposure: { value: 1 },
+    };
+    this.bakeUniforms = {
+      u_sun_direction: vector(),
+      u_moon_direction: { value: this.sunDirection },
+      u_zenith: vector(),
+      u_middle: vector(),
+      u_horizon: vector(),
+      u_glow: this.uniforms["u_glow"]!,
+      u_halo: vector(),
+      u_cloud: vector(),
+      u_cloud_lit: vector(),
+      u_cloud_cover: { value: 0 },
+      u_ambient_up: this.uniforms["u_ambient_up"]!,
+      u_room_light: vector(),
+      u_window_light: vector(),
+    };
+    this.outdoors = makeMaterial("skyBake", this.bakeUniforms, { side: BackSide });
+    this.room = makeMaterial("roomBake", this.bakeUniforms, { side: BackSide });
+    this.box = new Mesh(new BoxGeometry(2, 2, 2), this.outdoors);
+    this.scene.add(this.box);
+    this.domeUniforms = {
+      ...this.uniforms,
+      u_inverse_projection: { value: new Matrix4() },
+      u_camera_world: { value: new Matrix4() },
+      u_has_disc: { value: true },
+      u_stars: { value: 0 },
+      u_lowest: { value: -1 },
+    };
+    this.dome = new Mesh(makeFullscreenGeometry(), makeMaterial("skyDome", this.domeUniforms, { depthWrite: false }));
+    this.dome.frustumCulled = false;
+    // After the solids: only the remaining pixels are shaded.
+    this.dome.renderOrder = 10;
+    this.setLight(this.light);
+  }
+
+  /** Chooses between the open sky and a room, and has it baked; needed again after the WebGL context was restored. */
+  enter(isRoom: boolean): void {
+    this.isRoom = isRoom;
+    this.box.material = isRoom ? this.room : this.outdoors;
+    this.bakedS = Number.NEGATIVE_INFINITY;
+    this.setLight(this.light);
+  }
+
+  /** Takes the light of the open air. */
+  setLight(outside: Light): void {
+    this.light = outside;
+    const light = this.isRoom ? indoors(outside) : outside;
+    const { veiled, water, keyBelow, room, window } = derive(light);
+    const set = (uniforms: Uniforms, name: string, rgb: Rgb): void => void (uniforms[name]!.value as Vector3).set(...rgb);
+    this.sunDirection.set(...light.keyDirection);
+    set(this.uniforms, "u_sun_light", light.key);
+    set(this.uniforms, "u_sun_below", keyBelow);
+    set(this.uniforms, "u_ambient_up", light.ambientUp);
+    set(this.uniforms, "u_ambient_down", light.ambientDown);
+    set(this.uniforms, "u_water_light", water);
+    set(this.uniforms, "u_glow", light.glow);
+    veiled.forEach((rgb, i) => (this.uniforms["u_veiled_sky"]!.value as Vector3[])[i]!.set(...rgb));
+    this.uniforms["u_exposure"]!.value = light.exposure;
+    set(this.bakeUniforms, "u_sun_direction", light.sunDirection);
+    set(this.bakeUniforms, "u_zenith", light.zenith);
+    set(this.bakeUniforms, "u_middle", light.middle);
+    set(this.bakeUniforms, "u_horizon", light.horizon);
+    set(this.bakeUniforms, "u_halo", light.halo);
+    set(this.bakeUniforms, "u_cloud", light.cloud);
+    set(this.bakeUniforms, "u_cloud_lit", light.cloudLit);
+    this.bakeUniforms["u_cloud_cover"]!.value = light.cloudCover;
+    set(this.bakeUniforms, "u_room_light", room);
+    set(this.bakeUniforms, "u_window_light", window);
+    this.uniforms["u_sun_sharp"]!.value = light.sharp;
+    this.domeUniforms["u_has_disc"]!.value = !this.isRoom;
+    this.domeUniforms["u_stars"]!.value = light.stars;
+    this.isStale = true;
+  }
+
+  /** Bakes the cube map if the light has changed, at most once per kRebakeS. */
+  update(renderer: WebGLRenderer, nowS: number): void {
+    if (!this.isStale || nowS - this.bakedS < kRebakeS) return;
+    this.isStale = false;
+    this.bakedS = nowS;
+    new CubeCamera(0.1, 10, this.cube).update(renderer, this.scene);
+  }
+
+  /** `hasHorizon`: something hides the lower half of the dome, so that it need not be shaded. */
+  hideBelowHorizon(hasHorizon: boolean): void {
+    this.domeUniforms["u_lowest"]!.value = hasHorizon ? kLowestShown : -1;
+  }
+
+  follow(camera: PerspectiveCamera): void {
+    (this.domeUniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
+    (this.domeUniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
+  }
+
+  dispose(): void {
+    this.cube.dispose();
+    this.box.geometry.dispose();
+    this.outdoors.dispose();
+    this.room.dispose();
+    this.dome.geometry.dispose();
+    (this.dome.material as { dispose(): void }).dispose();
+  }
+}

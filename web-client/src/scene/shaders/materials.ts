@@ -1,0 +1,147 @@
+// The shader texts with their includes, and makeMaterial() for all of them.
+import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
+
+import bed from "./bed.glsl?raw";
+import below from "./below.glsl?raw";
+import bubblesFrag from "./bubbles.frag?raw";
+import caustics from "./caustics.glsl?raw";
+import causticsFrag from "./caustics.frag?raw";
+import causticsVert from "./caustics.vert?raw";
+import cellHash from "./cell_hash.glsl?raw";
+import elevationFrag from "./elevation.frag?raw";
+import fieldFrag from "./field.frag?raw";
+import flatShadowFrag from "./flat_shadow.frag?raw";
+import flatShadowVert from "./flat_shadow.vert?raw";
+import fluidDepthFrag from "./fluid_depth.frag?raw";
+import fluidEllipse from "./fluid_ellipse.glsl?raw";
+import fluidNormalFrag from "./fluid_normal.frag?raw";
+import fluidParticleVert from "./fluid_particle.vert?raw";
+import fluidShadowFrag from "./fluid_shadow.frag?raw";
+import fluidShadowVert from "./fluid_shadow.vert?raw";
+import fluidSizes from "./fluid_sizes.glsl?raw";
+import fluidSmoothFrag from "./fluid_smooth.frag?raw";
+import fluidSurfaceFrag from "./fluid_surface.frag?raw";
+import fluidThicknessFrag from "./fluid_thickness.frag?raw";
+import fluidTileMarkFrag from "./fluid_tile_mark.frag?raw";
+import fluidTileVert from "./fluid_tile.vert?raw";
+import frothFrag from "./froth.frag?raw";
+import fullscreenVert from "./fullscreen.vert?raw";
+import glassFrag from "./glass.frag?raw";
+import lampFrag from "./lamp.frag?raw";
+import lampVert from "./lamp.vert?raw";
+import levelFrag from "./level.frag?raw";
+import lookMap from "./look_map.glsl?raw";
+import lookParticleFrag from "./look_particle.frag?raw";
+import lookParticleVert from "./look_particle.vert?raw";
+import lookSurfaceFrag from "./look_surface.frag?raw";
+import lookValueFrag from "./look_value.frag?raw";
+import presentBelowFrag from "./present_below.frag?raw";
+import presentFrag from "./present.frag?raw";
+import rainRingFrag from "./rain_ring.frag?raw";
+import rainRingVert from "./rain_ring.vert?raw";
+import rainStreakFrag from "./rain_streak.frag?raw";
+import rainStreakVert from "./rain_streak.vert?raw";
+import roomBakeFrag from "./room_bake.frag?raw";
+import seaBlend from "./sea_blend.glsl?raw";
+import seaTileFrag from "./sea_tile.frag?raw";
+import shadow from "./shadow.glsl?raw";
+import shadowFrag from "./shadow.frag?raw";
+import sky from "./sky.glsl?raw";
+import shore from "./shore.glsl?raw";
+import shoreFrag from "./shore.frag?raw";
+import skyBakeFrag from "./sky_bake.frag?raw";
+import skyBakeVert from "./sky_bake.vert?raw";
+import skyDomeFrag from "./sky_dome.frag?raw";
+import skyDomeVert from "./sky_dome.vert?raw";
+import solidFrag from "./solid.frag?raw";
+import solidVert from "./solid.vert?raw";
+import sprayFrag from "./spray.frag?raw";
+import tilesFrag from "./tiles.frag?raw";
+import waterBelowFrag from "./water_below.frag?raw";
+import waterFrag from "./water.frag?raw";
+import waterOptics from "./water_optics.glsl?raw";
+import waterVert from "./water.vert?raw";
+import whitewaterVert from "./whitewater.vert?raw";
+
+const kPrograms = {
+  bubbles: [whitewaterVert, bubblesFrag],
+  caustics: [causticsVert, causticsFrag],
+  elevation: [fullscreenVert, elevationFrag],
+  field: [fullscreenVert, fieldFrag],
+  flatShadow: [flatShadowVert, flatShadowFrag],
+  fluidDepth: [fluidParticleVert, fluidDepthFrag],
+  fluidNormal: [fluidTileVert, fluidNormalFrag],
+  fluidShadow: [fluidShadowVert, fluidShadowFrag],
+  fluidSmooth: [fluidTileVert, fluidSmoothFrag],
+  fluidSurface: [fluidTileVert, fluidSurfaceFrag],
+  fluidThickness: [fluidParticleVert, fluidThicknessFrag],
+  fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
+  froth: [whitewaterVert, frothFrag],
+  glass: [solidVert, glassFrag],
+  lamp: [lampVert, lampFrag],
+  level: [fullscreenVert, levelFrag],
+  lookParticle: [lookParticleVert, lookParticleFrag],
+  lookSurface: [waterVert, lookSurfaceFrag],
+  lookValue: [fullscreenVert, lookValueFrag],
+  present: [fullscreenVert, presentFrag],
+  presentBelow: [skyDomeVert, presentBelowFrag],
+  rainRing: [rainRingVert, rainRingFrag],
+  rainStreak: [rainStreakVert, rainStreakFrag],
+  roomBake: [skyBakeVert, roomBakeFrag],
+  seaTile: [fullscreenVert, seaTileFrag],
+  shadow: [solidVert, shadowFrag],
+  shore: [fullscreenVert, shoreFrag],
+  skyBake: [skyBakeVert, skyBakeFrag],
+  skyDome: [skyDomeVert, skyDomeFrag],
+  solid: [solidVert, solidFrag],
+  spray: [whitewaterVert, sprayFrag],
+  tiles: [solidVert, tilesFrag],
+  water: [waterVert, waterFrag],
+  waterBelow: [waterVert, waterBelowFrag],
+} as const;
+
+// Samplers default to low precision in GLSL ES, which would round elevations on phones.
+const kPrecision = ["float", "int", "sampler2D", "samplerCube", "isampler2D"].map((t) => `precision highp ${t};\n`).join("");
+
+const kShared: Record<string, string> = {
+  sky,
+  bed,
+  below,
+  caustics,
+  cell_hash: cellHash,
+  fluid_ellipse: fluidEllipse,
+  fluid_sizes: fluidSizes,
+  look_map: lookMap,
+  sea_blend: seaBlend,
+  shadow,
+  shore,
+  water_optics: waterOptics,
+};
+
+function withIncludes(source: string): string {
+  return source.replace(/#include <(\w+)>/g, (_, name: string) => withIncludes(kShared[name]!));
+}
+
+function expand(source: string): string {
+  return kPrecision + withIncludes(source);
+}
+
+export type Uniforms = Record<string, IUniform>;
+
+/** Makes a GLSL ES 3.00 material. `uniforms` is not copied, so that materials can share entries. */
+export function makeMaterial(
+  program: keyof typeof kPrograms,
+  uniforms: Uniforms,
+  parameters: ShaderMaterialParameters = {},
+): RawShaderMaterial {
+  const [vertex, fragment] = kPrograms[program];
+  return new RawShaderMaterial({
+    name: program,
+    glslVersion: GLSL3,
+    vertexShader: expand(vertex),
+    fragmentShader: expand(fragment),
+    uniforms,
+    toneMapped: false,
+    ...parameters,
+  });
+}

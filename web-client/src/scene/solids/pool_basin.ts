@@ -1,0 +1,144 @@
+// A swimming pool: tiled floor and walls, a rim of stone, a deck of slabs, and a lawn with a hedge.
+import { Group, Mesh, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
+
+import type { GreetingInfo } from "../../codec/greeting";
+import { castsShadow } from "../meshes/casters";
+import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+import type { SurroundingsContext } from "./surroundings_context";
+
+/** Shares of the side: rim over the water, its width, the deck, and the lawn. */
+const kRimHeight = 0.026;
+const kRimWidth = 0.028;
+const kDeckWidth = 0.42;
+const kLawnReach = 40;
+const kHedgeHeight = 0.13;
+const kTilesPerSide = 36;
+/** Lane lines on the floor: their number, and width in sides. */
+const kLaneCount = 3;
+const kLaneWidth = 0.022;
+const kSlabsPerSide = 14;
+
+// The fourth number is the side of a tile, in sides of the water (tiles.frag).
+const kFloorTile: Paint = [0.36, 0.66, 0.72, 1 / kTilesPerSide];
+const kWallTile: Paint = [0.42, 0.70, 0.75, 1 / kTilesPerSide];
+const kBandTile: Paint = [0.05, 0.17, 0.36, 1 / kTilesPerSide];
+const kRim: Paint = [0.74, 0.70, 0.62, 1 / 20];
+const kDeck: Paint = [0.56, 0.47, 0.37, 1 / kSlabsPerSide];
+// Grain, as for other solids.
+const kLawn: Paint = [0.13, 0.21, 0.06, 1];
+const kHedge: Paint = [0.05, 0.1, 0.03, 1.6];
+
+export interface BasinGeometries {
+  tiled: BufferGeometry;
+  planted: BufferGeometry;
+}
+
+/** A level ring of four strips between two rectangles. */
+function addRing(builder: MeshBuilder, yM: number, inner: readonly [number, number], outer: readonly [number, number], paint: Paint): void {
+  const [ix, iz] = inner;
+  const [ox, oz] = outer;
+  const strip = (x0: number, x1: number, z0: number, z1: number): void => {
+    builder.quad([x0, yM, z1], [x1, yM, z1], [x1, yM, z0], [x0, yM, z0], paint);
+  };
+  strip(-ox, ox, iz, oz);
+  strip(-ox, ox, -oz, -iz);
+  strip(-ox, -ix, -iz, iz);
+  strip(ix, ox, -iz, iz);
+}
+
+/** Four upright faces round a rectangle; `inward`: seen from inside. */
+function addWalls(builder: MeshBuilder, half: readonly [number, number], lowM: number, highM: number, inward: boolean, paint: Paint): void {
+  const [x, z] = half;
+  const corners: [number, number][] = [[-x, z], [x, z], [x, -z], [-x, -z]];
+  corners.forEach(([ax, az], i) => {
+    const [bx, bz] = corners[(i + 1) % 4]!;
+    const from: Point[] = inward ? [[bx, lowM, bz], [ax, lowM, az]] : [[ax, lowM, az], [bx, lowM, bz]];
+    builder.quad(from[0]!, from[1]!, [from[1]![0], highM, from[1]![2]], [from[0]![0], highM, from[0]![2]], paint);
+  });
+}
+
+/** Returns the basin with its floor at y = 0 and the water's rest level at `depthM`. */
+export function makeBasinGeometries(lengthM: number, widthM: number, depthM: number): BasinGeometries {
+  const half: [number, number] = [lengthM / 2, widthM / 2];
+  const sideM = Math.max(lengthM, widthM);  // what tiles, rim and deck are shares of
+  const grown = (byM: number): [number, number] => [half[0] + byM, half[1] + byM];
+  const rimM = depthM + kRimHeight * sideM;
+  const bandM = depthM - 0.012 * sideM;
+  const tiled = new MeshBuilder();
+  // Floor in strips along x: tiles and lane lines in turn.
+  const laneM = kLaneWidth * sideM;
+  let fromM = half[1];
+  for (let lane = 0; lane <= kLaneCount; ++lane) {
+    const middleM = half[1] - (2 * half[1] * (lane + 1)) / (kLaneCount + 1);
+    const toM = lane < kLaneCount ? middleM + laneM / 2 : -half[1];
+    tiled.quad([-half[0], 0, fromM], [half[0], 0, fromM], [half[0], 0, toM], [-half[0], 0, toM], kFloorTile);
+    if (lane < kLaneCount) tiled.quad([-half[0], 0, toM], [half[0], 0, toM], [half[0], 0, toM - laneM], [-half[0], 0, toM - laneM], kBandTile);
+    fromM = toM - laneM;
+  }
+  addWalls(tiled, half, 0, bandM, true, kWallTile);
+  addWalls(tiled, half, bandM, rimM, true, kBandTile);
+  const liftM = 0.006 * sideM;
+  const lipM = -0.006 * sideM;
+  addRing(tiled, rimM + liftM, grown(lipM), grown(kRimWidth * sideM), kRim);
+  addWalls(tiled, grown(lipM), rimM - liftM, rimM + liftM, true, kRim);
+  addWalls(tiled, grown(kRimWidth * sideM), rimM, rimM + liftM, false, kRim);
+  addRing(tiled, rimM, grown(kRimWidth * sideM), grown(kDeckWidth * sideM), kDeck);
+  const planted = new MeshBuilder();
+  addRing(planted, rimM - 0.004 * sideM, grown(kDeckWidth * sideM), grown(kLawnReach * sideM), kLawn);
+  // A hedge on three sides; the fourth is where the usual view comes from.
+  const hedge = (xM: number, zM: number, halfX: number, halfZ: number): void => {
+    planted.block(xM, zM, { yM: rimM, halfX, halfZ }, { yM: rimM + kHedgeHeight * sideM, halfX: halfX * 0.995, halfZ: halfZ * 0.995 }, kHedge);
+  };
+  const [hx, hz] = grown(0.72 * sideM);
+  const thickM = 0.045 * sideM;
+  hedge(0, -hz, hx + thickM, thickM);
+  hedge(-hx, 0, thickM, hz);
+  hedge(hx, 0, thickM, hz);
+  return { tiled: tiled.build(), planted: planted.build() };
+}
+
+export class PoolBasin {
+  readonly group = new Group();
+  private readonly geometries: BasinGeometries;
+  private readonly material: RawShaderMaterial;
+  private readonly uniforms: Uniforms;
+
+  constructor(greeting: GreetingInfo, { sky, field, caustics, shadow, solid, quality }: SurroundingsContext) {
+    const { sideM, widthM, waterExtents } = greeting;
+    const { depthM } = waterExtents;
+    this.geometries = makeBasinGeometries(sideM, widthM, depthM);
+    this.uniforms = {
+      ...sky.uniforms,
+      ...caustics,
+      ...shadow,
+      u_camera_m: { value: new Vector3() },
+      u_field: { value: field ?? null },
+      u_extent_m: { value: new Vector2(sideM, widthM) },
+      u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
+      u_level_m: { value: 0 },
+      u_has_water: { value: field !== undefined },
+    };
+    this.material = makeMaterial("tiles", this.uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
+    for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, solid)]) {
+      mesh.frustumCulled = false;
+      castsShadow(mesh);
+      this.group.add(mesh);
+    }
+    this.setFloorM(-depthM);
+  }
+
+  setFloorM(yM: number): void {
+    this.group.position.y = yM;
+  }
+
+  look(cameraM: Vector3): void {
+    (this.uniforms["u_camera_m"]!.value as Vector3).copy(cameraM);
+  }
+
+  dispose(): void {
+    this.geometries.tiled.dispose();
+    this.geometries.planted.dispose();
+    this.material.dispose();
+  }
+}

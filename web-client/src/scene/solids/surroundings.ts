@@ -1,0 +1,117 @@
+// What is around the water: chooses and owns the parts of the scene's setting.
+import type { Object3D, Vector3 } from "three";
+
+import type { GreetingInfo } from "../../codec/greeting";
+import type { SettingName, SideName } from "../../codec/scene_info";
+import type { ViewedBox } from "../camera/framing";
+import { makeCoastGeometry } from "../landscape/coast";
+import { Landscape, makeGroundGeometry } from "../landscape/landscape";
+import { bedOf } from "../landscape/terrain";
+import type { Lamps } from "../light/lamps";
+import { OpenSea } from "../sea/open_sea";
+import { GlassTank } from "./glass_tank";
+import { PoolBasin } from "./pool_basin";
+import type { SurroundingsContext, WaterEdge } from "./surroundings_context";
+
+/** Cells along each side of a bed with beaches, obstacles or a coast. */
+const kBedCells = 96;
+const kPlainBedCells = 48;
+/** The most of a ground that the server sends. */
+const kGroundCells = 256;
+const kPlainGroundCells = 96;
+
+/** How much of the water a view has to show: where it goes on beyond the picture, only a part. */
+const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised">> = {
+  openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
+  pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 }, sideRaised: 4 },
+  glassTank: { focus: { wide: 1.05, tall: 0.95 }, raised: { wide: 1.1, tall: 1.6 } },
+  flume: { focus: { wide: 1.02, tall: 0.9 }, raised: { wide: 0.8, tall: 1.2 } },
+};
+
+/** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
+const kLeanFromLand = { x: 0.04, z: 0.16 };
+
+/** The view from the side looks from the first of these sides without land. */
+const kSeenFrom: readonly SideName[] = ["+z", "-x", "-z", "+x"];
+
+/** Returns how a view frames the scene's water; in the open sea away from the land. */
+export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom"> {
+  const view = kSettingViews[setting];
+  if (setting !== "openSea" || !wave) return view;
+  const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
+  const seenFrom = kSeenFrom.find((side) => closed(side) === 0) ?? "+z";
+  return { ...view, seenFrom, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
+}
+
+export function isIndoors({ setting }: GreetingInfo): boolean {
+  return setting === "glassTank" || setting === "flume";
+}
+
+export class Surroundings {
+  /** Drawn before the water. */
+  readonly solids: Object3D[] = [];
+  /** Panes of a tank, drawn over everything and blended: they are before whatever they cover. */
+  readonly glass: Object3D | undefined;
+  readonly edge: WaterEdge;
+  /** Height of the floor below the water. */
+  floorM: number;
+  /** The pass of the sea around the square, in an open sea; the list that it is in disposes it. */
+  readonly sea: OpenSea | undefined;
+  private readonly basin: PoolBasin | undefined;
+  private readonly tank: GlassTank | undefined;
+  private readonly landscape: Landscape | undefined;
+
+  constructor(greeting: GreetingInfo, context: SurroundingsContext) {
+    const { setting, wave, wind, obstacles, beaches, hasBed } = greeting;
+    const { plain } = context.quality;
+    const bed = bedOf(greeting);
+    this.floorM = wave ? -wave.depthM : 0;
+    const cellsCount = bed.ground ? Math.min(Math.max(bed.ground.countX, bed.ground.countZ), plain ? kPlainGroundCells : kGroundCells) : plain ? kPlainBedCells : kBedCells;
+    if (setting === "openSea" && wave) {
+      this.sea = new OpenSea(wave, wind, context.quality);
+      this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
+      this.solids.push(this.landscape.group);
+      return;
+    }
+    if (obstacles.length > 0 || beaches.length > 0 || hasBed) {
+      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount), obstacles, context.solid, plain);
+      this.solids.push(this.landscape.group);
+    }
+    if (setting === "pool") {
+      this.edge = { kind: "walls" };
+      this.basin = new PoolBasin(greeting, context);
+      this.solids.push(this.basin.group);
+    } else {
+      this.edge = { kind: "cut" };
+      this.tank = new GlassTank(greeting, context);
+      this.solids.push(this.tank.group);
+      this.glass = this.tank.glass;
+    }
+  }
+
+  /** Sets the height of the floor, where it comes with the first frame. */
+  setFloorM(yM: number): void {
+    this.floorM = yM;
+    this.basin?.setFloorM(yM);
+    this.tank?.setFloorM(yM);
+  }
+
+  setParameter(path: string, value: number): void {
+    this.sea?.setParameter(path, value);
+  }
+
+  look(cameraM: Vector3): void {
+    this.basin?.look(cameraM);
+    this.tank?.look(cameraM);
+  }
+
+  /** Adds the lights of breakwaters at a time of the scene. */
+  collectLamps(lamps: Lamps, shownS: number): void {
+    this.landscape?.collectLamps(lamps, shownS);
+  }
+
+  dispose(): void {
+    for (const part of [this.basin, this.tank, this.landscape]) part?.dispose();
+  }
+}

@@ -1,0 +1,56 @@
+// What is drawn when the camera is in the water or close over it: the surface from below, and the solids seen through water. Each pixel
+// decides by itself whether its way begins in the water, so that the surface divides the picture where the camera is half below it.
+import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMaterial } from "three";
+
+import type { GreetingInfo } from "../../codec/greeting";
+import type { SurfaceFrame } from "../../net/messages";
+import { elevationAtM } from "../frames/height_field";
+import { makeMaterial, type Uniforms } from "../shaders/materials";
+
+/** The surface may divide the picture where the camera is less than this many near planes over it. */
+const kCloseNears = 4;
+/** Average albedo of the floor, where it is not on the screen. */
+const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
+  openSea: [0.224, 0.205, 0.156],
+  pool: [0.34, 0.63, 0.69],
+  glassTank: [0.2, 0.22, 0.24],
+  flume: [0.2, 0.22, 0.24],
+};
+
+export class BelowSurface {
+  /** Of the water's meshes, seen from below. */
+  readonly surface: RawShaderMaterial;
+  /** Of a triangle over the canvas (sky_dome.vert). */
+  readonly solids: RawShaderMaterial;
+  private readonly uniforms: Uniforms;
+  private readonly ahead = new Vector3();
+
+  /** `uniforms` and `defines` are those of the water; `newest` returns the newest frame of the surface. */
+  constructor(setting: GreetingInfo["setting"], uniforms: Uniforms, defines: Record<string, number>, private readonly newest: () => SurfaceFrame | undefined) {
+    this.uniforms = {
+      ...uniforms,
+      u_floor_albedo: { value: new Vector3(...kFloors[setting]) },
+      u_inverse_projection: { value: new Matrix4() },
+      u_camera_world: { value: new Matrix4() },
+      u_camera_ahead: { value: this.ahead },
+    };
+    this.surface = makeMaterial("waterBelow", this.uniforms, { side: BackSide, defines });
+    this.solids = makeMaterial("presentBelow", this.uniforms, { depthWrite: false, defines });
+  }
+
+  /** Returns whether a picture from this camera shows the water from below. */
+  isSeen(camera: PerspectiveCamera): boolean {
+    const frame = this.newest();
+    const { x, y, z } = camera.position;
+    if (y > (frame ? elevationAtM(frame, x, z) : 0) + kCloseNears * camera.near) return false;
+    (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
+    (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
+    camera.getWorldDirection(this.ahead);
+    return true;
+  }
+
+  dispose(): void {
+    this.surface.dispose();
+    this.solids.dispose();
+  }
+}

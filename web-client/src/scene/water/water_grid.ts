@@ -1,0 +1,87 @@
+// The meshes of the water: a grid over the square, which in an open sea goes on to the horizon, and the sides of a block of water.
+import { BufferAttribute, BufferGeometry } from "three";
+
+import type { SideName } from "../../codec/scene_info";
+import type { WaterEdge } from "../solids/surroundings_context";
+
+/** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */
+const kSeaReachSides = 300;
+/** Its cells outside the square become larger by this factor, first slowly, for the waves near the square. */
+const kNearGrowth = 1.2;
+const kNearCount = 6;
+const kFarGrowth = 2.2;
+
+/**
+ * Returns the places of the grid's lines along one axis: `cellsCount` equal cells over -1/2..1/2, and beyond the ends that are open
+ * cells that grow toward the horizon.
+ */
+export function gridLines(cellsCount: number, openBelow: boolean, openAbove: boolean): number[] {
+  const inside = Array.from({ length: cellsCount + 1 }, (_, i) => i / cellsCount - 0.5);
+  const outside: number[] = [];
+  let step = 1 / cellsCount;
+  for (let at = 0.5, n = 0; at < kSeaReachSides; ++n) {
+    step *= n < kNearCount ? kNearGrowth : kFarGrowth;
+    at += step;
+    outside.push(at);
+  }
+  return [...(openBelow ? outside.map((at) => -at).reverse() : []), ...inside, ...(openAbove ? outside : [])];
+}
+
+/** Grid of the given lines; y = 1 ("on the surface" for the shader). */
+export function makeGrid(xs: readonly number[], zs: readonly number[]): BufferGeometry {
+  const positions = new Float32Array(xs.length * zs.length * 3);
+  let at = 0;
+  for (const z of zs)
+    for (const x of xs) {
+      positions[at++] = x;
+      positions[at++] = 1;
+      positions[at++] = z;
+    }
+  const index = new Uint32Array((xs.length - 1) * (zs.length - 1) * 6);
+  at = 0;
+  for (let k = 0; k + 1 < zs.length; ++k)
+    for (let i = 0; i + 1 < xs.length; ++i) {
+      const corner = k * xs.length + i;
+      for (const vertex of [corner, corner + xs.length, corner + 1, corner + 1, corner + xs.length, corner + xs.length + 1])
+        index[at++] = vertex;
+    }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(positions, 3));
+  geometry.setIndex(new BufferAttribute(index, 1));
+  return geometry;
+}
+
+/** Four strips, each `cellsCount` quads from the surface (y = 1) to the floor (y = 0), normals outward. */
+function makeSkirt(cellsCount: number): BufferGeometry {
+  const positions: number[] = [];
+  const normals: number[] = [];
+  const index: number[] = [];
+  const sides: [number, number][] = [[0, 1], [1, 0], [0, -1], [-1, 0]];
+  for (const [nx, nz] of sides) {
+    const first = positions.length / 3;
+    for (let i = 0; i <= cellsCount; ++i) {
+      const along = i / cellsCount - 0.5;
+      const x = nx * 0.5 + nz * along;
+      const z = nz * 0.5 - nx * along;
+      positions.push(x, 1, z, x, 0, z);
+      normals.push(nx, 0, nz, nx, 0, nz);
+      if (i === cellsCount) continue;
+      const top = first + 2 * i;
+      index.push(top, top + 1, top + 2, top + 2, top + 1, top + 3);
+    }
+  }
+  const geometry = new BufferGeometry();
+  geometry.setAttribute("position", new BufferAttribute(new Float32Array(positions), 3));
+  geometry.setAttribute("normal", new BufferAttribute(new Float32Array(normals), 3));
+  geometry.setIndex(index);
+  return geometry;
+}
+
+/** Returns the meshes of a water's surface and, where they are seen, of its sides. */
+export function makeWaterGeometries(edge: WaterEdge, cellsCount: number): { top: BufferGeometry; sides: BufferGeometry | undefined } {
+  const opens = (side: SideName): boolean => edge.kind === "sea" && edge.sides[side] !== "closed";
+  return {
+    top: makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z"))),
+    sides: edge.kind === "cut" ? makeSkirt(cellsCount) : undefined,
+  };
+}
