@@ -151,8 +151,9 @@ TEST(StateFormat, FilesOfTheVersionBeforeAreRead) {
   ASSERT_FALSE(state.fault) << state.fault->reason;
   EXPECT_EQ(state::textOf(state.payload), "123456789");
   EXPECT_FALSE(state.next_number);
-  const std::string record = std::string("\x09\0\0\0", 4) + "\x83\x92\x06\xE3" + "123456789";
-  const std::string file = std::string("spinlog1") + std::string("\x02\x01\0\0\0\0\0\0", 8) + record + record;
+  constexpr std::string_view kRecord("\x09\0\0\0\x83\x92\x06\xE3" "123456789", 17);
+  std::string file("spinlog1\x02\x01\0\0\0\0\0\0", 16);
+  for (int k = 0; k < 2; ++k) file.append(kRecord);
   const ParsedLog log = parsedLog(file, 258);
   ASSERT_FALSE(log.fault) << log.fault->reason;
   EXPECT_EQ(log.records.size(), 2U);
