@@ -10,7 +10,8 @@ import { Connection } from "../../web-client/src/net/connection";
 import { binary, repository, startServer } from "../browser/server.mjs";
 
 /** From the signal to the exit of a server whose clients take part. */
-const kEndLimitMs = 5000;
+// The server's own bounds after SIGTERM: 1 s of --drain-s, 3 s for sessions, 5 s for the disk, 2 s for water that is being built.
+const kEndLimitMs = 11000;
 const kPatienceMs = 60_000;
 
 async function freePort() {
@@ -44,6 +45,7 @@ class Page {
       random: () => Math.random(),
       setTimer: (callback, ms) => setTimeout(callback, ms),
       clearTimer: (timer) => clearTimeout(timer),
+      findMissingRoom: async () => undefined, // the room is there, or the server is away
     };
     const sink = { event: (event) => this.events.push(event), frame: () => {} };
     this.connection = new Connection(`ws://127.0.0.1:${port}/ws`, world, sink, { name, token: "", resumeKey: "" });
@@ -184,7 +186,7 @@ describe("a server that ends", () => {
     await other.stop("SIGTERM");
   });
 
-  it("ends within five seconds with a hundred clients and a kept harbor", async () => {
+  it("ends within its bounds with a hundred clients and a kept harbor", async () => {
     server = await startServer(0, ["--scene", "harbor", "--state-dir", join(folder, "harbor")]);
     for (let k = 0; k < 100; ++k) pages.push(new Page(server.port, `client ${k}`));
     await until("a hundred welcomes", () => pages.every((page) => page.newest("welcome")));
