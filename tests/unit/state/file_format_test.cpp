@@ -151,7 +151,10 @@ TEST(StateFormat, FilesOfTheVersionBeforeAreRead) {
   ASSERT_FALSE(state.fault) << state.fault->reason;
   EXPECT_EQ(state::textOf(state.payload), "123456789");
   EXPECT_FALSE(state.next_number);
-  constexpr std::string_view kRecord("\x09\0\0\0\x83\x92\x06\xE3" "123456789", 17);
+  constexpr std::string_view kRecord(
+      "\x09\0\0\0\x83\x92\x06\xE3"
+      "123456789",
+      17);
   std::string file("spinlog1\x02\x01\0\0\0\0\0\0", 16);
   for (int k = 0; k < 2; ++k) file.append(kRecord);
   const ParsedLog log = parsedLog(file, 258);
