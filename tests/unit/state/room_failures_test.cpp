@@ -19,9 +19,9 @@
 #include "state_fixture.h"
 
 namespace {
-bool is_sync_refused = false;
-bool is_cut_refused = false;
-int folder_sync_count = 0;
+std::atomic<bool> is_sync_refused = false;
+std::atomic<bool> is_cut_refused = false;
+std::atomic<int> folder_sync_count = 0;
 }  // namespace
 
 // NOLINTNEXTLINE(readability-inconsistent-declaration-parameter-name): C library
