@@ -16,7 +16,7 @@ tour       build/gallery/tour.mp4, 20 s of several scenes and lights
 all        all of these
 
 Animation and tour are of high quality unless --qualities low is given. Without a GPU, pictures take minutes, the tour at high
-quality most of an hour. Animation and tour go on where they were interrupted.
+quality most of an hour. Animation and tour continue where they were interrupted.
 TEXT
     return
   fi

@@ -89,7 +89,7 @@ core::Result<Access> Access::parse(std::string_view text, const std::string& lab
     if (!(words >> role_word)) continue;
     const auto refuse = [&](const std::string& why) { return Error{ErrorCode::kInvalidInput, place + ": " + why}; };
     const auto role = core::parseRole(role_word);
-    if (!role) return refuse("the first word is no role: write viewer, player or operator, then the token");
+    if (!role) return refuse("the first word is not a role: write viewer, player or operator, then the token");
     if (!(words >> secret)) return refuse("a token has to follow the role");
     if (secret.size() < kTokenMinBytes) {
       return refuse("the token has " + std::to_string(secret.size()) + " characters; at least " +

@@ -127,7 +127,7 @@ void AuditFile::noteFailure(int error_number) {
   if (has_complained_ && now - complained_ < kSameErrorPause) return;
   has_complained_ = true;
   complained_ = now;
-  spdlog::error("audit log {}: lines are lost (metric audit_lost_total), the server goes on: {}", file_.string(),
+  spdlog::error("audit log {}: lines are lost (metric audit_lost_total), the server continues: {}", file_.string(),
                 std::strerror(error_number));
 }
 

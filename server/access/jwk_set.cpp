@@ -69,13 +69,13 @@ std::optional<JwtAlgorithm> algorithmOf(const json::object& key) {
   return is_other_use || is_other_algorithm ? std::nullopt : out;
 }
 
-/// Returns the key, or why it is none.
+/// Returns the key, or why it is invalid.
 std::variant<JwtKey, std::string> parseKey(const json::object& object, JwtAlgorithm algorithm) {
   JwtKey out{.algorithm = algorithm, .id = std::string(textOf(object, "kid"))};
   if (out.id.size() > kIdMaxBytes) return "kid is longer than " + std::to_string(kIdMaxBytes) + " bytes";
   if (algorithm == JwtAlgorithm::kHs256) {
     const auto secret = bytesOf(object, "k");
-    if (!secret) return "k is no base64url";
+    if (!secret) return "k is not base64url";
     if (secret->size() < kJwtSecretMinBytes) {
       return "the secret has " + std::to_string(secret->size()) + " bytes; HS256 needs at least " +
              std::to_string(kJwtSecretMinBytes);
@@ -92,17 +92,17 @@ std::variant<JwtKey, std::string> parseKey(const json::object& object, JwtAlgori
                            &EVP_PKEY_free);
     }
     ERR_clear_error();
-    if (!out.public_key) return "x is no base64url of the 32 bytes of an Ed25519 key";
+    if (!out.public_key) return "x is not base64url of the 32 bytes of an Ed25519 key";
     if (std::string why = weaknessOf(*out.public_key); !why.empty()) return why;
     return out;
   }
   const auto modulus = bytesOf(object, "n");
   const auto exponent = bytesOf(object, "e");
   if (!modulus || !exponent || modulus->size() > kRsaMaxBytes || exponent->size() > kRsaMaxBytes)
-    return "n and e are no base64url of an RSA key";
+    return "n and e are not base64url of an RSA key";
   out.public_key = rsaKey(*modulus, *exponent);
   ERR_clear_error();
-  if (!out.public_key) return "n and e are no RSA key";
+  if (!out.public_key) return "n and e are not an RSA key";
   if (std::string why = weaknessOf(*out.public_key); !why.empty()) return why;
   return out;
 }
@@ -114,14 +114,14 @@ core::Result<std::vector<JwtKey>> parseKeySet(std::string_view text, const std::
     return core::Error{core::ErrorCode::kInvalidInput, label + ": " + why};
   };
   const auto set = parseJsonObject(text);
-  if (!set) return refuse("it is no JWK set: " + set.error().message);
+  if (!set) return refuse("it is not a JWK set: " + set.error().message);
   const json::value* const keys = set->if_contains("keys");
-  if (!keys || !keys->is_array()) return refuse("it is no JWK set: an object with an array \"keys\" is expected");
+  if (!keys || !keys->is_array()) return refuse("it is not a JWK set: an object with an array \"keys\" is expected");
   std::vector<JwtKey> out;
   std::size_t number = 0;
   for (const json::value& one : keys->get_array()) {
     const std::string which = "key " + std::to_string(++number) + ": ";
-    if (!one.is_object()) return refuse(which + "it is no object");
+    if (!one.is_object()) return refuse(which + "it is not an object");
     const auto algorithm = algorithmOf(one.get_object());
     if (!algorithm) continue;
     auto key = parseKey(one.get_object(), *algorithm);

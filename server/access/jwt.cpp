@@ -73,9 +73,9 @@ std::optional<std::string> checkSignature(const Parts& parts, const std::vector<
   const json::value* const algorithm = header->if_contains("alg");
   if (!algorithm || !algorithm->is_string()) return "its header has no alg";
   const json::value* const id = header->if_contains("kid");
-  if (id && !id->is_string()) return "kid in its header is no text";
+  if (id && !id->is_string()) return "kid in its header is not text";
   const auto signature = fromBase64Url(parts.signature);
-  if (!signature) return "its signature is no base64url";
+  if (!signature) return "its signature is not base64url";
   bool is_known_algorithm = false;
   bool is_known_key = false;
   for (const JwtKey& key : keys) {
@@ -108,7 +108,7 @@ class Claims {
   std::string text(const char* claim, std::size_t max_bytes) {
     const json::value* const found = find(claim);
     if (!found) return {};
-    if (!found->is_string()) return fail(fmt::format("{} is no text", claim)), std::string();
+    if (!found->is_string()) return fail(fmt::format("{} is not text", claim)), std::string();
     const auto& text = found->get_string();
     if (text.size() > max_bytes) {
       return fail(fmt::format("{} has {} bytes; at most {}", claim, text.size(), max_bytes)), std::string();
@@ -128,7 +128,7 @@ class Claims {
     else if (found->is_double())
       seconds = found->get_double();
     else
-      return fail(fmt::format("{} is no number of seconds", claim)), std::nullopt;
+      return fail(fmt::format("{} is not a number of seconds", claim)), std::nullopt;
     if (!std::isfinite(seconds) || seconds < 0.0 || seconds > kLastTime_s) {
       return fail(fmt::format("{} is not between 0 and {:.0f} seconds since 1970", claim, kLastTime_s)), std::nullopt;
     }
@@ -144,7 +144,7 @@ class Claims {
     const auto take = [&](const json::value& one) {
       const auto* const text = one.if_string();
       if (!text || text->empty() || text->size() > max_bytes)
-        return fail(fmt::format("{} has an entry that is no text of 1 to {} bytes", claim, max_bytes));
+        return fail(fmt::format("{} has an entry that is not text of 1 to {} bytes", claim, max_bytes));
       out.emplace_back(text->data(), text->size());
     };
     if (const json::array* const list = found->if_array()) {
@@ -215,7 +215,7 @@ core::Result<Grant> verifyJwt(std::string_view token, const std::vector<JwtKey>&
   grant.name = claims.text("name", kNameMaxBytes);
   grant.rooms = claims.texts("room", kTokenRoomMaxCount, core::kRoomNameMaxBytes);
   if (grant.rooms && !std::ranges::all_of(*grant.rooms, core::isRoomName))
-    claims.fail(fmt::format("room has an entry that is no name of a room ({})", core::kRoomNameRule));
+    claims.fail(fmt::format("room has an entry that is not a name of a room ({})", core::kRoomNameRule));
   if (!claims.fault().empty()) return refusal(claims.fault());
   if (!grant.is_person) grant.subject = "a JWT without sub";
   return grant;

@@ -122,8 +122,9 @@ class NatsBus final : public Bus {
       const std::lock_guard lock(static_cast<NatsBus*>(self)->mutex_);
       if (static_cast<NatsBus*>(self)->stopping_) return;
     }
-    spdlog::warn("the connection to NATS ({}) broke; rooms go on, watchers behind edges see no frames until it is back",
-                 static_cast<NatsBus*>(self)->url_);
+    spdlog::warn(
+        "the connection to NATS ({}) broke; rooms continue, watchers behind edges see no frames until it is back",
+        static_cast<NatsBus*>(self)->url_);
   }
   static void reconnected(natsConnection*, void* self) {
     ++static_cast<NatsBus*>(self)->reconnect_count;

@@ -24,7 +24,7 @@ struct PartHead {
 };
 
 void writePartHead(const PartHead& head, std::uint8_t* out);
-/// nullopt for bytes that are no part.
+/// nullopt for bytes that are not a part.
 std::optional<PartHead> readPartHead(core::ByteView part);
 
 /// Puts the parts of one subscription together. Keeps at most kOpenMaxCount incomplete messages, one per sender: parts

@@ -120,7 +120,7 @@ CLI::Validator isOrigin() {
 CLI::Validator isUrl() {
   return {[](std::string& text) {
             const auto url = net::ClientUrl::parse(text);
-            return url ? std::string() : "Value " + text + " is no URL: write ws://HOST:PORT or wss://HOST:PORT";
+            return url ? std::string() : "Value " + text + " is not a URL: write ws://HOST:PORT or wss://HOST:PORT";
           },
           ""};
 }
@@ -128,8 +128,9 @@ CLI::Validator isUrl() {
 CLI::Validator isServer() {
   return {[](std::string& text) {
             const auto url = net::ClientUrl::parse(text);
-            return url && url->path == "/" ? std::string()
-                                           : "Value " + text + " is no server: write ws://HOST:PORT or wss://HOST:PORT";
+            return url && url->path == "/"
+                       ? std::string()
+                       : "Value " + text + " is not a server: write ws://HOST:PORT or wss://HOST:PORT";
           },
           ""};
 }
@@ -153,7 +154,7 @@ CLI::Validator isRoom() {
   return {[](std::string& text) {
             const std::size_t equals = text.find('=');
             const bool has_both = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
-            return has_both ? std::string() : "Value " + text + " is no room: write NAME=SCENE";
+            return has_both ? std::string() : "Value " + text + " is not a room: write NAME=SCENE";
           },
           ""};
 }
@@ -164,7 +165,7 @@ CLI::Validator isOutputFile() {
             std::error_code ignored;
             const fs::path folder = fs::path(text).has_parent_path() ? fs::path(text).parent_path() : fs::path(".");
             const std::string shown = "Value '" + text + "' cannot be written: ";
-            if (text.empty() || fs::is_directory(text, ignored)) return shown + "it is no file; name a file";
+            if (text.empty() || fs::is_directory(text, ignored)) return shown + "it is not a file; name a file";
             if (!fs::is_directory(folder, ignored))
               return shown + "there is no folder " + folder.string() + "; make it";
             if (::access(fs::exists(text, ignored) ? text.c_str() : folder.c_str(), W_OK) != 0)

@@ -48,7 +48,7 @@ core::Result<std::optional<InheritedSocket>> takeInheritedSocket() {
   int is_listening = 0;
   socklen_t size_bytes = sizeof is_listening;
   if (::getsockopt(kFirstDescriptor, SOL_SOCKET, SO_ACCEPTCONN, &is_listening, &size_bytes) != 0)
-    return unfit(fmt::format("is no socket ({})", std::strerror(errno)));
+    return unfit(fmt::format("is not a socket ({})", std::strerror(errno)));
   if (is_listening == 0) return unfit("is a socket that does not listen");
 
   sockaddr_storage bound{};

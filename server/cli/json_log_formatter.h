@@ -10,7 +10,7 @@
 namespace spindrift::cli {
 
 /// {"time":"2026-01-31T12:00:00.123Z","level":"info","thread":4711,"message":"room main: …"}. The time is RFC 3339 in
-/// UTC. Every line is valid JSON in UTF-8, whatever the message holds: bytes that are no UTF-8 become U+FFFD, and line
+/// UTC. Every line is valid JSON in UTF-8, whatever the message holds: bytes that are not UTF-8 become U+FFFD, and line
 /// breaks are escaped.
 class JsonLogFormatter final : public spdlog::formatter {
  public:

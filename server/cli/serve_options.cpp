@@ -166,7 +166,7 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
 
   command
       .add_option("--state-dir", options.state_folder,
-                  "Keep the rooms in this folder, and go on from there after a restart, also after a crash")
+                  "Keep the rooms in this folder, and continue from there after a restart, also after a crash")
       ->check(isNotEmpty());
   command
       .add_option("--snapshot-every-s,--snapshot-every", options.snapshot_interval_s,

@@ -47,7 +47,7 @@ class Feed final : public service::RemoteAudience {
   using Clock = std::chrono::steady_clock;
 
   struct Events {
-    /// Another session goes on in the place of one of this process.
+    /// Another session continues in the place of one of this process.
     std::function<void(core::SessionId)> displaced;
     /// A room was closed for good.
     std::function<void(const std::string& room)> closed;
@@ -62,7 +62,7 @@ class Feed final : public service::RemoteAudience {
   /// twenty times per second.
   void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
               Clock::time_point now);
-  /// The room goes on at another server, to which the nodes attach: they are not told that it was closed.
+  /// The room continues at another server, to which the nodes attach: they are not told that it was closed.
   void giveUp(const std::string& name);
   [[nodiscard]] FeedStats stats() const;
 

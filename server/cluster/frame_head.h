@@ -27,7 +27,7 @@ struct FrameParts {
   core::ByteView keyframe;  ///< empty: there is none
   core::ByteView delta;
 };
-/// Views into `message`; nullopt for bytes that are no frame.
+/// Views into `message`; nullopt for bytes that are not a frame.
 std::optional<FrameParts> readFrame(core::ByteView message);
 
 }  // namespace spindrift::cluster

@@ -151,7 +151,7 @@ core::Result<void> NodeImpl::start() {
                              [this](const std::string& room, const std::string& server) {
                                feed_->giveUp(room);
                                sessions_->dismiss(room, net::CloseCode::kGoingAway,
-                                                  "the room goes on at server " + server + ": connect again");
+                                                  "the room continues at server " + server + ": connect again");
                              }});
     feed_ = std::make_unique<Feed>(
         *bus_, subjects_,
@@ -176,7 +176,7 @@ core::Result<void> NodeImpl::start() {
                            [this](core::ByteView message) { takeMail(message); });
   if (!pulses_ || !inbox_) return Error{ErrorCode::kUnavailable, "NATS: the node's subjects cannot be subscribed to"};
   name_ = std::make_unique<NodeName>(*bus_, subjects_.name(options_.name), [this](const std::string& process) {
-    spdlog::error("{}, and goes on with it: this process ends", nameTaken(process));
+    spdlog::error("{}, and continues with it: this process ends", nameTaken(process));
     if (options_.on_name_lost) options_.on_name_lost();
   });
   if (const std::string process = name_->claim(kListenTime); !process.empty()) {

@@ -1,5 +1,5 @@
-// The frames of a remote room: which streams come over the bus, what goes on to the sessions, and what is kept for late
-// ones.
+// The frames of a remote room: which streams come over the bus, what is passed on to the sessions, and what is kept for
+// late ones.
 #include <algorithm>
 #include <utility>
 

@@ -161,7 +161,7 @@ core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) 
     const std::uint8_t* at = payload.data() + i * kBodyBytes;
     BodySample body;
     body.boat_id = load<std::uint32_t>(at);
-    if (body.boat_id == 0) return invalid("boat_id: 0 is no boat; the frame is damaged");
+    if (body.boat_id == 0) return invalid("boat_id: 0 is not a boat; the frame is damaged");
     for (std::size_t axis = 0; axis < 3; ++axis) {
       body.position_m[axis] = load<std::int32_t>(at + 4 + 4 * axis) / 1000.0;
       if (auto error = checkRange("position_m", body.position_m[axis], -kMaxMagnitude)) return *error;

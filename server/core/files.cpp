@@ -38,7 +38,7 @@ Result<FileStream> openFile(const fs::path& file, const std::string& what) {
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) return unavailable("there is no such file; check the path");
   if (fs::is_directory(status)) return unavailable("is a directory; name " + what + " in it");
-  if (!fs::is_regular_file(status)) return unavailable("is no regular file; name " + what);
+  if (!fs::is_regular_file(status)) return unavailable("is not a regular file; name " + what);
   FileStream stream(std::fopen(file.c_str(), "rb"), &std::fclose);
   if (!stream) return unavailable(std::string("cannot be opened: ") + std::strerror(errno) + "; check its permissions");
   return stream;

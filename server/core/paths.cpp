@@ -1,3 +1,5 @@
+#include <set>
+#include <string>
 #include <system_error>
 #include <vector>
 
@@ -40,12 +42,14 @@ core::Result<fs::path> findScene(const std::string& given) {
   }
   if (fs::exists(given, error)) return fs::path(given);
   if (is_name && !folder.empty()) {
-    std::string names;
+    std::set<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().extension() == ".textproto") names += (names.empty() ? "" : ", ") + entry.path().stem().string();
+      if (entry.path().extension() == ".textproto") names.insert(entry.path().stem().string());
     }
+    std::string listed;
+    for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
     return core::Error{core::ErrorCode::kUnavailable,
-                       "scene '" + given + "': neither a file nor a shipped scene; shipped are: " + names};
+                       "scene '" + given + "': neither a file nor a shipped scene; shipped are: " + listed};
   }
   return core::Error{
       core::ErrorCode::kUnavailable,

@@ -19,7 +19,7 @@ struct BufferAccess {
   std::string name;
   std::size_t size_bytes = 0;
   bool is_scratch = false;
-  /// Consecutive passes write different parts: two writes without a barrier between them are no fault.
+  /// Consecutive passes write different parts: two writes without a barrier between them are not a fault.
   bool has_disjoint_writes = false;
 
   std::uint64_t shader_write = 0;

@@ -13,7 +13,7 @@ namespace spindrift::gpu {
 
 namespace {
 
-/// Returns the UUID in lower case, without the "GPU-" of nvidia-smi; empty if the text is none.
+/// Returns the UUID in lower case, without the "GPU-" of nvidia-smi; empty if the text is not a UUID.
 std::string uuidOf(std::string_view text) {
   if (text.starts_with("GPU-")) text.remove_prefix(4);
   constexpr std::string_view kForm = "xxxxxxxx-xxxx-xxxx-xxxx-xxxxxxxxxxxx";

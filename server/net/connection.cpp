@@ -199,7 +199,7 @@ asio::awaitable<bool> Connection::secure() {
   stream_.expires_after(context_.options.handshake_timeout);
   auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(first), kToken);
   if (error) {
-    // Probes of the port open a connection and close it without a byte; they are no failures.
+    // Probes of the port open a connection and close it without a byte; they are not failures.
     if (error != asio::error::eof) ++context_.counters.failed_tls_handshake_count;
     co_return false;
   }

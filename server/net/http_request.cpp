@@ -76,7 +76,7 @@ std::optional<Reply> refuseHead(RequestParser& parser) {
   }
   useOriginForm(request);
   if (!isHost(viewOf(request[http::field::host]))) {
-    return textReply(400, "The Host header is no host with an optional port.");
+    return textReply(400, "The Host header is not a host with an optional port.");
   }
   if (parser.chunked()) return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
   // RFC 9112 section 6.3: with another coding two readers could disagree where the body ends. Boost's parser ignores

@@ -39,7 +39,8 @@ Reply textReply(unsigned status, std::string line);
 /// Defined by RFC 6455.
 inline constexpr std::string_view kWebSocketVersion = "13";
 
-/// Returns 426, for a request to a WebSocket address that is no upgrade or one to another version; `line` says which.
+/// Returns 426, for a request to a WebSocket address that is not an upgrade or one to another version; `line` says
+/// which.
 Reply webSocketReply(std::string line);
 
 /// Returns whether the undecoded target belongs to the REST interface, which answers in JSON.

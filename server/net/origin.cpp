@@ -34,7 +34,7 @@ bool isLoopbackName(std::string_view host) {
 }
 
 core::Error wrongOrigin(const std::string& text, const std::string& why) {
-  return {core::ErrorCode::kInvalidInput, "'" + text + "' is no Origin: " + why};
+  return {core::ErrorCode::kInvalidInput, "'" + text + "' is not an Origin: " + why};
 }
 
 /// Returns "host:port" without the port that the scheme has by default, which browsers leave out.

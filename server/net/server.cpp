@@ -176,7 +176,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
     if (error) {
       ++context_.counters.failed_accept_count;
       if (const auto count = failed.count(Clock::now())) {
-        spdlog::warn("{} new connections could not be accepted ({}); {} are open and go on", *count, error.message(),
+        spdlog::warn("{} new connections could not be accepted ({}); {} are open and continue", *count, error.message(),
                      context_.connections.count());
       }
       asio::steady_timer pause(accept_strand_, kAcceptPause);
@@ -190,7 +190,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
     } else {
       context_.counters.refused(Refused::kConnection);
       if (const auto count = refused.count(Clock::now())) {
-        spdlog::warn("{} new connections were closed without a reply: {} are open, as many as may be", *count,
+        spdlog::warn("{} new connections were closed without a reply: the limit of {} open ones is reached", *count,
                      context_.connections.maxCount());
       }
     }

@@ -97,7 +97,7 @@ core::Result<TrustedNetworks::Network> TrustedNetworks::parseOne(const std::stri
   boost::system::error_code error;
   const ip::address address = ip::make_address(text.substr(0, slash), error);
   if (error || text.find('%') != std::string::npos) {
-    return invalid("'" + text + "' is no network: write ADDRESS/BITS, such as 10.0.0.0/8 or 2001:db8::/32");
+    return invalid("'" + text + "' is not a network: write ADDRESS/BITS, such as 10.0.0.0/8 or 2001:db8::/32");
   }
   const unsigned bits_max = address.is_v4() ? kV4Bits : kV6Bits;
   const auto bits =
@@ -175,7 +175,7 @@ core::Result<std::optional<ip::address>> forwardedClient(std::span<const std::st
       client = entryOf(entry);
       if (!client) {
         return invalid("The X-Forwarded-For header has the entry '" + printable(entry.substr(0, 60)) +
-                       "', which is no IP address: the proxy in front of this server has to write one.");
+                       "', which is not an IP address: the proxy in front of this server has to write one.");
       }
       if (!trusted.contains(*client)) return client;
       if (comma == std::string_view::npos) break;

@@ -39,8 +39,8 @@ class TrustedNetworks {
   std::vector<Network> networks_;
 };
 
-/// Returns the client that X-Forwarded-For names: the rightmost entry that is no trusted proxy, or the leftmost one if
-/// all are; nullopt if there is no entry. `lines`: the values of all headers of this name, in order; an entry is an
+/// Returns the client that X-Forwarded-For names: the rightmost entry that is not a trusted proxy, or the leftmost one
+/// if all are; nullopt if there is no entry. `lines`: the values of all headers of this name, in order; an entry is an
 /// address, with a port or not (192.0.2.1:80, [2001:db8::1]:80). Only entries up to the client are read, because the
 /// client itself can write whatever it likes in front of them. kInvalidInput is one line that names the header.
 core::Result<std::optional<boost::asio::ip::address>> forwardedClient(std::span<const std::string_view> lines,

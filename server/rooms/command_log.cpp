@@ -116,7 +116,8 @@ core::Result<std::unique_ptr<CommandLogReader>> CommandLogReader::open(const std
   std::array<char, kMagic.size()> magic{};
   self->in_.read(magic.data(), magic.size());
   if (!self->in_.good() || std::string_view(magic.data(), magic.size()) != kMagic) {
-    return Error{ErrorCode::kInvalidInput, file.string() + " is no log of a room: it does not begin with \"spinrec1\""};
+    return Error{ErrorCode::kInvalidInput,
+                 file.string() + " is not a log of a room: it does not begin with \"spinrec1\""};
   }
   self->offset_bytes_ = magic.size();
   const auto first = self->next();

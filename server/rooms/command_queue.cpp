@@ -29,16 +29,16 @@ bool setsTheSame(const v1::Command& a, const v1::Command& b) {
 std::optional<std::string> CommandQueue::tryPush(Command command, TimePoint now) {
   const std::lock_guard lock(mutex_);
   if (count_ >= bounds_.max_count)
-    return fmt::format("{} commands wait for this room, as many as may: try again", bounds_.max_count);
+    return fmt::format("the queue of this room is full ({} commands): try again", bounds_.max_count);
   const LaneKey key = keyOf(command.sender);
   Lane& lane = lanes_[key];
   const bool is_heavy = isHeavy(command);
   if (lane.entries.size() >= bounds_.lane_max_count)
-    return fmt::format("{} of your commands wait, as many as may: try again when they are answered",
+    return fmt::format("your limit of {} waiting commands is reached: try again when they are answered",
                        bounds_.lane_max_count);
   if (is_heavy && lane.heavy_count >= bounds_.lane_heavy_max_count)
     return fmt::format(
-        "{} of your resets, scenes, parameters and boats wait, as many as may: try again when they are answered",
+        "your limit of {} waiting resets, scenes, parameters and boats is reached: try again when they are answered",
         bounds_.lane_heavy_max_count);
   if (lane.entries.empty()) turns_.push_back(key);
   lane.entries.push_back({std::move(command), now});

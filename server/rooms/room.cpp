@@ -69,7 +69,7 @@ core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_pt
   std::unique_ptr<CommandLogWriter> log;
   if (!rules.record_folder.empty() && place.kept) {
     spdlog::warn(
-        "room {}: is not recorded, because it goes on from its state on disk, and a log has to begin with a scene",
+        "room {}: is not recorded, because it continues from its state on disk, and a log has to begin with a scene",
         name);
   } else if (!rules.record_folder.empty()) {
     v1::RecordHeader header;

@@ -1,5 +1,5 @@
-// The fidelity of a room: the same water goes on at another level, because a person asks for it or because the machine
-// cannot keep up (`serve --adapt`). Like a new scene, the new water is built while the old one runs.
+// The fidelity of a room: the same water continues at another level, because a person asks for it or because the
+// machine cannot keep up (`serve --adapt`). Like a new scene, the new water is built while the old one runs.
 #include <limits>
 
 #include <fmt/format.h>

@@ -1,4 +1,4 @@
-// The state of a room on disk: what it writes while it runs, and how it goes on from there after a restart.
+// The state of a room on disk: what it writes while it runs, and how it continues from there after a restart.
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -183,7 +183,7 @@ void Room::restorePeople(const KeptRoom& kept) {
   publishSnapshot();
   publishVitals({});
   const auto when = std::chrono::system_clock::time_point(std::chrono::milliseconds(state.saved_at_ms()));
-  spdlog::info("room {}: goes on at tick {} of scene {}, {} ticks and {} records after its snapshot of {:%F %T} UTC",
+  spdlog::info("room {}: continues at tick {} of scene {}, {} ticks and {} records after its snapshot of {:%F %T} UTC",
                name_, tick(), water_->scene().name(), tick() - state.tick(), kept.records.size(),
                fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
 }
@@ -234,7 +234,7 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   restartScene(true);
   boatsChanged();
   // Ticks have gone on since the snapshot without the log saying so.
-  keeper_->openGap("the room went on after its device failed, and no snapshot says so yet");
+  keeper_->openGap("the room continued after its device failed, and no snapshot says so yet");
   return true;
 }
 

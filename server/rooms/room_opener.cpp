@@ -57,7 +57,7 @@ core::Result<void> RoomOpener::choose(Opening& opening, std::uint64_t before) {
 core::Result<bool> RoomOpener::restore(Opening& opening, TimePoint deadline) {
   while (true) {
     auto done = tryRestore(opening, deadline);
-    // A full disk or a device that fails is no reason to give up what is there.
+    // A full disk or a device that fails is not a reason to give up what is there.
     if (done || done.error().code != ErrorCode::kInvalidInput || opening.generation == 0) return done;
     if (opening.room) opening.room->releaseDevice();
     opening.room.reset();
@@ -66,10 +66,10 @@ core::Result<bool> RoomOpener::restore(Opening& opening, TimePoint deadline) {
     const std::uint64_t refused = opening.generation;
     if (auto chosen = choose(opening, refused); !chosen) return chosen.error();
     if (opening.generation > 0) {
-      spdlog::error("room {}: it cannot go on from its snapshot {}: {}; it goes on from snapshot {}", name, refused,
-                    done.error().message, opening.generation);
+      spdlog::error("room {}: it cannot continue from its snapshot {}: {}; it continues from snapshot {}", name,
+                    refused, done.error().message, opening.generation);
     } else {
-      spdlog::error("room {}: it cannot go on from its snapshot {}: {}; it begins anew with scene {}", name, refused,
+      spdlog::error("room {}: it cannot continue from its snapshot {}: {}; it begins anew with scene {}", name, refused,
                     done.error().message, opening.setup.scene.name());
     }
   }

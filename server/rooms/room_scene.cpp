@@ -130,7 +130,7 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
   }
   const bool is_restored = restoreAfterLoss(*water);
   if (!is_restored) replaceWater(*std::move(water));
-  news_.rebuilt = is_restored ? "the device failed; the room goes on where it was, on a new one"
+  news_.rebuilt = is_restored ? "the device failed; the room continues where it was, on a new one"
                               : "the device failed; the scene began again on a new one";
   publishVitals(now);
   spdlog::warn("room {}: runs again, scene {} {}", name_, water_->scene().name(),

@@ -342,7 +342,7 @@ void SimulationThread::loop() {
   const auto saved_until = Clock::now() + rules_.disk_patience;
   for (const auto& room : rooms_) {
     if (auto kept = room->saveUntil(saved_until); !kept)
-      spdlog::error("room {}: it ends without a last snapshot: {}; it goes on from the one before and its log",
+      spdlog::error("room {}: it ends without a last snapshot: {}; it continues from the one before and its log",
                     room->name(), kept.error().message);
     summarise(*room);
     room->releaseDevice();

@@ -21,7 +21,7 @@ bool parse(Message& message, core::ByteView bytes) {
   return message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()));
 }
 
-/// Records after the first one that is no message are not used: each changes what the later ones mean.
+/// Records after the first one that is not a message are not used: each changes what the later ones mean.
 std::vector<v1::StateRecord> parseRecords(const std::string& room, const std::vector<state::RoomFiles::Log>& logs) {
   std::vector<v1::StateRecord> out;
   for (const state::RoomFiles::Log& log : logs) {
@@ -39,14 +39,14 @@ std::vector<v1::StateRecord> parseRecords(const std::string& room, const std::ve
   return out;
 }
 
-/// Returns why the room cannot go on from the snapshot, or an empty string.
+/// Returns why the room cannot continue from the snapshot, or an empty string.
 std::string read(core::ByteView snapshot, const std::string& room, v1::KeptState& state) {
-  if (!parse(state, snapshot)) return "it is no state of a room, or of another version of this program";
+  if (!parse(state, snapshot)) return "it is not a state of a room, or of another version of this program";
   if (state.room() == room) return "";
   return "it is of the room '" + core::cleanText(state.room(), core::kRoomNameMaxBytes) + "'";
 }
 
-/// Names the folders that are no rooms, once.
+/// Names the folders that are not rooms, once.
 void warnAboutNames(const std::filesystem::path& folder) {
   const auto listed = state::listRooms(folder);
   if (!listed) return;

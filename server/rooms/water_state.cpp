@@ -17,7 +17,7 @@ std::string bytesOf(const std::vector<std::uint32_t>& words) {
   return {reinterpret_cast<const char*>(words.data()), words.size() * sizeof(std::uint32_t)};
 }
 
-/// Returns false if the bytes are no whole words.
+/// Returns false if the bytes are not whole words.
 bool readWords(const std::string& bytes, std::vector<std::uint32_t>& words) {
   if (bytes.size() % sizeof(std::uint32_t) != 0) return false;
   words.resize(bytes.size() / sizeof(std::uint32_t));

@@ -57,7 +57,8 @@ void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) 
     const std::string& name = scene.gauges(i).name();
     const std::string shown = "\"" + core::quoteText(name, kGaugeNameMaxBytes) + "\"";
     if (!isGaugeName(name)) {
-      addRange(issues, indexed("gauges", i) + ".name", shown + " is no name; use 1 to 32 letters, digits, '_' and '-'");
+      addRange(issues, indexed("gauges", i) + ".name",
+               shown + " is not a name; use 1 to 32 letters, digits, '_' and '-'");
     } else if (!names.insert(name).second) {
       addRange(issues, indexed("gauges", i) + ".name", shown + " names an earlier gauge, too; choose another name");
     }

@@ -53,7 +53,7 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
     for (const float depth_m : row) {
       if (!(depth_m >= -kLandMax_m && depth_m <= kDepthMax_m)) {
         return addRange(issues, path,
-                        core::formatNumber(depth_m) + " is no depth; choose " + core::formatNumber(-kLandMax_m) +
+                        core::formatNumber(depth_m) + " is not a depth; choose " + core::formatNumber(-kLandMax_m) +
                             " to " + core::formatQuantity(kDepthMax_m, "m"));
       }
       depths_m.push_back(depth_m);

@@ -30,7 +30,7 @@ core::Result<fs::path> fileInFolder(const std::optional<fs::path>& folder, const
   const auto invalid = [](std::string message) {
     return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
   };
-  if (!folder) return invalid("cannot be read, because this scene is no file; give " + instead + " instead");
+  if (!folder) return invalid("cannot be read, because this scene is not a file; give " + instead + " instead");
   if (const std::string why = leavesFolder(*folder, name); !why.empty())
     return invalid(why + "; put the file into the folder of the scene file");
   return *folder / name;

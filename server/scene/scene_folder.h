@@ -10,7 +10,7 @@
 namespace spindrift::scene {
 
 /// Returns where a file lies that a scene names: in the folder of the scene or below, links followed. `folder`: nullopt
-/// for scenes that are no files; `instead` says what those give in place of a name. Error: kInvalidInput.
+/// for scenes that are not files; `instead` says what those give in place of a name. Error: kInvalidInput.
 core::Result<std::filesystem::path> fileInFolder(const std::optional<std::filesystem::path>& folder,
                                                  const std::filesystem::path& name, const std::string& instead);
 

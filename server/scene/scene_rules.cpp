@@ -58,7 +58,7 @@ void checkText(const std::string& text, std::size_t max_bytes, const std::string
   for (std::size_t at = 0; at < text.size();) {
     const std::size_t length = core::utf8SequenceLength(text, at);
     if (length == 0) {
-      addRange(issues, path, "byte " + std::to_string(at) + " is no UTF-8; save the file as UTF-8");
+      addRange(issues, path, "byte " + std::to_string(at) + " is not UTF-8; save the file as UTF-8");
       return;
     }
     at += length;
@@ -213,7 +213,7 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
     addRange(
         issues, "name",
         "\"" + core::quoteText(scene.name(), kNameMaxBytes) +
-            "\" is no name; use 1 to 64 letters, digits, '_' and '-' (the file's name counts where it is left out)");
+            "\" is not a name; use 1 to 64 letters, digits, '_' and '-' (the file's name counts where it is left out)");
   }
   checkText(scene.title(), kTitleMaxBytes, "title", issues);
   checkText(scene.description(), kDescriptionMaxBytes, "description", issues);

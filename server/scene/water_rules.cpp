@@ -258,7 +258,7 @@ void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues) {
     const double whole = std::floor(width_m / cells.cell_m);
     const std::string less = whole > 0 ? metres(whole * cells.cell_m) + " or " : "";
     addRange(issues, "wave.width_m",
-             metres(width_m) + " is no whole number of cells: side_m and resolution_count make them " +
+             metres(width_m) + " is not a whole number of cells: side_m and resolution_count make them " +
                  metres(cells.cell_m) + " wide; choose " + less + metres((whole + 1) * cells.cell_m) +
                  ", or another resolution_count");
   }

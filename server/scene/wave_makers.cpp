@@ -78,7 +78,7 @@ void checkSeries(const v1::ElevationSeries& series, double depth_m, const std::s
     const std::string at = "[" + std::to_string(k) + "]";
     if (!(time_s >= 0.0 && time_s <= kSeriesMaxTime_s)) {
       return addRange(issues, path + ".time_s" + at,
-                      core::formatQuantity(time_s, "s") + " is no time of a series; choose 0 to " +
+                      core::formatQuantity(time_s, "s") + " is not a time of a series; choose 0 to " +
                           core::formatQuantity(kSeriesMaxTime_s, "s"));
     }
     if (k > 0 && time_s <= series.time_s(k - 1)) {
@@ -141,7 +141,7 @@ void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder
     double time_s = 0.0, elevation_m = 0.0;
     if (!readRow(line, time_s, elevation_m)) {
       return refuse("line " + std::to_string(number) + ": \"" + core::quoteText(whole, kLineEchoMaxBytes) +
-                    "\" is no row; give a time in seconds and an elevation in metres, both finite numbers");
+                    "\" is not a row; give a time in seconds and an elevation in metres, both finite numbers");
     }
     if (series.time_s_size() == kSceneSeriesRowMaxCount) {
       return refuse("has more than " + std::to_string(kSceneSeriesRowMaxCount) + " rows; give fewer");

@@ -7,7 +7,7 @@
 namespace spindrift::service {
 namespace {
 
-/// Nullopt for a role that is none.
+/// Nullopt for an unknown role.
 std::optional<core::Role> fromWire(v1::Role role) {
   switch (role) {
     case v1::ROLE_VIEWER:

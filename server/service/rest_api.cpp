@@ -183,7 +183,7 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   auto tokens = makeTokens(*wanted);
   if (!tokens) return respond(problem(422, tokens.error().message));
   if (!rooms_->rules().scenes.has(wanted->scene())) {
-    return respond(problem(404, "scene: there is none of that name; /api/v1/scenes lists what there is"));
+    return respond(problem(404, "scene: there is no scene of that name; /api/v1/scenes lists all"));
   }
   if (!v1::Fidelity_IsValid(wanted->fidelity())) return respond(problem(422, "fidelity: no level of that number"));
   const auto fidelity =

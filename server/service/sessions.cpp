@@ -117,7 +117,7 @@ void Sessions::drain(const v1::Draining& draining) {
 }
 
 void Sessions::displace(net::SessionId session) {
-  refuse(session, net::CloseCode::kResumedElsewhere, "another connection goes on in your place");
+  refuse(session, net::CloseCode::kResumedElsewhere, "another connection continues in your place");
 }
 
 void Sessions::refuse(net::SessionId session, net::CloseCode code, const std::string& why) {

@@ -1,4 +1,4 @@
-// WaterSim: another simulation of the same water goes on where this one is.
+// WaterSim: another simulation of the same water continues where this one is.
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +29,7 @@ CarriedState WaterSim::carriedState() {
 core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
   if (!isSameWater(carried.scene, scene_)) {
     return core::Error{core::ErrorCode::kInvalidInput,
-                       "scene " + scene_.name + ": its sides, bed or parts differ, so it cannot go on from there"};
+                       "scene " + scene_.name + ": its sides, bed or parts differ, so it cannot continue from there"};
   }
   const ResampledState resampled = resampleState(carried, scene_, derived_);
   setState(resampled.state);

@@ -78,9 +78,9 @@ struct WaterSim::Parts {
     return {derived.particles->count, derived.particles->cell_count, pool.get()};
   }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
-  /// What the watchdog restores; boats and the pressure of the last tick go on as they are.
+  /// What the watchdog restores; boats and the pressure of the last tick continue as they are.
   std::vector<gpu::Buffer*> checkpointBuffers();
-  /// All whose content goes on from one tick to the next.
+  /// All whose content continues from one tick to the next.
   std::vector<gpu::Buffer*> lastingBuffers();
   core::Result<void> makeCheckpoints(gpu::Context& ctx);
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);

@@ -1,4 +1,4 @@
-// WaterSim: its whole state as plain values, and a simulation of the same scene that goes on from there bit for bit.
+// WaterSim: its whole state as plain values, and a simulation of the same scene that continues from there bit for bit.
 #include <algorithm>
 #include <cstring>
 
@@ -58,7 +58,7 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   const auto differs = [&](const std::string& what) {
     return core::Error{core::ErrorCode::kInvalidInput,
                        fmt::format("scene {}: the saved state is of another version of this scene or program: {}; it "
-                                   "cannot go on from there",
+                                   "cannot continue from there",
                                    scene_.name, what)};
   };
   if (saved.particles != derived_.particles) {

@@ -30,14 +30,15 @@ class WindSea {
   /// The sea to fade to: from the next step on, or after a fade in progress.
   void fadeTo(SeaState sea);
 
-  /// The water's depth or gravity has changed at `time_s`: the waves that come in go on in the water that there is now.
+  /// The water's depth or gravity has changed at `time_s`: the waves that come in continue in the water that there is
+  /// now.
   void continueIn(const core::Scene& scene, double time_s);
 
   /// What carries on in another simulation of the same water, and its continuation there: call takeOver() after
-  /// clear() and fadeTo(), with the scene's time going on.
+  /// clear() and fadeTo(), with the scene's time continuing.
   [[nodiscard]] CarriedSea carried() const;
   void takeOver(const CarriedSea& carried);
-  /// Goes on exactly from there, with the content of incident() and after so many steps.
+  /// Continues exactly from there, with the content of incident() and after so many steps.
   void resume(const CarriedSea& carried, std::uint64_t step_count) {
     takeOver(carried);
     step_count_ = step_count;

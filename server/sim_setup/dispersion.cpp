@@ -133,7 +133,7 @@ std::vector<CellCounts> dispersionGrids(const WaveLayout& layout) {
   CellCounts n = layout.counts();
   while (true) {
     const bool is_small = n.x <= kCoarsestSideCount && n.z <= kCoarsestSideCount;
-    // Where only one axis is odd, going on is more accurate than the sweeps of a coarsest grid that is long.
+    // Where only one axis is odd, continuing is more accurate than the sweeps of a coarsest grid that is long.
     const bool is_stuck = (layout.is_periodic_x && isOdd(n.x)) || (layout.is_periodic_z && isOdd(n.z));
     const bool ends_odd =
         out.size() >= kLeastOdd && (is_stuck || (isOdd(n.x) && isOdd(n.z))) && n.total() <= kBottomCells;

@@ -184,7 +184,7 @@ std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_
   const double rise_z = (groundDepth(scene, x_m, z_m - step_m) - groundDepth(scene, x_m, z_m + step_m)) / (2 * step_m);
   const double slope = std::hypot(rise_x, rise_z);
   if (slope <= 0) return std::nullopt;
-  // Where the ground would come out of the water if it went on with this slope.
+  // Where the ground would come out of the water if it continued with this slope.
   const double way_m = here_m / slope;
   const double top_m = groundDepth(scene, x_m + rise_x / slope * way_m, z_m + rise_z / slope * way_m);
   return top_m < kLandShare * here_m ? std::optional(slope) : std::nullopt;
@@ -195,10 +195,11 @@ core::Result<void> checkGround(const core::Scene& scene) {
   if (const auto& grid = scene.bed->grid) {
     const std::size_t wanted = std::size_t{grid->columns_count} * grid->rows_count;
     if (grid->columns_count < 2 || grid->rows_count < 2 || !grid->depths_m || grid->depths_m->size() != wanted)
-      return Error{ErrorCode::kInvalidInput,
-                   fmt::format("bed.grid: {} x {} points with {} depths are no grid: give rows or a png with at least "
-                               "2 x 2 points",
-                               grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
+      return Error{
+          ErrorCode::kInvalidInput,
+          fmt::format("bed.grid: {} x {} points with {} depths are not a grid: give rows or a png with at least "
+                      "2 x 2 points",
+                      grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
   }
   const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
   if (deepestPossible(scene) <= limit_m) return {};

@@ -59,11 +59,12 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
   const core::WaveCells cells = w.cells();
   if (!core::widthFits(cells, w.width_m))
-    return invalid(fmt::format(
-        "wave.width_m: {:.6g} m is no whole number of the cells of {:.6g} m that side_m and resolution_count make: use "
-        "{:.6g} or {:.6g} m, or another resolution_count",
-        w.width_m, cells.cell_m, std::max(std::floor(w.width_m / cells.cell_m), 1.0) * cells.cell_m,
-        (std::floor(w.width_m / cells.cell_m) + 1) * cells.cell_m));
+    return invalid(
+        fmt::format("wave.width_m: {:.6g} m is not a whole number of the cells of {:.6g} m that side_m and "
+                    "resolution_count make: use "
+                    "{:.6g} or {:.6g} m, or another resolution_count",
+                    w.width_m, cells.cell_m, std::max(std::floor(w.width_m / cells.cell_m), 1.0) * cells.cell_m,
+                    (std::floor(w.width_m / cells.cell_m) + 1) * cells.cell_m));
   if (cells.count.z > core::kWaveMaxSideCount || cells.count.total() > core::kWaveMaxCellCount)
     return invalid(fmt::format(
         "wave.resolution_count: {} x {} cells are more than {} along an axis or {} in all: use fewer, or a smaller "

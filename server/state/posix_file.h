@@ -1,5 +1,5 @@
-// Files and folders through POSIX calls: interrupted and short calls go on, and an error names the file, the reason and
-// what to do.
+// Files and folders through POSIX calls: interrupted and short calls continue, and an error names the file, the reason
+// and what to do.
 #pragma once
 
 #include <cstdint>

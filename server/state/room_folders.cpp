@@ -40,7 +40,7 @@ core::Result<void> removeTree(const fs::path& path) {
 core::Result<fs::path> roomFolder(const fs::path& folder, const std::string& name) {
   if (core::isRoomName(name)) return roomsOf(folder) / name;
   return core::Error{core::ErrorCode::kInvalidInput, "'" + core::cleanText(name, 4 * core::kRoomNameMaxBytes) +
-                                                         "' is no name of a room: it has " +
+                                                         "' is not a name of a room: it has " +
                                                          std::string(core::kRoomNameRule)};
 }
 

@@ -152,6 +152,7 @@ def trade_charts(results):
                 levels.append(point)
             else:
                 changes.append(point if row["on_front"] else dataclasses.replace(point, label=""))
+        # Another seed is among the settings that are changed one at a time.
         if len(scenes) > 1 and not any(row["knob"] == "seed" for row in scene["rows"]):
             continue
         front.sort(key=lambda point: point.x)

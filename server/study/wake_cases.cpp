@@ -277,11 +277,18 @@ Outcome shallowWake(gpu::Context& ctx, bool quick) {
 }
 
 LevelError wakeError(gpu::Context& ctx, const LevelScale& level) {
-  const double cell_m = 0.125 / level.cells;
   // The exact solution takes a power of two: the water is at least as wide as 15 m of track and the wake need.
   const std::uint32_t side_count = level.cells > 1 ? 512 : level.cells < 1 ? 128 : 256;
-  const auto wake =
-      sail(ctx, {2.2, 2.0, cell_m, 2.0, 0.8, 6.0, 15.0, side_count, 60.0 * level.ticks, /*substeps_count=*/0});
+  const auto wake = sail(ctx, {.speed_mps = 2.2,
+                               .depth_m = 2.0,
+                               .cell_m = 0.125 / level.cells,
+                               .length_m = 2.0,
+                               .beam_m = 0.8,
+                               .start_m = 6.0,
+                               .distance_m = 15.0,
+                               .side_count = side_count,
+                               .tick_rate_hz = 60.0 * level.ticks,
+                               .substeps_count = 0});
   if (!wake) return wake.error();
   return relativeDifference(*wake, behind(*wake, 0.5, 14.0));
 }

@@ -40,7 +40,7 @@ std::string inOurWords(const std::string& reason) {
 
 /// Returns an empty string, or the reason why the text is not such a message.
 std::string readJson(std::string_view json, google::protobuf::Message& out) {
-  const std::string what = "the body is no JSON of spindrift.v1." + out.GetDescriptor()->name() + ": ";
+  const std::string what = "the body is not JSON of spindrift.v1." + out.GetDescriptor()->name() + ": ";
   if (const auto why = checkJson(json, *out.GetDescriptor())) return what + *why;
   try {
     const google::protobuf::LogSilencer silencer;

@@ -53,7 +53,7 @@ std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
   if (command.has_change_scene() && !scene::isSceneName(command.change_scene().name())) {
     return CommandRejection{id, v1::REJECT_REASON_UNKNOWN_SCENE, "change_scene.name",
                             "\"" + core::cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
-                                "\" is no scene; the greeting lists what there is"};
+                                "\" is not a scene; the greeting lists what there is"};
   }
   command.DiscardUnknownFields();
   return command;
@@ -64,7 +64,7 @@ namespace {
 ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
   if (!v1::Layer_IsValid(subscribe.layer()) || subscribe.layer() == v1::LAYER_UNSPECIFIED) {
     return Malformed{"subscribe.layer: " + std::to_string(subscribe.layer()) +
-                     " is no layer; the greeting lists the room's layers"};
+                     " is not a layer; the greeting lists the room's layers"};
   }
   if (!v1::Packing_IsValid(subscribe.packing())) {
     return Malformed{"subscribe.packing: " + std::to_string(subscribe.packing()) +
@@ -73,7 +73,7 @@ ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
   const std::optional<core::Level> level = codec::fromWire(subscribe.level());
   if (!level) {
     return Malformed{"subscribe.level: " + std::to_string(subscribe.level()) +
-                     " is no level; full (0), coarse (1), medium (2) and fine (3) are"};
+                     " is not a level; full (0), coarse (1), medium (2) and fine (3) are"};
   }
   std::vector<scene::FieldIssue> issues;
   scene::checkFields(subscribe, "subscribe.", issues);

@@ -128,7 +128,7 @@ void start(int first, ivec2 n) {
   FOR_EACH(i, n.x * n.y) phi[first + i] = texelFetch(sweep_weight, first + i) * rightAt(first, i);
 }
 
-// Each step down or up is one turn of the same loop, and its bounds are no constants: otherwise the compiler repeats all of
+// Each step down or up is one turn of the same loop, and its bounds are not constants: otherwise the compiler repeats all of
 // the above for each grid.
 void main() {
   int first = 0;

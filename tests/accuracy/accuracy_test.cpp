@@ -64,7 +64,7 @@ TEST(Row, JudgesByItsOwnMeasure) {
   wrong.measured = 0.65;
   EXPECT_TRUE(wrong.passes());
   wrong = {"n", "", std::numeric_limits<double>::quiet_NaN(), 0.0, Tolerance::kNone, 0.0, ""};
-  EXPECT_FALSE(wrong.passes()) << "a number that is none never passes";
+  EXPECT_FALSE(wrong.passes()) << "what is not a number never passes";
 }
 
 }  // namespace

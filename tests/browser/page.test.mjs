@@ -222,7 +222,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await acknowledged(page, () => page.getByTestId("pause").click());
     const resumed = await waitFor(other, "the other page to hear of the end of the pause", (stats) => stats.paused === false);
     assert.ok(await other.getByTestId("step").isDisabled(), "a running room can be stepped");
-    await waitFor(other, "time to go on", (stats) => stats.simTime > resumed.simTime);
+    await waitFor(other, "time to continue", (stats) => stats.simTime > resumed.simTime);
 
     for (const target of [page, other]) await target.locator("#parameters-box > summary").click();
     const slider = (target) => target.getByRole("slider", { name: /viscosity/i });
@@ -323,7 +323,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await waitFor(page, "a full surface", (stats) => stats.surfaceResolutionCount === 144);
   });
 
-  step("goes on with the water at another fidelity, with its view and sliders", async () => {
+  step("continues with the water at another fidelity, with its view and sliders", async () => {
     const before = await statsOf(page);
     const viscosity = page.getByRole("slider", { name: /viscosity/i });
     const chosenViscosity = await viscosity.inputValue();

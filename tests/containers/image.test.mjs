@@ -136,7 +136,7 @@ describe("the image", { skip: problem() }, () => {
     assert.match(info.stdout, /llvmpipe/);
   });
 
-  it("serves: healthy, frames and a splash for a client, code 0 and a snapshot at SIGTERM, and goes on from there", { timeout: 4 * START_LIMIT_MS }, async (context) => {
+  it("serves: healthy, frames and a splash for a client, code 0 and a snapshot at SIGTERM, and continues from there", { timeout: 4 * START_LIMIT_MS }, async (context) => {
     port = await freePort();
     writeFileSync(join(root, "tmp/splash.textproto"), readFileSync(join(repository, "tests/containers/splash.textproto")), { mode: 0o644 });
     assert.equal(healthcheck().status, 1, "healthy without a server");
@@ -160,7 +160,7 @@ describe("the image", { skip: problem() }, () => {
     try {
       const again = run([...config.Entrypoint, "script", "--url", `ws://127.0.0.1:${port}`, "/tmp/splash.textproto"]);
       assert.equal(again.status, 0, again.stdout + again.stderr);
-      assert.match(second.words(), /room main: goes on at tick \d+ of scene/);
+      assert.match(second.words(), /room main: continues at tick \d+ of scene/);
     } finally {
       assert.deepEqual((await second.stop()).end, { code: 0, signal: null }, second.words());
     }

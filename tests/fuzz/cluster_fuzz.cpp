@@ -58,7 +58,7 @@ void tryParts(core::ByteView input) {
     const auto message = collector.take(part, lost);
     must(lost <= lost_before + 1, "a part costs at most one message");
     if (!head) {
-      must(!message && lost == lost_before + 1, "bytes that are no part are counted and complete nothing");
+      must(!message && lost == lost_before + 1, "bytes that are not a part are counted and complete nothing");
       continue;
     }
     core::Bytes again(bus::kPartHeadBytes);

@@ -288,7 +288,7 @@ P256_BASE = bytes.fromhex(
 
 
 def certificate(ends=b"300101000000Z", name=b"localhost", names=b"\x82\x09localhost"):
-    """A certificate for the private key 1, valid from 2020 to 2030, with a signature that is none: nobody checks it."""
+    """A certificate for the private key 1, valid from 2020 to 2030, with an invalid signature: nobody checks it."""
     ecdsa_sha256 = der(0x30, bytes.fromhex("06082a8648ce3d040302"))
     subject = der(0x30, der(0x31, der(0x30, bytes.fromhex("0603550403"), der(0x0C, name))))
     times = der(0x30, der(0x17, b"200101000000Z"), der(0x17, ends))

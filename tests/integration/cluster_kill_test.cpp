@@ -1,4 +1,4 @@
-// kill -9 of the server that runs the rooms of a cluster, at random moments under load: another server goes on with
+// kill -9 of the server that runs the rooms of a cluster, at random moments under load: another server continues with
 // them, nothing that clients behind an edge had acknowledged is lost, and the rooms are what snapshot and log give,
 // bit for bit. SPINDRIFT_CLUSTER_KILLS is the number of kills, SPINDRIFT_KILL_SEED their random seed,
 // SPINDRIFT_KILL_KEEP a new folder for the files of a failed test.
@@ -38,7 +38,7 @@ class ClusterKill : public ClusterTest {
     std::size_t in_log_count = 0;
     std::size_t before_snapshot_count = 0;
     std::size_t record_count = 0;  ///< carried out again for the comparisons
-    std::size_t room_count = 0;    ///< that went on at another server as the test restored them, twice
+    std::size_t room_count = 0;    ///< that continued at another server as the test restored them, twice
     std::size_t person_count = 0;
     std::size_t boat_count = 0;
     double longest_takeover_s = 0.0;  ///< from the kill to the last room's first snapshot elsewhere
@@ -231,7 +231,8 @@ class ClusterKill : public ClusterTest {
     std::printf(
         "%zu kills of the server of %zu rooms (%zu not compared, because the other server was faster than the copy): "
         "of %zu acknowledged commands %zu were found in the logs and %zu are older than the kept snapshots; of %zu it "
-        "is not known; %zu rooms went on elsewhere, equal bit for bit to two restorations with %zu records carried out "
+        "is not known; %zu rooms continued elsewhere, equal bit for bit to two restorations with %zu records carried "
+        "out "
         "again; %zu people resumed with %zu boats; at most %.2f s from the kill to the last room's first snapshot\n",
         totals_.kill_count, kRooms.size(), totals_.late_count, totals_.acknowledged_count, totals_.in_log_count,
         totals_.before_snapshot_count, totals_.unknown_count, totals_.room_count, totals_.record_count,

@@ -15,7 +15,7 @@
 
 namespace spindrift::test {
 
-/// Removes the newest snapshot of each room that has several: the rooms then go on from an older one with more logs.
+/// Removes the newest snapshot of each room that has several: the rooms then continue from an older one with more logs.
 void removeNewestSnapshots(const std::filesystem::path& state_folder);
 
 /// Numbers of a room's snapshots, ascending.

@@ -62,7 +62,7 @@ TEST_F(KeptServerTest, DoesNotStartWhileTheDiskIsFullAndLosesNothingByIt) {
   }
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "aside"));
   SetUp();
-  EXPECT_EQ(client().greeting().room_state().speed(), 0.5) << "the room goes on where it was";
+  EXPECT_EQ(client().greeting().room_state().speed(), 0.5) << "the room continues where it was";
 }
 
 /// Writes a snapshot of the room that is newer than all others. What it says is `content`, or, if that is empty, what

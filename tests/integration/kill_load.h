@@ -78,7 +78,7 @@ class Player {
 
   /// Connects to its room and resumes its person there; false if that did not work.
   bool connect(std::uint16_t port, const Ledger& ledger);
-  /// Sends commands until the connection ends; a wanderer goes on in another room until `is_over`.
+  /// Sends commands until the connection ends; a wanderer continues in another room until `is_over`.
   void play(std::uint16_t port, Ledger& ledger, std::mt19937 random, const std::atomic<bool>& is_over);
 
   [[nodiscard]] ScriptedClient& client() { return *client_; }

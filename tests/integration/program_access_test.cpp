@@ -369,7 +369,7 @@ TEST_F(ProgramAccess, NoLogContainsAToken) {
   std::ifstream in(path("audit.jsonl"));
   const std::string audit_log(std::istreambuf_iterator<char>(in), {});
   EXPECT_THAT(audit_log, HasSubstr("refused"));
-  // Parts, too: a log may cut a token. The header of a JWT is no secret and says little.
+  // Parts, too: a log may cut a token. The header of a JWT is not a secret and says little.
   constexpr std::size_t kPartBytes = 12;
   for (const std::string& token : tokens) {
     const std::size_t begin = token.find('.') == std::string::npos ? 0 : token.find('.') + 1;

@@ -97,7 +97,7 @@ TEST_F(InheritedSocketOfServe, OtherThanOneListeningTcpSocketIsRefusedWithTheRea
   const LoopbackSocket socket;
   expectRefusal(*start(socket.descriptor(), "2"), {"LISTEN_FDS is \"2\"", "exactly 1", "ListenStream"});
   expectRefusal(*start(socket.descriptor(), "one"), {"LISTEN_FDS is \"one\"", "exactly 1"});
-  expectRefusal(*start(-1, "1"), {"descriptor 3", "is no socket", "ListenStream"});
+  expectRefusal(*start(-1, "1"), {"descriptor 3", "is not a socket", "ListenStream"});
   const LoopbackSocket bound(LoopbackSocket::State::kBound);
   expectRefusal(*start(bound.descriptor(), "1"), {"descriptor 3", "does not listen"});
   int pair[2];

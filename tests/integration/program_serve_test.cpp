@@ -141,12 +141,13 @@ TEST_F(Serve, ReportsABadSceneWithFileLineAndColumn) {
 }
 
 TEST_F(Serve, RoomWithoutASceneIsRefusedWithTheForm) {
-  expectOneErrorLine(runProgram(arguments({"--room", "pond"})), 2, {"--room", "pond is no room", "NAME=SCENE"});
-  expectOneErrorLine(runProgram(arguments({"--room", "pond="})), 2, {"--room", "pond= is no room", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "pond"})), 2, {"--room", "pond is not a room", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "pond="})), 2, {"--room", "pond= is not a room", "NAME=SCENE"});
 }
 
 TEST_F(Serve, RoomWithoutANameIsRefusedWithTheForm) {
-  expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2, {"--room", "=default is no room", "NAME=SCENE"});
+  expectOneErrorLine(runProgram(arguments({"--room", "=default"})), 2,
+                     {"--room", "=default is not a room", "NAME=SCENE"});
 }
 
 TEST_F(Serve, NamesAnInvalidRoomName) {

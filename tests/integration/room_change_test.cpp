@@ -35,7 +35,7 @@ TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
   ASSERT_TRUE(runUntil([&] { return outlets_.applied.size() == 3; }));
   EXPECT_THAT(outlets_.applied, ElementsAre(100, 1, 2)) << "what its sender sent later waits";
   EXPECT_EQ(sceneCount(), 60000u);
-  EXPECT_TRUE(runUntil([&] { return room_->tick() >= tick + 3; })) << "time goes on";
+  EXPECT_TRUE(runUntil([&] { return room_->tick() >= tick + 3; })) << "time continues";
 }
 
 TEST_F(RoomChange, OfSeveralValuesOnlyTheLastIsLaidOut) {
@@ -58,7 +58,7 @@ TEST_F(RoomChange, EndsWithTheDeviceThatFails) {
   ASSERT_TRUE(runUntil([&] { return outlets_.scene_count == 1; }));
   EXPECT_EQ(sceneCount(), kStartCount);
   send(2, count(3000));
-  EXPECT_TRUE(runUntil([&] { return outlets_.applied.back() == 2; })) << "its sender may go on";
+  EXPECT_TRUE(runUntil([&] { return outlets_.applied.back() == 2; })) << "its sender may continue";
   EXPECT_EQ(sceneCount(), 3000u);
 }
 
@@ -93,7 +93,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
   EXPECT_THAT(outlets_.applied, ElementsAre(100, kValueCount + 1)) << "what the sender sent later comes after them";
   ASSERT_EQ(outlets_.rejected_ids.size(), kValueCount);
   for (std::uint64_t id = 1; id <= kValueCount; ++id) EXPECT_EQ(outlets_.rejected_ids[id - 1], id);
-  EXPECT_GT(room_->tick(), tick + 1) << "ticks go on in between";
+  EXPECT_GT(room_->tick(), tick + 1) << "ticks continue in between";
 }
 
 TEST_F(RoomValues, ThatWaitAreAnsweredWhenTheRoomCloses) {

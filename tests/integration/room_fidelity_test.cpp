@@ -1,4 +1,4 @@
-// The fidelity of a running room: the same water goes on at another level, for a person and where the machine cannot
+// The fidelity of a running room: the same water continues at another level, for a person and where the machine cannot
 // keep up.
 #include <spindrift/rooms/replay.h>
 #include <spindrift/scene/fidelity.h>
@@ -126,7 +126,7 @@ TEST_F(RoomFidelity, AFileThatIsOtherWaterNowIsRejectedAndTheRoomGoesOn) {
   send(1, level(v1::FIDELITY_DRAFT));
   ASSERT_TRUE(isAnswered(1));
   ASSERT_EQ(outlets_.rejected.size(), 1u);
-  EXPECT_THAT(outlets_.rejected[0], HasSubstr("cannot go on"));
+  EXPECT_THAT(outlets_.rejected[0], HasSubstr("cannot continue"));
   EXPECT_EQ(scene().wave().side_m(), 14.0);
   EXPECT_TRUE(runTicks(5));
   send(2, level(v1::FIDELITY_DRAFT, "lake"));

@@ -293,7 +293,7 @@ TEST_F(KeptRoomTest, GoesOnWhereItWasWhenTheDeviceFails) {
   const std::uint64_t compared = room_->tick() + 6;
   const std::uint64_t expected = hashAt(compared);
   crashAndComeBack();
-  EXPECT_EQ(hashAt(compared), expected) << "what is on disk goes on from there";
+  EXPECT_EQ(hashAt(compared), expected) << "what is on disk continues from there";
 }
 
 TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoomAgain) {

@@ -90,7 +90,7 @@ TEST_F(WaveCommands, BeforeHelloAreRejected) {
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_NO_HELLO);
   EXPECT_THAT(reject.message(), HasSubstr("hello"));
   one.hello();
-  EXPECT_TRUE(one.apply(splash())) << "the session goes on";
+  EXPECT_TRUE(one.apply(splash())) << "the session continues";
 }
 
 TEST_F(WaveCommands, OutsideOfTheSceneAreRejectedWithFieldValueAndBound) {
@@ -159,7 +159,7 @@ TEST_F(WaveCommands, PauseHoldsTheTickOfItsAck) {
     ASSERT_TRUE(frame);
     if (frame->tick() > *paused) return;
   }
-  FAIL() << "the room does not go on after a pause";
+  FAIL() << "the room does not continue after a pause";
 }
 
 TEST_F(WaveCommands, ResumeBringsFramesAtOnceHoweverLongThePause) {
@@ -206,11 +206,11 @@ TEST_F(WaveCommands, ResetRestoresTheStartForAllClientsAndKeepsParameters) {
   const auto frame = two.waitFor(
       [](const v1::ServerMessage& message) { return message.has_frame() && maxElevation_m(message.frame()) == 0.0; });
   ASSERT_TRUE(frame);
-  EXPECT_GT(frame->frame().tick(), *applied) << "ticks go on, time begins again";
+  EXPECT_GT(frame->frame().tick(), *applied) << "ticks continue, time begins again";
   EXPECT_NEAR(frame->frame().time_s(), static_cast<double>(frame->frame().tick() - *applied) / 60.0, 1e-9);
   EXPECT_EQ(client().greeting().scene().wave().damping_per_s(), 0.5);
   EXPECT_TRUE(one.apply(splash()));
-  EXPECT_TRUE(surfaceRises(two, 0.05)) << "the room goes on after a reset";
+  EXPECT_TRUE(surfaceRises(two, 0.05)) << "the room continues after a reset";
 }
 
 }  // namespace

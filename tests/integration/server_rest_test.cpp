@@ -19,7 +19,7 @@ constexpr const char* kPlayer = "player-player-player";
 
 struct Answer {
   unsigned status = 0;
-  boost::json::value json;  ///< null where the body is none
+  boost::json::value json;  ///< null where the body is not JSON
   std::string body;
 
   std::string text(const char* member) const {
@@ -288,7 +288,7 @@ TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
   const auto main_tick = tickOf("main");
   // Commands are still applied, and do not wake the room.
   EXPECT_EQ(ask("POST", "/api/v1/rooms/bay/commands", R"({"splash": {"depth_m": 0.2}})").status, 200U);
-  EXPECT_TRUE(becomes([&] { return tickOf("main") > main_tick; })) << "the others go on";
+  EXPECT_TRUE(becomes([&] { return tickOf("main") > main_tick; })) << "the others continue";
   EXPECT_EQ(tickOf("bay"), asleep_tick);
 
   ScriptedClient visitor = client("bay");

@@ -104,7 +104,7 @@ TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
   }
   const auto frame = two.waitFor(
       [](const v1::ServerMessage& m) { return m.has_frame() && m.frame().surface_fixed16().resolution_count() == 48; });
-  ASSERT_TRUE(frame) << "the subscription goes on";
+  ASSERT_TRUE(frame) << "the subscription continues";
   EXPECT_GE(frame->frame().tick(), *applied);
   EXPECT_LT(frame->frame().time_s(), 1.0 + static_cast<double>(frame->frame().tick() - *applied) / 60.0);
   EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kGreeting));

@@ -62,7 +62,7 @@ TEST_F(Watchdog, ReportsARecoveryAndTheRoomContinues) {
   ASSERT_TRUE(message);
   EXPECT_GE(message->diagnostics().recovered_count(), 1u);
   EXPECT_GT(message->diagnostics().nonfinite_count(), 0u);
-  EXPECT_TRUE(one.apply(splash(0.3, 0.5))) << "commands go on";
+  EXPECT_TRUE(one.apply(splash(0.3, 0.5))) << "commands continue";
   EXPECT_FALSE(elsewhere.hasReceived(v1::ServerMessage::kRoomEvent));
 }
 

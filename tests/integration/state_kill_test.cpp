@@ -350,7 +350,7 @@ TEST_F(StateKill, NothingAcknowledgedIsLostAndEveryRestartGoesOnBitForBit) {
   EXPECT_EQ(child_->wait(), 0) << child_->err();
   for (const auto& [name, state] : expected_) {
     EXPECT_THAT(child_->err(), testing::ContainsRegex("room " + name +
-                                                      ": goes on at tick [0-9]+ of scene [a-z_]+, 0 ticks and 0 "
+                                                      ": continues at tick [0-9]+ of scene [a-z_]+, 0 ticks and 0 "
                                                       "records after its snapshot"));
   }
 }

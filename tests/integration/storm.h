@@ -21,7 +21,7 @@ enum class Attack {
   kBoats,          ///< SpawnBoat, TakeBoat, ControlBoat and RemoveBoat
   kEverything,     ///< commands of every kind
   kConnections,    ///< connects, says hello or nothing, leaves without a word
-  kBytes,          ///< bytes that are no message
+  kBytes,          ///< bytes that are not a message
 };
 
 struct Attacker {

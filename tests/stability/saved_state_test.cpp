@@ -1,4 +1,4 @@
-// A simulation that goes on from a saved state runs bit for bit like the one that it was saved from, in every shipped
+// A simulation that continues from a saved state runs bit for bit like the one that it was saved from, in every shipped
 // scene, in the middle of random effects, boats and changes of parameters.
 #include <memory>
 #include <string>

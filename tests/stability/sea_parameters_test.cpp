@@ -67,7 +67,7 @@ class SeaParameters : public Endurance, public ::testing::WithParamInterface<std
     return true;
   }
 
-  /// The water goes on at the level `to`, with the parameters as they are.
+  /// The water continues at the level `to`, with the parameters as they are.
   void changeFidelity(const Settings& settings, v1::Fidelity to) {
     auto loaded = scene::loadSceneFile(sceneFolder() / (GetParam() + ".textproto"), to);
     ASSERT_TRUE(loaded) << loaded.error().message;

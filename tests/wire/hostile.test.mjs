@@ -76,7 +76,7 @@ describe("paths that lead outside", () => {
     }
   });
 
-  it("are no rooms, for sessions and for requests", async () => {
+  it("are not rooms, for sessions and for requests", async () => {
     const names = [...ups, "../main", "..%2fmain", "main/../main", "%2fmain", "main%00", "main%0d%0aPUB", "*", "%3e", "main.%3e", "main%20x"];
     for (const name of names) {
       for (const text of [upgrade(`/ws/${name}`), upgrade(`/ws?room=${name}`), get(`/api/v1/rooms/${name}`), head(`DELETE /api/v1/rooms/${name}`, "Connection: close")]) {
@@ -85,7 +85,7 @@ describe("paths that lead outside", () => {
     }
   });
 
-  it("are no names of new rooms or of scenes, and nothing is written for them", async () => {
+  it("are not names of new rooms or of scenes, and nothing is written for them", async () => {
     const before = readdirSync(folder, { recursive: true }).filter((name) => !name.includes("main"));
     for (const name of ["..", "../x", "/etc/x", "x/y", "x\\y", "x\0", ".x", "x.", "%2e%2e", "%252e%252e", "*", ">", "a b", "x\n", "ä", "", "x".repeat(33)]) {
       expect(await statusOf(post("/api/v1/rooms", { name, scene: "small" })), JSON.stringify(name)).toBe(422);
@@ -117,7 +117,7 @@ describe("requests that two readers would divide differently", () => {
     await expectRefused("HTTP/1.0", both("Transfer-Encoding: chunked", "Connection: keep-alive").replace("HTTP/1.1", "HTTP/1.0") + chunks);
   });
 
-  it("are refused when they have two lengths, or one that is no number", async () => {
+  it("are refused when they have two lengths, or one that is not a number", async () => {
     await expectRefused("two", both("Content-Length: 0", `Content-Length: ${hidden.length}`) + hidden);
     await expectRefused("two, swapped", both(`Content-Length: ${hidden.length}`, "Content-Length: 0") + hidden);
     for (const value of ["+2", "-2", "0x2", "2 2", "2, 3", "", "18446744073709551618"]) await expectRefused(value, both(`Content-Length: ${value}`) + `{}${hidden}`);
@@ -159,7 +159,7 @@ describe("requests that two readers would divide differently", () => {
       expect(statuses).toHaveLength(1);
       expect(closed_by).toBe("server");
     }
-    // After it: bytes of a session, which are no frames.
+    // After it: bytes of a session, which are not frames.
     const { statuses, closed_by } = await exchange(upgrade("/ws", `Content-Length: ${hidden.length}`) + hidden);
     expect(statuses).toEqual([101]);
     expect(closed_by).toBe("server"); // after the time for Hello

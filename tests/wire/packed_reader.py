@@ -61,7 +61,7 @@ GRID = {1: ("resolution_count", UINT), 2: ("side_m", DOUBLE)}
 
 
 def along_z(first):
-    """What the headers of planes that are no squares have besides; 0 is as along x."""
+    """What the headers of planes that are not squares have besides; 0 is as along x."""
     return {first: ("count_z", UINT), first + 1: ("width_m", DOUBLE)}
 
 

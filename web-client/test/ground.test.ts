@@ -62,7 +62,7 @@ describe("the ground of a scene with a bed", () => {
     expect([...groundOf(kRises).riseM]).toEqual(kRises.flat().map((rise) => 0.5 * rise));
   });
 
-  it("is refused if its size and its heights differ, or its step is no length", () => {
+  it("is refused if its size and its heights differ, or its step is not a length", () => {
     expect(readGround(bytesOf(kRises, { countX: 5 }))).toMatchObject({ reason: "ground: 8 heights for 5 x 2 cells" });
     expect(isMalformed(readGround(bytesOf(kRises, { quantumM: NaN })))).toBe(true);
     expect(isMalformed(readGround(new Uint8Array([255, 1, 2])))).toBe(true);

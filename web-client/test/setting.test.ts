@@ -24,7 +24,7 @@ describe("the setting", () => {
     }
   });
 
-  it("is no open sea without a wave", () => {
+  it("is not an open sea without a wave", () => {
     expect(readSetting(create(SceneSchema, { particles: {}, setting: Setting.OPEN_SEA }))).toBe("glassTank");
   });
 });

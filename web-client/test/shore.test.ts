@@ -14,7 +14,7 @@ const kBed: Bed = { sideM: 16, widthM: 4, depthM: 1, beaches: [{ side: "+x", wid
 const kCounts = { resolutionCount: 16, countZ: 4 };
 
 describe("the ground under the cells of a moving shore", () => {
-  it("has rocks as domes that go on as cones below the water, with one slope where both meet", () => {
+  it("has rocks as domes that continue as cones below the water, with one slope where both meet", () => {
     expect(obstacleRiseM(kRock, 1, 0)).toBeCloseTo(0.8, 9);
     expect(obstacleRiseM(kRock, 3, 0)).toBeCloseTo(0, 9);
     expect(obstacleRiseM(kRock, 1, 4)).toBeCloseTo(-1.6, 9);

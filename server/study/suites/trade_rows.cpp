@@ -117,11 +117,11 @@ void print(std::FILE* out, const TradeRow& row, const TradeRow& balanced) {
 }
 
 void printCosts(std::FILE* out, const std::vector<TradeRow>& rows) {
-  fmt::print(out, "  {:<26} {:<22} {:>9} {:>9} {:>8} {:>9}   ms a simulated second by pass\n", "parts", "size",
-             "ms / s", "real time", "MB", "substeps");
+  fmt::print(out, "  {:<26} {:<22} {:>9} {:>8} {:>9}   ms per simulated second by pass\n", "parts", "size", "ms / s",
+             "MB", "substeps");
   for (const TradeRow& row : rows) {
-    fmt::print(out, "  {:<26} {:<22} {:>9.1f} {:>9.2f} {:>8.2f} {:>9}  ", row.knob, row.setting, row.cost_ms_per_s,
-               1e3 / row.cost_ms_per_s, row.device_mb, row.substeps_per_s_count);
+    fmt::print(out, "  {:<26} {:<22} {:>9.1f} {:>8.2f} {:>9}  ", row.knob, row.setting, row.cost_ms_per_s,
+               row.device_mb, row.substeps_per_s_count);
     for (const auto& [name, ms] : row.pass_ms_per_s)
       fmt::print(out, " {} {:.1f}", std::string(name), ms.to_number<double>());
     fmt::print(out, "\n");

@@ -95,9 +95,9 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   return choices;
 }
 
-/// Returns whether the choice simulates the same water: not with another seed, nor with less water.
-bool isComparable(const auto& choice) {
-  return choice.knob != kSeedKnob && choice.knob != "coupling";
+/// Returns whether the row simulates the same water: not with another seed, nor with less water.
+bool isComparable(const TradeRow& row) {
+  return row.knob != kSeedKnob && row.knob != "coupling";
 }
 
 /// Effect of chance on cost and error: the difference between another seed and `balanced` in the same run.

@@ -58,7 +58,7 @@ class Directory:
 
 
 def measure_directory(cluster: Cluster) -> dict:
-    """One server that watches is there; keys are written that are no names of rooms, so it leaves them alone."""
+    """One server that watches is there; keys are written that are not names of rooms, so it leaves them alone."""
     cluster.add_server("s1")
     directory = Directory(cluster)
 

@@ -112,7 +112,7 @@ export class DrivenPage {
     for (let i = 0; i < count; ++i) await this.#advance(stride, stride, true);
   }
 
-  /** Goes on by `stride` ticks without drawing; picture() draws. */
+  /** Continues by `stride` ticks without drawing; picture() draws. */
   async goOn(stride) {
     await this.#advance(stride, stride, false);
   }

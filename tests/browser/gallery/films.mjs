@@ -1,5 +1,5 @@
 // The README's animation and the tour: pictures at even steps of simulated time, so that they run evenly however slow the machine is.
-// Both go on where they were interrupted, unless page, server or film have changed since.
+// Both continue where they were interrupted, unless page, server or film have changed since.
 import { execFileSync } from "node:child_process";
 import { createHash } from "node:crypto";
 import { existsSync, mkdirSync, readdirSync, readFileSync, renameSync, rmSync, statSync, writeFileSync } from "node:fs";
@@ -124,7 +124,7 @@ async function shootSegment(context, { size, quality, ticksPerPicture: stride },
     const last = paths.findLastIndex((path) => !existsSync(path));
     for (const [n, path] of paths.slice(0, last + 1).entries()) {
       for (const { action } of commands.filter(({ atPicture }) => atPicture === n)) await page.command(action);
-      // The water goes on in small pictures where this one is there already.
+      // The water continues in small pictures where this one is there already.
       if (existsSync(path)) {
         await page.showTo(startTick + n * stride, stride);
         continue;

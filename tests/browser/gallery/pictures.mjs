@@ -12,7 +12,7 @@ import { kSize, setUp, shotOf } from "./shots.mjs";
 export const kFile = { type: "image/webp", quality: 0.8 };
 export const kKept = fileURLToPath(new URL("kept", import.meta.url));
 export const kMade = join(repository, "build/gallery/pictures");
-/** Entries of the page's list of lights that are no presets. */
+/** Entries of the page's list of lights that are not presets. */
 const kNoPresets = ["automatic", "hour"];
 
 export const nameOf = (quality, scene, light) => `${quality}/${scene}_${light.replaceAll(" ", "_")}`;

@@ -68,7 +68,7 @@ TEST(JwkSet, SaysWhichKeyIsWrongAndWhy) {
   EXPECT_THAT(refusalOf(set(R"({"kty":"OKP","crv":"Ed25519","x":"AAAA"})")), HasSubstr("32 bytes"));
   EXPECT_THAT(refusalOf(set(R"({"kty":"RSA","n":"!","e":"AQAB"})")), HasSubstr("base64url"));
   EXPECT_THAT(refusalOf(set(rsaKey(test::makeRsaKey(1024)))), HasSubstr("1024 bits"));
-  EXPECT_THAT(refusalOf(set("3")), HasSubstr("key 1: it is no object"));
+  EXPECT_THAT(refusalOf(set("3")), HasSubstr("key 1: it is not an object"));
 }
 
 TEST(JwkSet, RefusesEd25519PointsOfSmallOrder) {

@@ -66,7 +66,7 @@ TEST(Jwt, SignaturesOfTheStandardsExamplesFit) {
       "vbS9pc19yb290Ijp0cnVlfQ.dBjftJeZ4CVP-mB92K27uhbUJU1p1r_wW1gFWFOEjXk";
   const std::chrono::system_clock::time_point then{std::chrono::seconds(1'300'819'000)};
   EXPECT_THAT(refusalOf(verifyJwt(joe, {secretKey("", *secret)}, {.issuer = "joe"}, then)), HasSubstr("role"));
-  // RFC 8037 appendix A.4; its text is no JSON.
+  // RFC 8037 appendix A.4; its text is not JSON.
   auto key = parseKeySet(
       R"({"keys":[{"kty":"OKP","crv":"Ed25519","x":"11qYAYKxCrfVS_7TyWQHOg7hcvPapiMlrwIaaPcHURo"}]})", "keys");
   ASSERT_TRUE(key);
@@ -191,11 +191,11 @@ TEST(Jwt, IssuerAndAudienceAreCheckedWhereTheServerNamesThem) {
 
 TEST(Jwt, ClaimsOfAnotherFormAreRefusedByName) {
   const auto refusal = [](const std::string& more) { return refusalOf(verified(test::hs256(claims(more)))); };
-  EXPECT_THAT(refusal(R"(,"sub":5)"), HasSubstr("sub is no text"));
-  EXPECT_THAT(refusal(R"(,"name":[])"), HasSubstr("name is no text"));
+  EXPECT_THAT(refusal(R"(,"sub":5)"), HasSubstr("sub is not text"));
+  EXPECT_THAT(refusal(R"(,"name":[])"), HasSubstr("name is not text"));
   EXPECT_THAT(refusal(R"(,"sub":")" + std::string(129, 'a') + "\""), HasSubstr("at most 128"));
   EXPECT_THAT(refusal(R"(,"room":[])"), HasSubstr("room is an empty list"));
-  EXPECT_THAT(refusal(R"(,"room":["main","a room"])"), HasSubstr("room has an entry that is no name of a room"));
+  EXPECT_THAT(refusal(R"(,"room":["main","a room"])"), HasSubstr("room has an entry that is not a name of a room"));
   EXPECT_THAT(refusal(R"(,"room":[5])"), HasSubstr("room"));
   EXPECT_THAT(refusal(R"(,"room":"")"), HasSubstr("room"));
   EXPECT_THAT(refusal(R"(,"room":")" + std::string(33, 'a') + "\""), HasSubstr("room"));

@@ -139,7 +139,7 @@ TEST_F(ConfigFile, AFileThatCannotBeReadIsNamedWithTheReason) {
             "--config " + path("missing") + ": there is no such file; check the path");
   EXPECT_EQ(CommandLine({"--config", folder().path().string()}).error,
             "--config " + folder().path().string() + ": is a directory; name a configuration file in it");
-  EXPECT_THAT(CommandLine({"--config", "/dev/zero"}).error, HasSubstr("is no regular file"));
+  EXPECT_THAT(CommandLine({"--config", "/dev/zero"}).error, HasSubstr("is not a regular file"));
 }
 
 TEST_F(ConfigFile, OneMebibyteIsTheBound) {

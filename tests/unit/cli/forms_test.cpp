@@ -52,7 +52,8 @@ TEST_F(Forms, AnOriginIsWhatBrowsersSend) {
 
 TEST_F(Forms, AnOriginOfAnotherFormIsRefusedWithWhatWasMeant) {
   const auto expectMeant = [](const std::string& text, const std::string& meant) {
-    EXPECT_THAT(fault("--origin", text), AllOf(HasSubstr("'" + text + "' is no Origin"), HasSubstr("write " + meant)));
+    EXPECT_THAT(fault("--origin", text),
+                AllOf(HasSubstr("'" + text + "' is not an Origin"), HasSubstr("write " + meant)));
   };
   expectMeant("https://water.example/", "https://water.example");
   expectMeant("https://water.example/page?x#y", "https://water.example");
@@ -123,7 +124,7 @@ TEST_F(Forms, AFileForResultsIsCheckedBeforeTheWork) {
   const CLI::Validator form = cli::isOutputFile();
   EXPECT_EQ(form(good), "");
   EXPECT_EQ(form(standard_output), "");
-  EXPECT_THAT(form(is_folder), HasSubstr("it is no file"));
+  EXPECT_THAT(form(is_folder), HasSubstr("it is not a file"));
   EXPECT_THAT(form(no_folder), HasSubstr("there is no folder"));
 }
 

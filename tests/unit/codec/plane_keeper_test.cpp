@@ -1,4 +1,5 @@
-// A keyframe made from a stream of deltas is the one that the encoder would have made, and the stream goes on from it.
+// A keyframe made from a stream of deltas is the one that the encoder would have made, and the stream continues from
+// it.
 #include <cmath>
 #include <string>
 

@@ -124,7 +124,7 @@ TEST_F(Conformance, RefusesMessagesThatOverlap) {
   expectClosed({{.payload = "echo ", .fin = false}, {.opcode = Opcode::kText}}, kProtocolError, "text in binary");
   expectClosed({{.opcode = Opcode::kContinuation}}, kProtocolError, "the end of nothing");
   expectClosed({{.payload = "echo x"}, {.opcode = Opcode::kContinuation, .fin = false}}, kProtocolError,
-               "goes on after the end");
+               "continues after the end");
 }
 
 TEST_F(Conformance, AnswersPingsOfEverySizeWithTheirOwnBytes) {

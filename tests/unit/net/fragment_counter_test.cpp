@@ -25,7 +25,7 @@ std::string frames() {
 TEST(FragmentCounter, CountsDataFramesWithoutTheFinBit) {
   FragmentCounter counter;
   EXPECT_EQ(counter.count(view(frames())), 3U);
-  EXPECT_EQ(counter.count(view(frames())), 3U) << "the stream goes on";
+  EXPECT_EQ(counter.count(view(frames())), 3U) << "the stream continues";
   EXPECT_EQ(counter.count({}), 0U);
 }
 

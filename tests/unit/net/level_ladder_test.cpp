@@ -77,7 +77,7 @@ TEST(LevelLadder, RetriesAFailedStepUpLessAndLessOften) {
   for (std::size_t k = 1; k < tries.size(); ++k) gaps.push_back(tries[k] - tries[k - 1]);
   EXPECT_LT(gaps[0], 12);
   for (std::size_t k = 1; k < 4; ++k) EXPECT_GT(gaps[k], gaps[k - 1] * 3 / 2) << k;
-  EXPECT_LT(gaps.back(), 70) << "but it goes on trying";
+  EXPECT_LT(gaps.back(), 70) << "but it continues trying";
   EXPECT_EQ(link.ladder.level(), Level::kMedium);
 }
 

@@ -153,7 +153,7 @@ TEST(Session, SendsQueuedControlMessagesBeforeTheClose) {
 
 TEST(Session, CutsALongCloseReasonBetweenTwoCharacters) {
   TestServer served;
-  // The limit of 123 bytes falls on each byte of a character of four, and one byte is no UTF-8 at all.
+  // The limit of 123 bytes falls on each byte of a character of four, and one byte is not UTF-8 at all.
   for (const char* begin : {"", "x", "xx", "xxx", "\xff"}) {
     SCOPED_TRACE(begin);
     WsClient client = served.client();
@@ -161,7 +161,7 @@ TEST(Session, CutsALongCloseReasonBetweenTwoCharacters) {
     for (int k = 0; k < 50; ++k) reason += "\U0001F30A";
     served.application.hub->close(served.application.opened().back(), CloseCode::kPolicy, reason);
     EXPECT_TRUE(client.waitClosed());
-    EXPECT_EQ(client.closeCode(), 1008) << "a client closes with 1002 or without a code if the reason is no UTF-8";
+    EXPECT_EQ(client.closeCode(), 1008) << "a client closes with 1002 or without a code if the reason is not UTF-8";
     const std::string sent = client.closeReason();
     EXPECT_GE(sent.size(), 120U);
     EXPECT_LE(sent.size(), 123U);

@@ -154,7 +154,7 @@ TEST_F(Tls, SessionsGetFramesOfAnySizeAndTheirAnswersInOrder) {
 
 TEST_F(Tls, GarbageIsClosedAndCounted) {
   start({.handshake_timeout = 500ms});  // one of them announces more than it sends
-  const std::string garbage = "\x16\x03\x01 this is no hello of a client, whatever its first byte says";
+  const std::string garbage = "\x16\x03\x01 this is not a hello of a client, whatever its first byte says";
   for (const std::string& words : {garbage, std::string("\x80\x2e\x01\x00\x02", 5), std::string("\0\0\0\0", 4)}) {
     RawTcp peer;
     ASSERT_TRUE(peer.connect("127.0.0.1", port()));

@@ -1,4 +1,4 @@
-// Clients behind trusted proxies: who counts as the client, and what a peer that is no proxy can claim.
+// Clients behind trusted proxies: who counts as the client, and what a peer that is not a proxy can claim.
 #include <gmock/gmock.h>
 
 #include <spindrift/net/network_text.h>
@@ -137,9 +137,10 @@ TEST(ForwardedClient, TheReasonNamesHeaderAndEntryInPrintableText) {
   const std::string_view line = "203.0.113.9, \x01<\xff>";
   const auto client = forwardedClient({&line, 1}, networks({"10.0.0.0/8"}));
   ASSERT_FALSE(client);
-  EXPECT_EQ(client.error().message,
-            "The X-Forwarded-For header has the entry '%01<%FF>', which is no IP address: the proxy in front of this "
-            "server has to write one.");
+  EXPECT_EQ(
+      client.error().message,
+      "The X-Forwarded-For header has the entry '%01<%FF>', which is not an IP address: the proxy in front of this "
+      "server has to write one.");
 }
 
 ServerOptions behindProxy(ServerOptions options = {}) {

@@ -127,12 +127,12 @@ TEST_F(CommandQueueTest, RefusesBeyondEachBoundAndSaysWhich) {
   push(queue, from(1, 4, splash()));
   const auto lane = queue.tryPush(from(1, 5, splash()), at(0ms));
   ASSERT_TRUE(lane);
-  EXPECT_THAT(*lane, testing::HasSubstr("3 of your commands"));
+  EXPECT_THAT(*lane, testing::HasSubstr("your limit of 3 waiting commands"));
   push(queue, from(2, 6, splash()));
   push(queue, from(3, 7, splash()));
   const auto all = queue.tryPush(from(4, 8, splash()), at(0ms));
   ASSERT_TRUE(all);
-  EXPECT_THAT(*all, testing::HasSubstr("5 commands wait"));
+  EXPECT_THAT(*all, testing::HasSubstr("full (5 commands)"));
 }
 
 TEST_F(CommandQueueTest, HeavyCommandsThatWaitTooLongAreDropped) {

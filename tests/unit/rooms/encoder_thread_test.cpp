@@ -16,7 +16,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// A receiver that holds the encoder thread at each published frame until the test lets it go on.
+/// A receiver that holds the encoder thread at each published frame until the test lets it continue.
 class HeldOutlet final : public FrameOutlet {
  public:
   core::StreamDemand demand(const std::string&, codec::Stream stream, std::uint32_t) const override {

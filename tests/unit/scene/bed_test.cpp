@@ -83,9 +83,9 @@ TEST(Bed, IsRefusedWithPlaceValueAndRemedy) {
   EXPECT_THAT(errorOf("wave {} bed { grid { rows { depth_m: [1, 2] } } }"),
               HasSubstr("bed.grid.rows[0]: 1 rows; choose 2 to 1024"));
   EXPECT_THAT(errorOf("wave {} bed { grid { rows { depth_m: [1, 2] } rows { depth_m: [1, nan] } } }"),
-              HasSubstr("bed.grid.rows[1]: nan is no depth"));
+              HasSubstr("bed.grid.rows[1]: nan is not a depth"));
   EXPECT_THAT(errorOf("wave {} bed { grid { rows { depth_m: [1, 101] } rows { depth_m: [1, 2] } } }"),
-              HasSubstr("bed.grid.rows[0]: 101 is no depth"));
+              HasSubstr("bed.grid.rows[0]: 101 is not a depth"));
   EXPECT_THAT(errorOf("wave {} bed { grid { rows { depth_m: [1, 2] } png: \"a.png\" } }"),
               HasSubstr("bed.grid.png: and rows are both given"));
   EXPECT_THAT(errorOf("wave {} bed { grid { points: \"abcd\" } }"), HasSubstr("bed.grid.points: is what"));
@@ -107,7 +107,7 @@ TEST(Gauges, HaveNamesOfTheirOwnAndLieInTheWater) {
                                              {.name = "wall", .x_m = 0, .z_m = 4}};
   EXPECT_EQ(toCore(*scene).gauges, expected);
   EXPECT_THAT(errorOf("particles {} gauges { name: \"a\" }"), HasSubstr("gauges[0]: needs a wave"));
-  EXPECT_THAT(errorOf("wave {} gauges {}"), HasSubstr("gauges[0].name: \"\" is no name"));
+  EXPECT_THAT(errorOf("wave {} gauges {}"), HasSubstr("gauges[0].name: \"\" is not a name"));
   EXPECT_THAT(errorOf("wave {} gauges { name: \"a\" } gauges { name: \"a\" }"),
               HasSubstr("gauges[1].name: \"a\" names an earlier gauge"));
   EXPECT_THAT(errorOf("wave { side_m: 8 } gauges { name: \"a\" x_m: 4.1 }"),
@@ -189,7 +189,7 @@ TEST_F(BedImage, ThatIsMissingOrDamagedIsNamedWithTheReason) {
       HasSubstr("\"bay.tif\" is a TIFF and not a PNG; convert it with gdal_translate as docs/measured_beds.md"));
   std::ofstream(folder_ / "scenes" / "bay.asc") << "ncols 4\nnrows 3\n";
   EXPECT_THAT(errorOf(load("bay.asc")), HasSubstr("is an ESRI grid and not a PNG; convert it with gdal_translate"));
-  std::ofstream(folder_ / "scenes" / "text.png") << "this is no image";
+  std::ofstream(folder_ / "scenes" / "text.png") << "this is not an image";
   EXPECT_THAT(errorOf(load("text.png")), HasSubstr("cannot be read as PNG: Not a PNG file"));
   writeImage("scenes/bed.png", 64, 64, std::vector<std::uint16_t>(64 * 64, 700));
   const auto file = folder_ / "scenes" / "bed.png";

@@ -80,11 +80,11 @@ const BadScene kBadScenes[] = {
     {"MinusInfinite", "wave {\n  side_m: -inf\n}\n", "pool.textproto:2:3: wave.side_m: -inf", {"not a finite number"}},
     {"WidthOfNoWholeCells",
      "wave {\n  resolution_count: 40\n  side_m: 8\n  width_m: 3.5\n}\n",
-     "pool.textproto:4:3: wave.width_m: 3.5 m is no whole number of cells",
+     "pool.textproto:4:3: wave.width_m: 3.5 m is not a whole number of cells",
      {"0.2 m wide", "3.4 m or 3.6 m"}},
     {"WidthOfLessThanACell",
      "wave {\n  resolution_count: 4\n  side_m: 8\n  width_m: 0.5\n}\n",
-     "pool.textproto:4:3: wave.width_m: 0.5 m is no whole number of cells",
+     "pool.textproto:4:3: wave.width_m: 0.5 m is not a whole number of cells",
      {"choose 2 m"}},
     {"TooManyCells",
      "wave {\n  resolution_count: 2048\n}\n",
@@ -321,7 +321,7 @@ TEST_F(SceneFile, OverOneMebibyteIsRefusedAndOneOfExactlyThatSizeIsNot) {
 TEST_F(SceneFile, WithAFileNameThatIsNoSceneNameMustNameItsScene) {
   const auto scene = loadSceneFile(write("my pool.textproto", "wave {}\n"));
   ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error().message, HasSubstr(": name: \"my pool\" is no name"));
+  EXPECT_THAT(scene.error().message, HasSubstr(": name: \"my pool\" is not a name"));
 }
 
 }  // namespace

@@ -106,11 +106,12 @@ TEST(Series, InTheSceneAreCheckedRowByRow) {
   EXPECT_THAT(of(""), HasSubstr("wave_makers[0].series.time_s: 0 rows; choose 2 to 16384"));
   EXPECT_THAT(of("time_s: [0, 1] elevation_m: [0]"), HasSubstr("series.elevation_m: 1 elevations at 2 times"));
   EXPECT_THAT(of("time_s: [0, 1, 1] elevation_m: [0, 0, 0]"), HasSubstr("series.time_s[2]: 1 s is not after"));
-  EXPECT_THAT(of("time_s: [0, nan] elevation_m: [0, 0]"), HasSubstr("series.time_s[1]: nan s is no time"));
-  EXPECT_THAT(of("time_s: [-1, 1] elevation_m: [0, 0]"), HasSubstr("series.time_s[0]: -1 s is no time"));
+  EXPECT_THAT(of("time_s: [0, nan] elevation_m: [0, 0]"), HasSubstr("series.time_s[1]: nan s is not a time"));
+  EXPECT_THAT(of("time_s: [-1, 1] elevation_m: [0, 0]"), HasSubstr("series.time_s[0]: -1 s is not a time"));
   EXPECT_THAT(of("time_s: [0, 1] elevation_m: [0, inf]"), HasSubstr("series.elevation_m[1]: inf m is beyond 0.78"));
   EXPECT_THAT(of("time_s: [0, 1] elevation_m: [0, 0] file: \"a.txt\""), HasSubstr("series.file: and time_s are both"));
-  EXPECT_THAT(of("file: \"a.txt\""), HasSubstr("series.file: \"a.txt\" cannot be read, because this scene is no file"));
+  EXPECT_THAT(of("file: \"a.txt\""),
+              HasSubstr("series.file: \"a.txt\" cannot be read, because this scene is not a file"));
 }
 
 class SeriesFile : public testing::Test {
@@ -148,9 +149,9 @@ TEST_F(SeriesFile, ThatIsMissingDamagedOrTooLongIsNamedWithTheReason) {
                     HasSubstr("wave_makers[0].series.file: \"none.txt\" there is no such file")));
   EXPECT_THAT(errorOf(load(".")), HasSubstr("is a directory; name a text file in it"));
   write("scenes/words.txt", "0 0\n1 high\n");
-  EXPECT_THAT(errorOf(load("words.txt")), HasSubstr("line 2: \"1 high\" is no row"));
+  EXPECT_THAT(errorOf(load("words.txt")), HasSubstr("line 2: \"1 high\" is not a row"));
   write("scenes/three.txt", "0 0 0\n");
-  EXPECT_THAT(errorOf(load("three.txt")), HasSubstr("line 1: \"0 0 0\" is no row"));
+  EXPECT_THAT(errorOf(load("three.txt")), HasSubstr("line 1: \"0 0 0\" is not a row"));
   write("scenes/nan.txt", "0 0\n1 nan\n");
   EXPECT_THAT(errorOf(load("nan.txt")), HasSubstr("line 2:"));
   write("scenes/empty.txt", "# nothing\n");
@@ -178,11 +179,11 @@ TEST_F(SeriesFile, OfAnotherEncodingLoadsOrIsNamed) {
   write("scenes/twice.txt",
         "0 0\n\xEF\xBB\xBF"
         "1 0.1\n");
-  EXPECT_THAT(errorOf(load("twice.txt")), HasSubstr("line 2: \"\\u{FEFF}1 0.1\" is no row"));
+  EXPECT_THAT(errorOf(load("twice.txt")), HasSubstr("line 2: \"\\u{FEFF}1 0.1\" is not a row"));
   write("scenes/space.txt",
         "0 0\n1\xC2\xA0"
         "0.1\n");
-  EXPECT_THAT(errorOf(load("space.txt")), HasSubstr("line 2: \"1\\u{A0}0.1\" is no row"));
+  EXPECT_THAT(errorOf(load("space.txt")), HasSubstr("line 2: \"1\\u{A0}0.1\" is not a row"));
 }
 
 TEST_F(SeriesFile, ThatIsRefusedGivesOneError) {
@@ -190,7 +191,8 @@ TEST_F(SeriesFile, ThatIsRefusedGivesOneError) {
     write("scenes/wrong.txt", text);
     const std::string error = errorOf(load("wrong.txt"));
     EXPECT_EQ(std::ranges::count(error, '\n'), 0) << error;
-    EXPECT_THAT(error, HasSubstr("is no row; give a time in seconds and an elevation in metres, both finite numbers"));
+    EXPECT_THAT(error,
+                HasSubstr("is not a row; give a time in seconds and an elevation in metres, both finite numbers"));
   }
 }
 

@@ -1,4 +1,4 @@
-// The same water goes on at another resolution: what the pure function keeps, and a simulation that takes over.
+// The same water continues at another resolution: what the pure function keeps, and a simulation that takes over.
 #include "carry_state.h"
 
 #include <cmath>
@@ -433,7 +433,7 @@ TEST_F(TakeOver, OfOtherWaterIsRefusedAndChangesNothing) {
   const auto before = next->stateHash();
   const auto taken = next->takeOver(carried);
   ASSERT_FALSE(taken);
-  EXPECT_THAT(taken.error().message, testing::HasSubstr("cannot go on"));
+  EXPECT_THAT(taken.error().message, testing::HasSubstr("cannot continue"));
   EXPECT_EQ(next->stateHash(), before);
 }
 

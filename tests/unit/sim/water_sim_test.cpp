@@ -312,7 +312,7 @@ TEST_F(Water, ResetReturnsToTheStartingState) {
   sim.reset();
   EXPECT_EQ(sim.stateHash(), start);
   EXPECT_EQ(sim.time_s(), 0.0);
-  EXPECT_EQ(sim.tick(), 30u) << "ticks go on counting";
+  EXPECT_EQ(sim.tick(), 30u) << "ticks continue counting";
 }
 
 TEST_F(Water, ScenesStartTheirOwnEventsOnTime) {

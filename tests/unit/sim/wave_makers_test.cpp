@@ -125,7 +125,7 @@ TEST_P(WaveMakersOnDevice, GoOnAtAnotherFidelityWhereTheyWere) {
     coarse.step();
     (*made)->step();
     ASSERT_EQ((*made)->health().volume_error_units, 0);
-    // Flows of nonlinear water are carried, too, so both go on alike; half a period later they still agree.
+    // Flows of nonlinear water are carried, too, so both continue alike; half a period later they still agree.
     ASSERT_NEAR((*made)->gauges()->now()[0].reading.elevation_m, coarse.gauges()->now()[0].reading.elevation_m,
                 k < 8 ? 1.0 : 0.015)
         << "tick " << k;

@@ -162,7 +162,7 @@ TEST(Ground, WithObstaclesHasThemAsHills) {
       core::Breakwater{.x_m = -4, .z_m = 0, .length_m = 4, .width_m = 1, .heading_deg = 90, .height_m = 0.7}};
   EXPECT_NEAR(groundDepthWithObstacles(scene, 4, 0), -1.0, kExact);
   EXPECT_NEAR(groundDepthWithObstacles(scene, 6, 0), 0.0, kExact) << "its radius is that of the water line";
-  EXPECT_NEAR(groundDepthWithObstacles(scene, 4, 3), 1.0, kExact) << "below the water it goes on with its slope";
+  EXPECT_NEAR(groundDepthWithObstacles(scene, 4, 3), 1.0, kExact) << "below the water it continues with its slope";
   EXPECT_NEAR(groundDepthWithObstacles(scene, 4, 9), 2.0, kExact);
   EXPECT_NEAR(groundDepthWithObstacles(scene, -4.4, 1.9), -0.7, kExact);
   EXPECT_NEAR(groundDepthWithObstacles(scene, -4.6, 0), 2.0, kExact);

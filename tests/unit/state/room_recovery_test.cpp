@@ -31,7 +31,7 @@ struct RoomRecoveryTest : StateTest {
       for (std::string word; words >> word;) append(*files, word);
     }
   }
-  /// Recovers, goes on with a new generation, and checks that the next recovery finds both. Returns what was found.
+  /// Recovers, continues with a new generation, and checks that the next recovery finds both. Returns what was found.
   RoomFiles::Recovered recoverAndGoOn() const {
     RoomFiles::Recovered found;
     std::uint64_t next = 0;

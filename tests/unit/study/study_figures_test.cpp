@@ -1,10 +1,15 @@
-// The trade study's figures are those of this solver.
+// The trade study's figures are those of this solver and of these fidelity levels.
 #include <fstream>
 #include <sstream>
+#include <stdexcept>
 
 #include <boost/json/parse.hpp>
 #include <gtest/gtest.h>
 
+#include <spindrift/core/paths.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/study/known_results.h>
 #include <spindrift/study_suites/suites.h>
 
 namespace spindrift::study_suites {
@@ -25,6 +30,26 @@ TEST(StudyFigures, AreOfThisSolver) {
     ASSERT_TRUE(now) << now.error().message;
     EXPECT_EQ(*now, hash.as_string()) << scene << ": the solver changed after the study of "
                                       << figures.at("date").as_string() << ": run `./dev study --update`";
+  }
+}
+
+TEST(StudyFigures, KnownResultsScaleAsTheLevelsOfScenesDo) {
+  const auto atLevel = [](const std::string& level) {
+    for (const v1::Fidelity each :
+         {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE}) {
+      if (scene::fidelityName(each) == level)
+        return scene::toCore(*scene::loadSceneFile(*core::findScene("splash"), each));
+    }
+    throw std::invalid_argument(level);
+  };
+  const core::Scene balanced = atLevel("balanced");
+  for (const study::LevelScale& level : study::kLevelScales) {
+    const core::Scene scaled = atLevel(level.name);
+    EXPECT_DOUBLE_EQ(static_cast<double>(scaled.wave->resolution_count) / balanced.wave->resolution_count, level.cells)
+        << level.name;
+    EXPECT_DOUBLE_EQ(balanced.coupling->droplet_spacing_m / scaled.coupling->droplet_spacing_m, level.particles)
+        << level.name;
+    EXPECT_DOUBLE_EQ(scaled.tick_rate_hz / balanced.tick_rate_hz, level.ticks) << level.name;
   }
 }
 

@@ -96,7 +96,7 @@ std::string whyNot(const std::string& json) {
   const auto parsed = parseCommandJson(json);
   const auto* malformed = std::get_if<Malformed>(&parsed);
   if (malformed == nullptr) return "";
-  constexpr std::string_view kBegin = "the body is no JSON of spindrift.v1.Command: ";
+  constexpr std::string_view kBegin = "the body is not JSON of spindrift.v1.Command: ";
   EXPECT_TRUE(malformed->message.starts_with(kBegin)) << malformed->message;
   return malformed->message.substr(kBegin.size());
 }
@@ -162,9 +162,9 @@ TEST(ApiMessage, ReportsThePlaceAndWhatIsExpected) {
   EXPECT_EQ(whyNot(R"({"splash":{},"reset":{}})"), "reset: cannot be given together with splash");
   EXPECT_EQ(whyNot(R"({"reset":5})"), "reset: has to be an object {...}");
   EXPECT_EQ(whyNot(R"({"splash":{"x_m":[1]}})"), "splash.x_m: has to be a number");
-  EXPECT_EQ(whyNot(R"({"splash":{"depth_m":"deep"}})"), "splash.depth_m: \"deep\" is no double");
-  EXPECT_EQ(whyNot(R"({"control_boat":{"boatId":-1}})"), "control_boat.boat_id: -1 is no uint32");
-  EXPECT_EQ(whyNot(R"({"breaking_wave":{"side":"SIDEWAYS"}})"), "breaking_wave.side: \"SIDEWAYS\" is no Side");
+  EXPECT_EQ(whyNot(R"({"splash":{"depth_m":"deep"}})"), "splash.depth_m: \"deep\" is not a double");
+  EXPECT_EQ(whyNot(R"({"control_boat":{"boatId":-1}})"), "control_boat.boat_id: -1 is not a uint32");
+  EXPECT_EQ(whyNot(R"({"breaking_wave":{"side":"SIDEWAYS"}})"), "breaking_wave.side: \"SIDEWAYS\" is not a Side");
 }
 
 TEST(ApiMessage, BoundsTheDepthOfJson) {

@@ -22,6 +22,6 @@ export function takeLinkToken(location: Pick<Location, "href">, history: Pick<Hi
   try {
     return decodeURIComponent(token);
   } catch {
-    return token; // A "%" that is no escape: the server says what it thinks of it.
+    return token; // A "%" that is not an escape: the server says what it thinks of it.
   }
 }

@@ -28,7 +28,7 @@ import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
 
 /** Shown where the server sends no text. */
-const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water goes on at another fidelity.", other: "Something happened in the room." };
+const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
 
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {

@@ -24,7 +24,7 @@ function parse(bytes: Uint8Array): Ground | undefined {
   }
 }
 
-/** Malformed if the bytes are no ground of a sensible size. */
+/** Malformed if the bytes are not ground of a sensible size. */
 export function readGround(bytes: Uint8Array): { ground: GroundGrid } | Malformed {
   const message = parse(bytes);
   if (!message) return malformed("ground: no spindrift.v1.Ground");

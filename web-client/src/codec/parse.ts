@@ -77,6 +77,6 @@ export type DrainingInfo = Pick<Draining, "closesInS" | "goTo" | "reconnectAfter
 function readDraining({ closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS }: Draining): { draining: DrainingInfo } | Malformed {
   if (![closesInS, reconnectAfterMinS, reconnectAfterMaxS].every((value) => Number.isFinite(value) && value >= 0) || reconnectAfterMaxS < reconnectAfterMinS)
     return malformed(`draining: times ${closesInS}, ${reconnectAfterMinS} and ${reconnectAfterMaxS} s`);
-  if (goTo !== "" && !/^wss?:\/\/[^/?#@]+\/?$/.test(goTo)) return malformed(`draining: ${goTo} is no address of a server`);
+  if (goTo !== "" && !/^wss?:\/\/[^/?#@]+\/?$/.test(goTo)) return malformed(`draining: ${goTo} is not an address of a server`);
   return { draining: { closesInS, goTo, reconnectAfterMinS, reconnectAfterMaxS } };
 }

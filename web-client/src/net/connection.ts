@@ -28,7 +28,7 @@ const kHousekeepingEveryMs = 500;
 /** Without a greeting, or without any message, for this long the connection counts as lost. */
 const kSilenceMs = 10_000;
 const kAnswerTimeoutMs = 10_000;
-/** The server builds water for these, as long as that takes; meanwhile everything else goes on, and a lost connection ends the wait. */
+/** The server builds water for these, as long as that takes; meanwhile everything else continues, and a lost connection ends the wait. */
 const kSlowActions: readonly CommandAction["case"][] = ["changeScene", "setParameter"];
 const kMaxUnsentBytes = 256 * 1024;
 const kDiagnosticsRateHz = 10;

@@ -8,7 +8,7 @@ import { describeCost, kMeasuredOn, shortCost } from "./fidelity_costs";
 import { PaceWatch } from "./pace_watch";
 import { SelectRow } from "./select_row";
 
-const kHelp = "How finely the water is simulated, for everybody in the room. The water goes on.";
+const kHelp = "How finely the water is simulated, for everybody in the room. The water continues.";
 
 export class FidelityRow {
   readonly element: HTMLElement;
@@ -26,7 +26,7 @@ export class FidelityRow {
     this.row = new SelectRow("fidelity", "Fidelity", kHelp, (value) => {
       const wanted = value as FidelityName;
       this.changeId = send({ case: "changeScene", value: { name: this.sceneName, fidelity: wireFidelity(wanted) } }, `Fidelity ${wanted}`);
-      setText(this.cost, `Building the water at ${wanted}: until then it goes on at ${this.level}.`);
+      setText(this.cost, `Building the water at ${wanted}: until then it continues at ${this.level}.`);
     });
     this.row.setChoices(
       kFidelities.map(({ name }) => ({ value: name, label: name })),

@@ -4,7 +4,7 @@ import { make } from "./dom";
 /** `page`: the address, whose other choices the links keep. */
 export function showRooms(list: HTMLElement, rooms: readonly string[], page: string): void {
   list.hidden = rooms.length === 0;
-  list.replaceChildren(...rooms.map((name) => make("li", {}, [make("a", { href: addressOfRoom(page, name) }, [name])])));
+  list.replaceChildren(make("li", {}, ["Rooms of this server:"]), ...rooms.map((name) => make("li", {}, [make("a", { href: addressOfRoom(page, name) }, [name])])));
 }
 
 function addressOfRoom(page: string, room: string): string {

@@ -41,7 +41,7 @@ export class RoomPanel {
     });
     this.scenes = new SelectRow("scene", "Scene", "Changes the scene for everybody in the room.", (name) => {
       this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
-      setText(this.opening, `Building the water of ${name}: until then this one goes on.`);
+      setText(this.opening, `Building the water of ${name}: until then this one continues.`);
       this.opening.hidden = false;
     });
     this.fidelity = new FidelityRow(send);

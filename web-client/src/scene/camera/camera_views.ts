@@ -168,7 +168,7 @@ export class CameraViews {
     }
   }
 
-  /** The boat's view goes on following the boat, from where the user looks at it. */
+  /** The boat's view continues following the boat, from where the user looks at it. */
   private movedByHand(): void {
     if (this.following) {
       this.following.byHand = true;

@@ -1,4 +1,4 @@
-// The ground of an open sea: the bed under the square and around it, beaches that go on along the coast, dunes and hills behind them, and
+// The ground of an open sea: the bed under the square and around it, beaches that continue along the coast, dunes and hills behind them, and
 // quays at closed sides without a beach. Pure.
 import type { BufferGeometry } from "three";
 

@@ -41,7 +41,7 @@ export const kLooks: Record<LookName, Look> = {
   breaking: {
     label: "breaking criterion",
     help:
-      "Rate of rise of the surface, as a mean over 3 × 3 streamed samples, over √(g d) with the still depth d. The server lets the wave break above 0.65; once it breaks there, it goes on " +
+      "Rate of rise of the surface, as a mean over 3 × 3 streamed samples, over √(g d) with the still depth d. The server lets the wave break above 0.65; once it breaks there, it continues " +
       "down to a threshold that falls to 0.15 (Kennedy et al. 2000). How long it has been breaking is not streamed: between 0.15 and 0.65 the colour does not tell whether it breaks.",
     quantity: { title: "Rate of rise / √(g d)", unit: "", map: "cividis", range: { low: 0, high: 1, ticks: [0, 0.15, 0.65, 1] }, of: "surface" },
   },

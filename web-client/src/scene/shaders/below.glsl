@@ -1,5 +1,5 @@
 // Include: light on its way to an eye in the water. After <sky> and <water_optics>.
-// CAUSTICS: what the waves focus is seen as shafts; SHADOWS: boats cut them. OPEN_SEA: the water goes on.
+// CAUSTICS: what the waves focus is seen as shafts; SHADOWS: boats cut them. OPEN_SEA: the water continues.
 uniform sampler2D u_field;
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
@@ -17,7 +17,7 @@ const int kShaftSteps = 10;
 const float kShaftReachM = 9.0;
 #endif
 
-// Light that leaves its way besides what is absorbed. Less than the scattering that gives water its colour from above: most of it goes on.
+// Light that leaves its way besides what is absorbed. Less than the scattering that gives water its colour from above: most of it continues.
 const float kVeilPerM = 0.06;
 const float kGlowPerM = 0.15;
 

@@ -38,7 +38,7 @@ void main() {
   float level_m = ground_m.g - 0.02;
   if (near.z > 0.0) {
     near.xy /= near.z;
-    // Beside an obstacle the water goes on into it. Elsewhere it ends before this texel: halfway for water that runs downhill.
+    // Beside an obstacle the water continues into it. Elsewhere it ends before this texel: halfway for water that runs downhill.
     level_m = is_obstacle ? near.x : min(near.x, ground_m.g - 0.5 * near.y);
   }
   level = int(round(level_m / u_unit_m));

@@ -1,5 +1,5 @@
 // One drop of rain on a repeating tile: a ring that grows and fades, then another elsewhere. Two triangles around it, and the same
-// moved by a tile along x, along z and along both, so that a ring over the tile's edge goes on at the opposite one.
+// moved by a tile along x, along z and along both, so that a ring over the tile's edge continues at the opposite one.
 in vec4 position;  // three random numbers of the drop; the number of its vertex: 6 of each of 4 copies
 
 uniform float u_time_s;

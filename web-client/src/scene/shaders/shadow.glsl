@@ -16,7 +16,7 @@ float sunShare(vec3 world, vec3 normal, float soft_m) {
   vec3 inside = smoothstep(vec3(0.5), vec3(0.47), abs(at - 0.5));
   float known = inside.x * inside.y * step(1e-4, inside.z);
   if (known <= 0.0) return 1.0;
-  // The surface goes on as a plane: its distance from the light changes over the disc.
+  // The surface continues as a plane: its distance from the light changes over the disc.
   vec3 across = vec3(u_shadow_matrix[0].x, u_shadow_matrix[1].x, u_shadow_matrix[2].x);
   vec3 upward = vec3(u_shadow_matrix[0].y, u_shadow_matrix[1].y, u_shadow_matrix[2].y);
   vec3 away = vec3(u_shadow_matrix[0].z, u_shadow_matrix[1].z, u_shadow_matrix[2].z);

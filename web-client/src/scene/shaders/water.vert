@@ -1,5 +1,5 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
-// LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid goes on to the horizon (sea/open_sea.ts).
+// LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT

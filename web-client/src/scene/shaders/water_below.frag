@@ -1,5 +1,5 @@
 // The water's surface from below: through Snell's window the sky, the sun and solids, refracted; outside it the floor, reflected totally.
-// What is between the surface and the eye veils it. PLAIN: without solids above. OPEN_SEA: the water goes on, with ripples.
+// What is between the surface and the eye veils it. PLAIN: without solids above. OPEN_SEA: the water continues, with ripples.
 #include <sky>
 #include <water_optics>
 #include <below>

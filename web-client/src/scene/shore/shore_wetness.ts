@@ -95,7 +95,7 @@ export class ShoreWetness {
   private begin(at: number, isWet: boolean, timeS: number): void {
     this.foam[at] = 0;
     this.lastWetS[at] = -Infinity;
-    // Long ago, so that standing water is no front.
+    // Long ago, so that standing water is not a front.
     this.wetSinceS[at] = isWet ? timeS - 2 * kFrontS : NaN;
   }
 

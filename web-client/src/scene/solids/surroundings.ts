@@ -20,7 +20,7 @@ const kPlainBedCells = 48;
 const kGroundCells = 256;
 const kPlainGroundCells = 96;
 
-/** How much of the water a view has to show: where it goes on beyond the picture, only a part. */
+/** How much of the water a view has to show: where it continues beyond the picture, only a part. */
 const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised">> = {
   openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
   pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 }, sideRaised: 4 },

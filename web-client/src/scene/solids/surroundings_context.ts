@@ -23,7 +23,7 @@ export interface SurroundingsContext {
 
 /** What bounds the water at its sides. */
 export type WaterEdge =
-  /** It goes on as a sea, except at closed sides. */
+  /** It continues as a sea, except at closed sides. */
   | { kind: "sea"; sea: Uniforms; sides: Readonly<Record<SideName, SideKind>> }
   /** Its sides are seen: a block of water, or water behind glass. */
   | { kind: "cut" }

@@ -1,5 +1,5 @@
 // Surface frames → the field texture that every shader reads: elevation, slopes and curvature at the time shown. Where water moves over its
-// shore, the field is that of the water's level, which goes on over dry ground (level.frag).
+// shore, the field is that of the water's level, which continues over dry ground (level.frag).
 // Reads the surface frames around that time. Writes the field.
 import { ClampToEdgeWrapping, DataTexture, IntType, NearestFilter, RedIntegerFormat, RepeatWrapping, ShortType, Vector2, Vector3, Vector4, WebGLRenderTarget, type IUniform, type Texture, type WebGLRenderer } from "three";
 

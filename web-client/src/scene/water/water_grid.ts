@@ -1,4 +1,4 @@
-// The meshes of the water: a grid over the square, which in an open sea goes on to the horizon, and the sides of a block of water.
+// The meshes of the water: a grid over the square, which in an open sea continues to the horizon, and the sides of a block of water.
 import { BufferAttribute, BufferGeometry } from "three";
 
 import type { SideName } from "../../codec/scene_info";

@@ -1,5 +1,5 @@
 // The water: a grid displaced by the field, and vertical sides (the skirt) down to the floor where it has them. In the open sea the grid
-// goes on to the horizon and has no sides. Reads the field, the shore, the foam and the froth, the rain, the sea around, the
+// continues to the horizon and has no sides. Reads the field, the shore, the foam and the froth, the rain, the sea around, the
 // shadow, and the solids, which are seen through the water and in its mirror. Writes the canvas and its depth.
 // A camera close to the surface sees it from below as well (below_surface.ts).
 import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";

@@ -15,7 +15,7 @@
 
 namespace spindrift::access {
 
-/// Any thread. What cannot be written is counted and never repeated; the server goes on without it.
+/// Any thread. What cannot be written is counted and never repeated; the server continues without it.
 class AuditFile {
  public:
   /// Lines that wait for the disk; further ones are lost.

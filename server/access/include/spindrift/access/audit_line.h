@@ -29,7 +29,7 @@ struct AuditEvent {
 };
 
 /// Returns the line, with its line break. Text is escaped, so that no value can end the line or forge a field; bytes
-/// that are no UTF-8 are removed; long values are cut.
+/// that are not UTF-8 are removed; long values are cut.
 std::string auditLine(const AuditEvent& event, std::chrono::system_clock::time_point now);
 
 }  // namespace spindrift::access

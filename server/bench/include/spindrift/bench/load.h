@@ -21,7 +21,7 @@ struct LoadOptions {
   std::string token;
 };
 
-/// Connects the clients over a few seconds and measures for `seconds`. A client whose connection ends goes on at the
+/// Connects the clients over a few seconds and measures for `seconds`. A client whose connection ends continues at the
 /// next URL, with its resume key. Delays compare the time in frames with the clock of this machine: they have a meaning
 /// on the machine of the simulation only. Prints a table. Errors: kInvalidInput for a URL; kUnavailable if no client
 /// received a frame.

@@ -53,7 +53,7 @@ class Node : public service::Cluster {
   /// Whether rooms of other servers can be served: NATS is connected and, for an edge, a server is alive. kUnavailable
   /// says in one line why not.
   [[nodiscard]] virtual core::Result<void> ready() const = 0;
-  /// Takes no rooms any more. The rooms go on.
+  /// Takes no rooms any more. The rooms continue.
   virtual void leave() = 0;
   /// The rooms have ended and their state is saved: lets others take them at once.
   virtual void release() = 0;

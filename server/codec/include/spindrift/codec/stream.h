@@ -34,7 +34,7 @@ std::string nameOf(core::Level level);
 /// Returns the number of levels that downsample this layer, from the counts for the scene's planes and particles.
 std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts);
 /// Returns the levels whose sessions take the layer from a frame that is due for the levels in `due`: these levels. The
-/// diagnostics are no part of the picture; sessions of every level take them.
+/// diagnostics are not a part of the picture; sessions of every level take them.
 core::LevelSet levelsTaking(v1::Layer layer, core::LevelSet due);
 
 /// Converts the level to its enum on the wire.

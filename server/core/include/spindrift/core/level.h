@@ -42,7 +42,7 @@ class LevelSet {
   std::uint32_t bits_ = 0;
 };
 
-/// Limits of one level. The defaults are no limit.
+/// Limits of one level. The defaults are not a limit.
 struct LevelBudget {
   /// Samples of the surface: as many as a square of so many along each side. The foam has half as many along each axis.
   std::uint32_t surface_side_count = std::numeric_limits<std::uint32_t>::max();

@@ -126,8 +126,8 @@ class Hub {
   virtual void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
   /// Gives the newest frame of the stream at this level, as a keyframe, to the sessions that have just begun to watch
-  /// it (Watch::is_first) and have had no frame yet. They go on with the delta of the next frame, so no other frame may
-  /// be published between that one and this call. It does not count for the rate.
+  /// it (Watch::is_first) and have had no frame yet. They continue with the delta of the next frame, so no other frame
+  /// may be published between that one and this call. It does not count for the rate.
   virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
   /// Returns who watches the stream now and who needs a keyframe, by the level that sessions ask for.
@@ -214,7 +214,7 @@ struct ServerOptions {
   std::chrono::milliseconds idle_timeout{60'000};    ///< silence that closes a session; a ping is sent at half of it
   std::chrono::milliseconds close_timeout{2'000};    ///< longest wait for the peer's close frame
   std::chrono::milliseconds answer_timeout{30'000};  ///< longest wait for the application's answer to a request
-  /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are no browsers send no Origin and
+  /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are not browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
   /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits
@@ -283,7 +283,7 @@ class Server {
   virtual Hub& hub() = 0;
   virtual ServerStats stats() const = 0;
   /// From now on refuses new sessions with 503 and Retry-After, and ends HTTP connections after their next reply. Open
-  /// sessions go on. Thread-safe.
+  /// sessions continue. Thread-safe.
   virtual void drain(std::chrono::seconds retry_after) = 0;
   /// With TLS: reads certificate and key again, in the background. Thread-safe.
   virtual void reloadCertificate() = 0;

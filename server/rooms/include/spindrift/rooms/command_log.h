@@ -50,7 +50,7 @@ class CommandLogWriter {
 
 class CommandLogReader {
  public:
-  /// Errors: kUnavailable for a file that cannot be read, kInvalidInput for one that is no log or has no complete
+  /// Errors: kUnavailable for a file that cannot be read, kInvalidInput for one that is not a log or has no complete
   /// header.
   static core::Result<std::unique_ptr<CommandLogReader>> open(const std::filesystem::path& file);
 

@@ -42,7 +42,7 @@ namespace spindrift::rooms {
 struct RoomSetup {
   std::string name;
   v1::Scene scene{};
-  /// Goes on where the room is kept on disk; `scene` is for a room of which nothing is there, and may then be empty.
+  /// Continues where the room is kept on disk; `scene` is for a room of which nothing is there, and may then be empty.
   bool goes_on = false;
   v1::RoomAccess access{};  ///< digests of its tokens: kept with the room, not looked at
 };
@@ -90,10 +90,10 @@ class Room {
   using TimePoint = RealTimeClock::TimePoint;
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
-  /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room goes on
+  /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room continues
   /// from there; `water` is then built from its start_scene. Errors:
-  /// kInvalidInput if the room cannot go on from there; those of the log; kUnavailable if the first snapshot cannot be
-  /// written.
+  /// kInvalidInput if the room cannot continue from there; those of the log; kUnavailable if the first snapshot cannot
+  /// be written.
   static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<Water> water,
                                                     const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
                                                     RoomPlace place = {}, v1::RoomAccess access = {});
@@ -186,7 +186,7 @@ class Room {
     Batch commands{};  ///< the equal ChangeScene commands that started it
     std::future<WaterBuilder::Built> water{};
     enum class Cause { kCommand, kDeviceFailure, kAdapting } cause = Cause::kCommand;
-    bool goes_on = false;  ///< the present water goes on in it, at another fidelity
+    bool goes_on = false;  ///< the present water continues in it, at another fidelity
     FidelityGovernor::Step step = FidelityGovernor::Step::kNone;  ///< if adapting
     std::string why{};                                            ///< if adapting: for people
   };
@@ -289,7 +289,7 @@ class Room {
   core::Result<bool> repeatSome(Repetition& all, bool waits);
   /// The people and what the other threads know, after the water.
   void restorePeople(const KeptRoom& kept);
-  /// Goes on in new water after the device failed, from what is kept; returns false, with nothing changed, if nothing
+  /// Continues in new water after the device failed, from what is kept; returns false, with nothing changed, if nothing
   /// is.
   bool restoreAfterLoss(std::unique_ptr<Water>& water);
   void repeat(const v1::Command& message, std::uint64_t& steps_until);
@@ -329,8 +329,8 @@ class Room {
   // room_fidelity.cpp
   /// Returns the room's scene at another level, with the present parameters.
   [[nodiscard]] core::Result<v1::Scene> sceneAt(v1::Fidelity level) const;
-  /// Goes on with the present water in `next`, and announces it. `why`: for people, may be empty. On a rejection the
-  /// room goes on as before, and `next` is unchanged.
+  /// Continues with the present water in `next`, and announces it. `why`: for people, may be empty. On a rejection the
+  /// room continues as before, and `next` is unchanged.
   Outcome goOnIn(std::unique_ptr<Water>& next, const std::string& why);
   /// With `serve --adapt`: starts a change of the level if the machine asks for one.
   void adaptFidelity(TimePoint now);

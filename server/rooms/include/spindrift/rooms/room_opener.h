@@ -23,9 +23,9 @@ class RoomOpener {
 
   /// A room whose water is being built, and which then goes from its snapshot to where it was.
   struct Opening {
-    RoomSetup setup;               ///< how it begins if it cannot go on from any snapshot
+    RoomSetup setup;               ///< how it begins if it cannot continue from any snapshot
     RoomPlace place{};             ///< until the room is there
-    std::uint64_t generation = 0;  ///< of the snapshot from which it goes on; 0: from the start of the scene
+    std::uint64_t generation = 0;  ///< of the snapshot from which it continues; 0: from the start of the scene
     std::future<WaterBuilder::Built> water{};
     std::shared_ptr<Room> room{};  ///< null while the water is built
   };
@@ -34,8 +34,8 @@ class RoomOpener {
   /// and nothing of it on disk can be used.
   core::Result<Opening> begin(RoomSetup setup);
   /// Works until the deadline, at least for a tick; with TimePoint::max() to the end. Returns whether the room is where
-  /// it was. A room that cannot go on from a snapshot goes on from the one before, and begins anew, with its scene, if
-  /// it cannot go on from any. Errors: those of Room::create().
+  /// it was. A room that cannot continue from a snapshot continues from the one before, and begins anew, with its
+  /// scene, if it cannot continue from any. Errors: those of Room::create().
   core::Result<bool> restore(Opening& opening, TimePoint deadline);
   /// Call it for an opening that ends with an error, or is not continued. A state on disk stays there.
   void giveUp(Opening& opening);

@@ -40,7 +40,7 @@ class RoomOutlets {
   virtual void wasReset(const Room& room) = 0;
   /// The watchdog or a new device restored the water; `how` is one line for people.
   virtual void hasRecovered(const Room& room, const std::string& how) = 0;
-  /// The same water goes on at another fidelity, after sceneChanged(); `how` is one line for people.
+  /// The same water continues at another fidelity, after sceneChanged(); `how` is one line for people.
   virtual void fidelityChanged(const Room& room, const std::string& how) = 0;
   /// The room is about to be destroyed.
   virtual void closed(const Room& room) = 0;

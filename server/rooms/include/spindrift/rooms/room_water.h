@@ -71,14 +71,14 @@ class RoomWater {
   /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
   /// tick continues: the new water starts at a tick later than any frame of the old one, and its boats get unused ids.
   [[nodiscard]] std::unique_ptr<Water> replaceWater(std::unique_ptr<Water> water);
-  /// Goes on with the present state in `next`, which is bound from now on: the same scene at another resolution, whose
-  /// live parameters take their present values. Then `next` is the old water, for destruction. Room ticks continue as
-  /// with replaceWater(). Errors leave both as they were: kUnavailable when the device failed, kInvalidInput when it
-  /// is not the same water or a parameter changed meanwhile to what it cannot take.
+  /// Continues with the present state in `next`, which is bound from now on: the same scene at another resolution,
+  /// whose live parameters take their present values. Then `next` is the old water, for destruction. Room ticks
+  /// continue as with replaceWater(). Errors leave both as they were: kUnavailable when the device failed,
+  /// kInvalidInput when it is not the same water or a parameter changed meanwhile to what it cannot take.
   core::Result<void> continueIn(std::unique_ptr<Water>& next);
   /// Writes tick, scenes, water and its hash. Waits for the device.
   void save(v1::KeptState& state);
-  /// Goes on from there; the water was built from `state.start_scene()`. kInvalidInput if it does not fit: then the
+  /// Continues from there; the water was built from `state.start_scene()`. kInvalidInput if it does not fit: then the
   /// water may have any state.
   core::Result<void> restore(const v1::KeptState& state);
   /// Numbers the next ticks from after `tick` on, if they would come before it.

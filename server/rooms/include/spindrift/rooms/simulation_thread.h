@@ -93,7 +93,7 @@ class SimulationThread {
   void carryOut(Change change, const Done& done);
   /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
-  /// Goes on with the openings, between the ticks of the rooms that run.
+  /// Continues with the openings, between the ticks of the rooms that run.
   void advanceOpenings();
   /// Returns whether the room can run.
   core::Result<bool> advance(RoomOpener::Opening& opening);

@@ -43,7 +43,7 @@ class StateStore {
   /// Returns the names of the rooms that have files, sorted. Folders whose names no room can have are none.
   [[nodiscard]] core::Result<std::vector<std::string>> rooms() const;
   /// Reads what there is of a room and logs what cannot be used: from the newest snapshot that is whole and of this
-  /// room, and older than generation `before`, which a caller gives that could not go on from that one. If there are
+  /// room, and older than generation `before`, which a caller gives that could not continue from that one. If there are
   /// snapshots and none can be used, all files of the room are moved out of the way. One place per room at a time.
   /// Error kUnavailable when another server runs the room, in a shared folder.
   core::Result<RoomPlace> place(const std::string& room, std::uint64_t before = state::RoomFiles::kNewest);

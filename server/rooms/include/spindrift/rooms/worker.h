@@ -27,7 +27,7 @@ class Worker {
   using Work = std::function<void(bool runs)>;
   /// Any thread.
   void push(Work work);
-  /// Any thread. From now on waiting and new pieces are called with runs = false; the current one goes on.
+  /// Any thread. From now on waiting and new pieces are called with runs = false; the current one continues.
   void end();
   /// Any thread. Returns whether no work waits or runs.
   [[nodiscard]] bool isIdle() const { return unfinished_count_ == 0; }

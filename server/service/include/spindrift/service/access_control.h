@@ -63,7 +63,7 @@ class AccessControl {
 };
 
 /// Makes a token for each of the roles that a request asks for: `kept` belongs to the room, `shown` into the answer.
-/// Error kInvalidInput for a role that is none, or too many.
+/// Error kInvalidInput for an unknown role, or too many.
 struct MadeTokens {
   v1::RoomAccess kept;
   google::protobuf::RepeatedPtrField<v1::RoomToken> shown;

@@ -1,4 +1,4 @@
-// The end of a process whose clients shall go on elsewhere, or here after a restart.
+// The end of a process whose clients shall continue elsewhere, or here after a restart.
 #pragma once
 
 #include <chrono>

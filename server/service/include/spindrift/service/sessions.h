@@ -56,7 +56,7 @@ class Sessions {
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
   /// The same; counts the rejection, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
-  /// Another connection goes on in the session's place.
+  /// Another connection continues in the session's place.
   void displace(net::SessionId session);
   /// Tells every client that knows the message.
   void drain(const v1::Draining& draining);

@@ -1,4 +1,4 @@
-// The whole state of a simulation, so that another one of the same scene on the same device goes on from it bit for
+// The whole state of a simulation, so that another one of the same scene on the same device continues from it bit for
 // bit.
 #pragma once
 
@@ -13,7 +13,7 @@
 
 namespace spindrift::sim {
 
-/// A buffer of the device whose content goes on from one tick to the next.
+/// A buffer of the device whose content continues from one tick to the next.
 struct SavedBuffer {
   std::string name;
   std::vector<std::uint32_t> words;

@@ -116,9 +116,9 @@ class WaterSim {
   /// Uploads only what changed since the start: particle positions, boats, one uniform block.
   void reset();
 
-  /// Copies what another simulation of the same water needs to go on from here. Waits.
+  /// Copies what another simulation of the same water needs to continue from here. Waits.
   [[nodiscard]] CarriedState carriedState();
-  /// Goes on from the state of another simulation instead of the start: same time (to half a tick), water, boats with
+  /// Continues from the state of another simulation instead of the start: same time (to half a tick), water, boats with
   /// their ids, effects and wind sea; carry_state.h says what becomes of each at another resolution. Call it before a
   /// tick is run or after reset(). Parameters are not carried. kInvalidInput, with nothing changed, if it is not the
   /// same water.
@@ -127,8 +127,8 @@ class WaterSim {
   /// Copies everything that another simulation of the same scene, with the same values of its parameters, needs to go
   /// on from here bit for bit. Waits.
   [[nodiscard]] SavedState savedState();
-  /// Goes on from there: same time since the start, water, particles, boats, effects and wind sea. Gauges record anew.
-  /// kInvalidInput, with nothing changed, if the scene lays out other buffers or steps.
+  /// Continues from there: same time since the start, water, particles, boats, effects and wind sea. Gauges record
+  /// anew. kInvalidInput, with nothing changed, if the scene lays out other buffers or steps.
   core::Result<void> restore(const SavedState& saved);
 
   /// Packs a frame of the present state. Returns false when there will be none: all slots are still in use by earlier

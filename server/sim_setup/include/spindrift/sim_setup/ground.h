@@ -19,8 +19,8 @@ double groundDepth(const core::Scene& scene, double x_m, double z_m);
 inline constexpr double kHighestLand_m = 60.0;
 
 /// Returns the still depth of the ground with obstacles as ground. A rock is a paraboloid of height_m over the still
-/// water, which it meets at radius_m, on a cone that goes on with its slope down to the bed; a breakwater is a vertical
-/// wall of height_m over the still water. Land counts as at most kHighestLand_m high.
+/// water, which it meets at radius_m, on a cone that continues with its slope down to the bed; a breakwater is a
+/// vertical wall of height_m over the still water. Land counts as at most kHighestLand_m high.
 double groundDepthWithObstacles(const core::Scene& scene, double x_m, double z_m);
 
 /// Returns the still depth where there is water at rest, 0 on land; without obstacles. [m]

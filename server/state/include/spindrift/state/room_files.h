@@ -99,7 +99,7 @@ class RoomFiles {
   /// Returns where a state stands that is copied now; later records follow it. Begins a new log, unless the newest one
   /// still waits for its snapshot: then a snapshot that could not be written is tried again without further files.
   /// Older logs and snapshots stay until removeOldGenerations(), so that recover() finds a snapshot and all logs after
-  /// it at any moment. After an error append() goes on in the log that there was.
+  /// it at any moment. After an error append() continues in the log that there was.
   core::Result<StatePoint> beginGeneration();
 
   /// Appends a record, whole or not at all; when it returns the operating system has the bytes. After a failed write

@@ -9,7 +9,8 @@
 
 namespace spindrift::state {
 
-/// Returns the folder of a room, which need not exist. kInvalidInput for what is no name of a room (core::isRoomName).
+/// Returns the folder of a room, which need not exist. kInvalidInput for what is not a name of a room
+/// (core::isRoomName).
 core::Result<std::filesystem::path> roomFolder(const std::filesystem::path& folder, const std::string& name);
 
 /// The folders in FOLDER/rooms, sorted; those that begin with a dot are this program's own.
@@ -26,7 +27,7 @@ core::Result<std::filesystem::path> setRoomAside(const std::filesystem::path& fo
 /// a whole or not at all.
 core::Result<void> removeRoom(const std::filesystem::path& folder, const std::string& name);
 
-/// Returns whether the room's folder holds more than logs: a room without a snapshot cannot go on, and has not been
+/// Returns whether the room's folder holds more than logs: a room without a snapshot cannot continue, and has not been
 /// open. No error if it has none.
 core::Result<bool> hasState(const std::filesystem::path& folder, const std::string& name);
 

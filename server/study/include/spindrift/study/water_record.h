@@ -32,8 +32,8 @@ struct RecordOptions {
 
 struct WaterRecord {
   // Cost, without the time for sampling.
-  double cost_ms_per_s =
-      0.0;  ///< of a simulated second: processor time on a rasteriser in software, otherwise wall time
+  /// Of a simulated second: processor time of all threads on a software rasteriser, otherwise wall time.
+  double cost_ms_per_s = 0.0;
   std::vector<gpu::PassCost> passes;
   double seconds = 0.0;  ///< simulated
   std::uint64_t device_bytes = 0;

@@ -19,7 +19,7 @@ namespace spindrift::wire {
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
 inline constexpr std::uint32_t kWireMinor = 3;
-/// First minor version whose clients know planes that are no squares (count_z and width_m of their headers).
+/// First minor version whose clients know planes that are not squares (count_z and width_m of their headers).
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
 inline constexpr std::uint32_t kDrainingMinor = 2;
@@ -27,7 +27,7 @@ inline constexpr std::uint32_t kDrainingMinor = 2;
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
 inline constexpr std::size_t kPersonNameMaxBytes = 32;
-/// A longer Hello.resume_key is none that a server gave out.
+/// No server gives out a longer Hello.resume_key.
 inline constexpr std::size_t kResumeKeyMaxBytes = 256;
 
 struct Hello {
