@@ -48,8 +48,8 @@ core::Result<json::object> parseJsonObject(std::string_view text) {
   json::parse_options options;
   options.max_depth = kMaxDepth;
   json::value value = json::parse({text.data(), text.size()}, error, {}, options);
-  if (error) return refuse("no JSON: " + error.message());
-  if (!value.is_object()) return refuse("no JSON object");
+  if (error) return refuse("not JSON: " + error.message());
+  if (!value.is_object()) return refuse("not a JSON object");
   // Boost keeps the last of two members with one name.
   if (memberCount(text) != memberCount(value)) return refuse("JSON with the same name twice in an object");
   return std::move(value.get_object());

@@ -104,7 +104,7 @@ void checkFields(const Message& message, const std::string& prefix, std::vector<
       const int number = reflection.GetEnumValue(message, &field);
       if (field.enum_type()->FindValueByNumber(number) != nullptr) continue;
       issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, path,
-                        std::to_string(number) + " is no " + field.enum_type()->name() + "; choose 1 to " +
+                        std::to_string(number) + " is not of type " + field.enum_type()->name() + "; choose 1 to " +
                             std::to_string(field.enum_type()->value_count() - 1)});
     } else if (parameterOptions(field) != nullptr && !(field.has_presence() && !reflection.HasField(message, &field))) {
       if (auto issue = checkNumber(field, numberOf(message, field))) {

@@ -35,7 +35,7 @@ std::string inOurWords(const std::string& reason) {
   }
   const std::size_t value_begin = value + kValue.size();
   return reason.substr(kBegin.size(), value - kBegin.size()) + ": " + reason.substr(value_begin, type - value_begin) +
-         " is no " + name;
+         " is not of type " + name;
 }
 
 /// Returns an empty string, or the reason why the text is not such a message.

@@ -318,7 +318,7 @@ TEST_F(ProgramAccess, WhatIsWrongWithAKeyIsSaidAtTheStart) {
   expectOneErrorLine(outcomeOf({"--jwt-key", "hs256:" + path("short")}), 2, {"--jwt-key", "5 bytes", "32"});
   expectOneErrorLine(outcomeOf({"--jwt-key", path("private.pem")}), 2, {"private key"});
   expectOneErrorLine(outcomeOf({"--jwt-key", path("nothing")}), 2, {"--jwt-key", "nothing"});
-  expectOneErrorLine(outcomeOf({"--jwt-keys", path("short")}), 2, {"--jwt-keys", "no JSON"});
+  expectOneErrorLine(outcomeOf({"--jwt-keys", path("short")}), 2, {"--jwt-keys", "not JSON"});
   expectOneErrorLine(outcomeOf({"--jwt-issuer", "me"}), 2, {"--jwt-key"});
   expectOneErrorLine(outcomeOf({"--audit-log", path("no/such/folder")}), 2, {"--audit-log"});
 }

@@ -132,7 +132,7 @@ TEST_F(People, TokensThatCannotBeReadAreReported) {
   };
   refused({"--tokens", "/nonexistent"}, {"--tokens-file /nonexistent"});
   refused({"--tokens", scene("# nobody\n", "tokens")}, {"no token"});
-  refused({"--tokens", scene("king abcdefghijklmnop\n", "tokens")}, {"tokens:1:", "no role"});
+  refused({"--tokens", scene("king abcdefghijklmnop\n", "tokens")}, {"tokens:1:", "not a role"});
   refused({"--guests", "none"}, {"--guests none"});
 }
 
@@ -147,7 +147,7 @@ TEST_F(People, ALogIsReplayedBitForBit) {
   EXPECT_THAT(replay.out, HasSubstr("bit for bit"));
   const Outcome json = runProgram({"replay", "--device", "software", "--json", "-", logFile()});
   EXPECT_TRUE(boost::json::parse(json.out).at("same").as_bool());
-  expectOneErrorLine(runProgram({"replay", shippedScene("pool")}), 2, {"no log", "spinrec1"});
+  expectOneErrorLine(runProgram({"replay", shippedScene("pool")}), 2, {"not a log", "spinrec1"});
   expectOneErrorLine(runProgram({"replay", "/nonexistent"}), 2, {"/nonexistent"});
 }
 

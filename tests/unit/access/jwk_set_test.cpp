@@ -118,14 +118,14 @@ TEST(JwkSet, RefusesRsaKeysWithAnExponentForWhichAnybodyCanSign) {
 
 TEST(JwkSet, RefusesWhatIsNone) {
   EXPECT_THAT(refusalOf(R"({"keys":[],"keys":[]})"), HasSubstr("the same name twice"));
-  EXPECT_THAT(refusalOf("{"), HasSubstr("no JSON"));
-  EXPECT_THAT(refusalOf("[]"), HasSubstr("no JWK set"));
-  EXPECT_THAT(refusalOf("{\"keys\":3}"), HasSubstr("no JWK set"));
+  EXPECT_THAT(refusalOf("{"), HasSubstr("not JSON"));
+  EXPECT_THAT(refusalOf("[]"), HasSubstr("not a JWK set"));
+  EXPECT_THAT(refusalOf("{\"keys\":3}"), HasSubstr("not a JWK set"));
   EXPECT_THAT(refusalOf(set("")), HasSubstr("it has no key"));
   std::string many;
   for (std::size_t k = 0; k <= kJwtKeyMaxCount; ++k) many += (k == 0 ? "" : ",") + octKey();
   EXPECT_THAT(refusalOf(set(many)), HasSubstr("at most 32"));
-  EXPECT_THAT(refusalOf(set(std::string(100, '[') + std::string(100, ']'))), HasSubstr("no JSON"));
+  EXPECT_THAT(refusalOf(set(std::string(100, '[') + std::string(100, ']'))), HasSubstr("not JSON"));
 }
 
 }  // namespace

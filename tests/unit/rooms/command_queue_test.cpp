@@ -123,7 +123,7 @@ TEST_F(CommandQueueTest, RefusesBeyondEachBoundAndSaysWhich) {
   push(queue, from(1, 2, reset()));
   const auto heavy = queue.tryPush(from(1, 3, reset()), at(0ms));
   ASSERT_TRUE(heavy);
-  EXPECT_THAT(*heavy, testing::HasSubstr("2 of your resets"));
+  EXPECT_THAT(*heavy, testing::HasSubstr("your limit of 2 waiting resets"));
   push(queue, from(1, 4, splash()));
   const auto lane = queue.tryPush(from(1, 5, splash()), at(0ms));
   ASSERT_TRUE(lane);

@@ -295,7 +295,7 @@ TEST_F(SceneFile, ThatIsADirectoryIsUnavailable) {
 TEST_F(SceneFile, ThatIsADeviceIsUnavailable) {
   const auto scene = loadSceneFile("/dev/zero");
   ASSERT_FALSE(scene);
-  EXPECT_THAT(scene.error().message, HasSubstr("no regular file"));
+  EXPECT_THAT(scene.error().message, HasSubstr("not a regular file"));
 }
 
 TEST_F(SceneFile, ThatCannotBeReadIsUnavailable) {

@@ -162,9 +162,9 @@ TEST(ApiMessage, ReportsThePlaceAndWhatIsExpected) {
   EXPECT_EQ(whyNot(R"({"splash":{},"reset":{}})"), "reset: cannot be given together with splash");
   EXPECT_EQ(whyNot(R"({"reset":5})"), "reset: has to be an object {...}");
   EXPECT_EQ(whyNot(R"({"splash":{"x_m":[1]}})"), "splash.x_m: has to be a number");
-  EXPECT_EQ(whyNot(R"({"splash":{"depth_m":"deep"}})"), "splash.depth_m: \"deep\" is not a double");
-  EXPECT_EQ(whyNot(R"({"control_boat":{"boatId":-1}})"), "control_boat.boat_id: -1 is not a uint32");
-  EXPECT_EQ(whyNot(R"({"breaking_wave":{"side":"SIDEWAYS"}})"), "breaking_wave.side: \"SIDEWAYS\" is not a Side");
+  EXPECT_EQ(whyNot(R"({"splash":{"depth_m":"deep"}})"), "splash.depth_m: \"deep\" is not of type double");
+  EXPECT_EQ(whyNot(R"({"control_boat":{"boatId":-1}})"), "control_boat.boat_id: -1 is not of type uint32");
+  EXPECT_EQ(whyNot(R"({"breaking_wave":{"side":"SIDEWAYS"}})"), "breaking_wave.side: \"SIDEWAYS\" is not of type Side");
 }
 
 TEST(ApiMessage, BoundsTheDepthOfJson) {
