@@ -1,4 +1,5 @@
 // The trade study's figures are those of this solver and of these fidelity levels.
+#include <cmath>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -38,7 +39,7 @@ TEST(StudyFigures, KnownResultsScaleAsTheLevelsOfScenesDo) {
     for (const v1::Fidelity each :
          {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE}) {
       if (scene::fidelityName(each) == level)
-        return scene::toCore(*scene::loadSceneFile(*core::findScene("splash"), each));
+        return scene::toCore(*scene::loadSceneFile(*core::findScene("pool"), each));
     }
     throw std::invalid_argument(level);
   };
@@ -47,7 +48,9 @@ TEST(StudyFigures, KnownResultsScaleAsTheLevelsOfScenesDo) {
     const core::Scene scaled = atLevel(level.name);
     EXPECT_DOUBLE_EQ(static_cast<double>(scaled.wave->resolution_count) / balanced.wave->resolution_count, level.cells)
         << level.name;
-    EXPECT_DOUBLE_EQ(balanced.coupling->droplet_spacing_m / scaled.coupling->droplet_spacing_m, level.particles)
+    // Particles of a layer on the wave.
+    EXPECT_NEAR(std::sqrt(static_cast<double>(scaled.particles->count) / balanced.particles->count), level.particles,
+                0.01)
         << level.name;
     EXPECT_DOUBLE_EQ(scaled.tick_rate_hz / balanced.tick_rate_hz, level.ticks) << level.name;
   }
