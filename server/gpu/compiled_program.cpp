@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <thread>
 #include <utility>
 
 #include <glad/gl.h>
@@ -77,6 +78,20 @@ ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
     uses.texels.push_back(std::move(block));
   }
   return uses;
+}
+
+/// Waits until the driver has compiled the linked program, where it must not compile two at a time. Mesa's zink compiles
+/// on up to four threads, which allocate below one shared object without a lock (ralloc on the screen in create_layout()
+/// and descriptor_util_pool_key_get() of zink_descriptors.c, Mesa 22.3): rarely, the heap is damaged.
+void waitForCompiler(const Context& ctx, GLuint program) {
+  if (!ctx.device().name.starts_with("zink")) return;
+  constexpr GLenum kCompletionStatus = 0x91B1;  // GL_COMPLETION_STATUS_KHR of KHR_parallel_shader_compile
+  for (;;) {
+    GLint is_complete = GL_TRUE;  // stays so if the driver does not know the query
+    glGetProgramiv(program, kCompletionStatus, &is_complete);
+    if (is_complete) return;
+    std::this_thread::yield();
+  }
 }
 
 /// Checks the program against the limits that Context::create() requires of a device.
@@ -162,6 +177,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glLinkProgram(program->id);
   glDetachShader(program->id, shader);
   glDeleteShader(shader);
+  waitForCompiler(ctx, program->id);
   glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
   if (!is_fine) {
     return refused(ctx, shader_path, "link", translateLog(source, programLog(program->id)));

@@ -1,4 +1,8 @@
 #include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 
@@ -36,6 +40,21 @@ TEST_F(ProgramTest, ReflectsTheGroupSize) {
   EXPECT_EQ(wide->groupSize(), (std::array<std::uint32_t, 3>{64, 1, 1}));
   EXPECT_EQ(odd->groupSize(), (std::array<std::uint32_t, 3>{24, 1, 1}));
   EXPECT_EQ(flat->groupSize(), (std::array<std::uint32_t, 3>{32, 2, 1}));
+}
+
+// The threads of zink's compiler are named "<program>:zcfq0" and up; it starts another when programs queue.
+TEST_F(ProgramTest, ProgramsAreCompiledOneAfterTheOtherOnZink) {
+  if (!ctx->device().name.starts_with("zink")) GTEST_SKIP() << "the device is not zink, but " << ctx->device().name;
+  for (int group = 1; group <= 40; ++group) {
+    ASSERT_TRUE(Program::create(*ctx, "tests/iota.comp", {{"GROUP", std::to_string(group)}}));
+  }
+  std::vector<std::string> compilers;
+  for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task")) {
+    std::string name;
+    std::getline(std::ifstream(thread.path() / "comm"), name);
+    if (name.find(":zcfq") != std::string::npos) compilers.push_back(name);
+  }
+  EXPECT_THAT(compilers, testing::SizeIs(1));
 }
 
 TEST_F(ProgramTest, DispatchCoversOddSizes) {
