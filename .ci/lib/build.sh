@@ -54,13 +54,14 @@ build_web() {
   write_stamp web-dist "$digest"
 }
 
-binary_of() { printf '%s/build/%s/bin/spindrift' "$root" "$1"; }
+# binary_of PRESET [PROGRAM]: the built program, spindrift if none is named.
+binary_of() { printf '%s/build/%s/bin/%s' "$root" "$1" "${2:-spindrift}"; }
 
-# prepare_server PRESET: installs and builds everything that a command of the program needs, then releases the lock.
-prepare_server() {
+# prepare_program PRESET PROGRAM: installs and builds everything that the program needs, then releases the lock.
+prepare_program() {
   need_packages server driver
   lock_build
-  build_server "$1" spindrift
+  build_server "$@"
   unlock_build
 }
 

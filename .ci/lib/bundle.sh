@@ -2,7 +2,7 @@
 # Packs a folder that runs on another x86-64 Linux: program, page, scenes, the libraries they need, and Mesa's software
 # rasteriser for machines without a driver. Sourced by ./dev; the launcher is .ci/bundle/spindrift.
 #
-# bin/spindrift finds lib/ by its RUNPATH. Libraries that drivers of the machine use, too, are in lib/fallback/NAME/ and
+# The programs in bin/ find lib/ by their RUNPATH. Libraries that drivers of the machine use, too, are in lib/fallback/NAME/ and
 # are used only if the machine has none, because a newer driver must not load an older library; OpenSSL as well, because
 # the machine's own gets security updates. Mesa's libraries find
 # each other by RUNPATH, and no other program sees them.
@@ -23,6 +23,9 @@ library_closure() {
     while read -r name path; do [[ "$name" =~ $glibc_libraries ]] || printf '%s %s\n' "$name" "$path"; done
 }
 
+# The server, and what measures it on the machine to which the bundle goes.
+readonly bundled_programs=(spindrift spindrift-bench spindrift-study)
+
 # copy_library PATH TARGET: copies the file behind the links, under the name that programs use, and records it for the
 # licences.
 copy_library() {
@@ -32,9 +35,11 @@ copy_library() {
 }
 
 bundle_program() {
-  local folder="$1" preset="$2" name path real
-  install -D --mode=755 "$(binary_of "$preset")" "$folder/bin/spindrift"
-  strip --strip-debug "$folder/bin/spindrift"
+  local folder="$1" preset="$2" name path real program
+  for program in "${bundled_programs[@]}"; do
+    install -D --mode=755 "$(binary_of "$preset" "$program")" "$folder/bin/$program"
+    strip --strip-debug "$folder/bin/$program"
+  done
   while read -r name path; do
     if [[ "$name" =~ $shared_with_drivers ]]; then
       # The launcher compares versions by the file's real name.
@@ -46,9 +51,9 @@ bundle_program() {
       # shellcheck disable=SC2016  # $ORIGIN is for the loader
       patchelf --set-rpath '$ORIGIN' "$folder/lib/$name"
     fi
-  done < <(library_closure "$(binary_of "$preset")")
+  done < <(library_closure "${bundled_programs[@]/#/$root/build/$preset/bin/}")
   # shellcheck disable=SC2016
-  patchelf --set-rpath '$ORIGIN/../lib' "$folder/bin/spindrift"
+  patchelf --set-rpath '$ORIGIN/../lib' "${bundled_programs[@]/#/$folder/bin/}"
 }
 
 # shellcheck disable=SC2016  # $ORIGIN is for the loader
@@ -125,7 +130,7 @@ TEXT
   need_packages server driver bundle
   lock_build
   need_web
-  build_server "$preset" spindrift
+  build_server "$preset" "${bundled_programs[@]}"
   build_web
   unlock_build
 
@@ -140,6 +145,8 @@ TEXT
   cp -r server/scenes "$folder/share/spindrift/scenes"
   cp -r "$web_dist" "$folder/share/spindrift/web"
   install --mode=755 .ci/bundle/spindrift "$folder/spindrift"
+  ln -s spindrift "$folder/spindrift-bench"
+  ln -s spindrift "$folder/spindrift-study"
   install --mode=644 LICENSE "$folder/LICENSE"
   bundle_licences "$folder" "$preset" "$version"
   bundle_readme "$folder" "$version" "$mesa"

@@ -214,7 +214,9 @@ prepare_tests() {
     build_server "$preset" $targets
   elif "$with_native"; then
     build_server "$preset"
-  elif [[ "$wanted" =~ \ (wire|browser|tools)\  ]]; then
+  elif [[ "$wanted" == *" tools "* ]]; then
+    build_server "$preset" "${bundled_programs[@]}"
+  elif [[ "$wanted" =~ \ (wire|browser)\  ]]; then
     build_server "$preset" spindrift
   fi
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz

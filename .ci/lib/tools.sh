@@ -4,7 +4,7 @@
 command_bench() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev bench [--preset release|debug|asan|tsan] [OPTIONS OF spindrift bench]
+usage: ./dev bench [--preset release|debug|asan|tsan] [OPTIONS OF spindrift-bench]
 
 Time per pass and per step at several particle counts, and of the stream's encoder; --json FILE writes them down.
 TEXT
@@ -12,21 +12,21 @@ TEXT
   fi
   local preset rest
   take_preset "$@"
-  prepare_server "$preset"
+  prepare_program "$preset" spindrift-bench
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
-  exec "$(binary_of "$preset")" bench "${rest[@]}"
+  exec "$(binary_of "$preset" spindrift-bench)" "${rest[@]}"
 }
 
 command_study() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift study]
+usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift-study]
        ./dev study --update
 
 The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down,
 --plot FOLDER as well, for ./dev charts FOLDER.
 --update measures the trade suite anew (about 20 minutes; an interrupted run continues) and writes everything that is made
-of it, with date and commit: numbers and charts in server/study/plots, tables in the documents, the figures of the page.
+of it, with date and commit: numbers and charts in docs/plots, tables in the documents, the figures of the page.
 TEXT
     return
   fi
@@ -37,26 +37,26 @@ TEXT
   fi
   local preset rest
   take_preset "$@"
-  prepare_server "$preset"
+  prepare_program "$preset" spindrift-study
   cd -- "$called_from" || fail 2 "the folder $called_from is gone"
-  exec "$(binary_of "$preset")" study "${rest[@]}"
+  exec "$(binary_of "$preset" spindrift-study)" "${rest[@]}"
 }
 
 # Measures on the software rasteriser, as the tests run: with it the state hashes can be compared everywhere.
 update_study() {
   local commit
-  git diff --quiet HEAD -- server shaders ':!server/study' || fail 2 "study --update: commit the changes below server and shaders first"
+  git diff --quiet HEAD -- server shaders || fail 2 "study --update: commit the changes below server and shaders first"
   commit="$(git rev-parse --short HEAD)"
   need_packages charts
-  prepare_server release
+  prepare_program release spindrift-study
   mkdir -p build/study
   rm -f build/study/trade.json
   # Exit code 1 with results: something missed its bound, which is printed and no reason to keep older figures.
-  "$(binary_of release)" study --suite trade --device software --plot build/study --journal build/study/trade.journal ||
+  "$(binary_of release spindrift-study)" --suite trade --device software --plot build/study --journal build/study/trade.journal ||
     [[ -f build/study/trade.json ]] || fail 1 "the study ended early; ./dev study --update continues it"
-  python3 server/study/write_tables.py --take build/study/trade.json "$commit"
+  python3 tests/study/write_tables.py --take build/study/trade.json "$commit"
   rm build/study/trade.journal
-  command_charts "$root/server/study/plots"
+  command_charts "$root/docs/plots"
 }
 
 command_charts() {
@@ -64,8 +64,8 @@ command_charts() {
     cat <<'TEXT'
 usage: ./dev charts FOLDER
 
-Draws the charts of the results that `spindrift study --plot FOLDER` wrote, as SVG files beside them (Python, matplotlib).
-`./dev charts server/study/plots` draws those of the documents again.
+Draws the charts of the results that `spindrift-study --plot FOLDER` wrote, as SVG files beside them (Python, matplotlib).
+`./dev charts docs/plots` draws those of the documents again.
 TEXT
     return
   fi
@@ -75,7 +75,7 @@ TEXT
   # Debian's matplotlib belongs to Debian's Python, which need not be the first on the PATH.
   local python=/usr/bin/python3
   [[ -x "$python" ]] || python=python3
-  exec "$python" "$root/server/study/draw_charts.py" "$1"
+  exec "$python" "$root/tests/study/draw_charts.py" "$1"
 }
 
 # Our C++ sources, committed or new. Without shaders/shared: one of its two compilers reads its blocks as GLSL.

@@ -26,8 +26,6 @@ ProgramCommand addReplay(CLI::App& program);
 ProgramCommand addScript(CLI::App& program);
 ProgramCommand addInfo(CLI::App& program);
 ProgramCommand addCheck(CLI::App& program);
-ProgramCommand addBench(CLI::App& program);
-ProgramCommand addStudy(CLI::App& program);
 
 // Flags that several commands have.
 void addDevice(CLI::App& command, std::string& device);

@@ -120,7 +120,7 @@ void applyFidelity(v1::Scene& scene) {
     v1::WaveScene& wave = *scene.mutable_wave();
     scaleCells(wave, level.wave_scale);
     // At every level: rings of the 9-point stencil are 1.3 to 1.5 times as far off at the same step, as far off at each
-    // stencil's own largest step, and carry twice the faces (`spindrift study --suite accuracy --case round-hump`).
+    // stencil's own largest step, and carry twice the faces (`spindrift-study --suite accuracy --case round-hump`).
     if (wave.stencil() == v1::STENCIL_UNSPECIFIED) wave.set_stencil(v1::STENCIL_FIVE_POINT);
   }
   if (scene.has_particles()) {

@@ -21,7 +21,7 @@ constexpr double kDryShare = 0.03;
 constexpr double kFadeShare = 0.4;
 /// Strength of the sponge: cubic, with exp(-2 integral(sigma)/c) = 0.2 % for a wave of normal incidence. A stronger
 /// sponge returns less of such a wave, but its slope reflects more of an oblique one: 0.01 % gave 6.2 % at 45 degrees
-/// (waves of 3 m, sponge of 4 m; `spindrift study --suite accuracy --case reflection`).
+/// (waves of 3 m, sponge of 4 m; `spindrift-study --suite accuracy --case reflection`).
 constexpr double kSpongeReturn = 2e-3;
 constexpr double kSpongePower = 3.0;
 

@@ -24,7 +24,7 @@ using core::Error;
 using core::ErrorCode;
 
 /// Share of a support radius that sound plus water may cross in a step. The usual value is 0.4 of half of it (Monaghan
-/// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift study --suite
+/// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift-study --suite
 /// stability --case "step,"`).
 constexpr double kSoundCourant = 0.7;
 /// The same for position-based water, which has no sound. Larger steps compress water by more than a quarter.

@@ -35,7 +35,7 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 /// less than all.
 #define MAX_PRESSED 0.45
 /// Cells press fully where water runs together, across a cell, with the second share of sqrt(g h), and not at all below the first:
-/// waves that do not break would lose height (`study --case bar`).
+/// waves that do not break would lose height (`spindrift-study --case bar`).
 #define PRESSED_FROM 0.016
 #define PRESSED_FULL 0.048
 /// Waves and flow together may cross this share of a cell in a step. What is faster loses velocity: in a step it is divided by 1 plus
@@ -45,7 +45,7 @@ layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args
 #define COURANT_LOSS 4.0
 /// In a step, velocities are divided by 1 plus this number where columns alternate between high and empty and differ by more than the
 /// second share of (dx/dt)^2/g; not at all below the first. Without these shares thin water at shores and bores lost
-/// momentum (`study --case momentum`).
+/// momentum (`spindrift-study --case momentum`).
 #define ALTERNATING_LOSS 4.0
 #define ALTERNATING_FROM 0.04
 #define ALTERNATING_FULL 0.12
@@ -79,7 +79,7 @@ struct Face {
 /// What the slope of the velocity adds to the momentum that `through` [m^2/s] carries across the middle of a cell with the height
 /// water_m, over that of the face it comes from: velocities at the faces before and after the cell, and at those beyond. The
 /// velocity is that of the middle of the step, in which water moves on, and waves that travel with it by as much more: without
-/// their part such waves steepen by themselves (`study --case breaking-front`).
+/// their part such waves steepen by themselves (`spindrift-study --case breaking-front`).
 float steeperMomentum(float through, float water_m, float far_before, float before, float after, float far_after) {
   const float rise = through > 0.0 ? vanLeer(after - before, before - far_before) : -vanLeer(after - before, far_after - after);
   const float travelled_mps = abs(through) / max(water_m, 1e-6) + sqrt(sim.gravity_mps2 * water_m);

@@ -1,4 +1,4 @@
-// The quick form of `spindrift study --suite accuracy`, one test per case.
+// The quick form of `spindrift-study --suite accuracy`, one test per case.
 #include <limits>
 #include <string>
 

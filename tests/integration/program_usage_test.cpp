@@ -33,7 +33,7 @@ TEST_F(Usage, NamesAnUnknownFlagOfACommand) {
 }
 
 TEST_F(Usage, UnknownCaseOfAStudyIsRefusedWithTheCases) {
-  const Outcome outcome = runProgram({"study", "--device", "software", "--case", "tides"});
+  const Outcome outcome = runProgram({"--device", "software", "--case", "tides"}, {}, SPINDRIFT_STUDY);
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, HasSubstr("'tides'"));
@@ -42,9 +42,9 @@ TEST_F(Usage, UnknownCaseOfAStudyIsRefusedWithTheCases) {
 
 TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndKeepsTheirNumbers) {
   const std::filesystem::path charts = folder().path() / "charts";
-  const Outcome outcome = runProgram({"study", "--device", "software", "--suite", "trade", "--quick", "--case",
-                                      "splash", "--plot", charts.string(), "--json", "-"},
-                                     {}, SPINDRIFT_PROGRAM, std::chrono::minutes(5));
+  const Outcome outcome = runProgram({"--device", "software", "--suite", "trade", "--quick", "--case", "splash",
+                                      "--plot", charts.string(), "--json", "-"},
+                                     {}, SPINDRIFT_STUDY, std::chrono::minutes(5));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
   const auto json = boost::json::parse(outcome.out).as_object();
@@ -57,7 +57,7 @@ TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndKeepsTheirNumbers) {
     EXPECT_LT(row.at("height_rms_ratio").to_number<double>(), 0.5);
   }
   EXPECT_LT(rows[2].at("height_rms_ratio").to_number<double>(), rows[0].at("height_rms_ratio").to_number<double>());
-  const std::vector<std::string> listing = {SPINDRIFT_SOURCE_DIR "/server/study/draw_charts.py", "--list",
+  const std::vector<std::string> listing = {SPINDRIFT_SOURCE_DIR "/tests/study/draw_charts.py", "--list",
                                             charts.string()};
   const Outcome listed = runProgram(listing, {}, "/usr/bin/python3");
   EXPECT_EQ(listed.exit_code, 0) << listed.err;
@@ -78,7 +78,7 @@ TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
 
 TEST_F(Usage, UnknownSceneOfATradeStudyIsRefusedWithTheScenes) {
   const Outcome outcome =
-      runProgram({"study", "--device", "software", "--suite", "trade", "--quick", "--case", "lagoon"});
+      runProgram({"--device", "software", "--suite", "trade", "--quick", "--case", "lagoon"}, {}, SPINDRIFT_STUDY);
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.exit_code, 2);
   EXPECT_THAT(outcome.err, testing::AllOf(HasSubstr("'lagoon'"), HasSubstr("harbor"), HasSubstr("known")));
@@ -95,8 +95,20 @@ TEST_P(Help, GoesToStandardOutputAndExitsWith0) {
   EXPECT_EQ(outcome.err, "");
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, Help, testing::Values("", "serve", "info", "check", "bench", "study"),
+INSTANTIATE_TEST_SUITE_P(Of, Help, testing::Values("", "serve", "info", "check"),
                          [](const auto& one) { return one.param.empty() ? std::string("program") : one.param; });
+
+TEST_F(Usage, LaboratoryHasHelpAndNamesAnUnknownFlag) {
+  for (const std::string program : {SPINDRIFT_BENCH, SPINDRIFT_STUDY}) {
+    const std::string name = std::filesystem::path(program).filename();
+    const Outcome help = runProgram({"--help"}, {}, program);
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.out, HasSubstr("Usage: " + name));
+    const Outcome wrong = runProgram({"--swim"}, {}, program);
+    EXPECT_EQ(wrong.exit_code, 2);
+    EXPECT_THAT(wrong.err, testing::AllOf(StartsWith(name + ": "), HasSubstr("--swim"), HasSubstr(name + " --help")));
+  }
+}
 
 TEST_F(Usage, VersionIsOneLine) {
   const Outcome outcome = runProgram({"--version"});

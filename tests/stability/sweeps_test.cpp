@@ -1,4 +1,4 @@
-// The quick form of `spindrift study --suite stability`, one test per sweep.
+// The quick form of `spindrift-study --suite stability`, one test per sweep.
 #include <cctype>
 #include <cmath>
 #include <string>

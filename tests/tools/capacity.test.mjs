@@ -206,7 +206,7 @@ describe("the capacity model", () => {
   });
 
   it("waits as long as the load bench does before it measures", () => {
-    const bench = readFileSync(join(repository, "server/bench/load.cpp"), "utf8");
+    const bench = readFileSync(join(repository, "tests/bench/load.cpp"), "utf8");
     const measurement = readFileSync(join(CAPACITY, "measured_costs.py"), "utf8");
     const number = (text, pattern) => Number(pattern.exec(text)?.[1]);
     assert.equal(number(measurement, /^SETTLE_S = ([\d.]+)/m), number(bench, /kSettle\{(\d+)\}/));

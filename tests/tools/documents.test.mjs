@@ -21,11 +21,11 @@ describe("the documents", () => {
     assert.equal(code, 0);
   });
 
-  it("list in docs/cli.md every command and option that the program has, and no other", () => {
+  it("list in docs/cli.md every command and option that the programs have, and no other", () => {
     const text = readFileSync(join(repository, "docs/cli.md"), "utf8");
-    const help = (args) => {
-      const result = spawnSync(process.env.SPINDRIFT_BINARY, [...args, "--help"], { encoding: "utf8" });
-      assert.equal(result.status, 0, `${args.join(" ")} --help: ${result.error ?? result.stderr}`);
+    const help = (args, suffix = "") => {
+      const result = spawnSync(process.env.SPINDRIFT_BINARY + suffix, [...args, "--help"], { encoding: "utf8" });
+      assert.equal(result.status, 0, `spindrift${suffix} ${args.join(" ")} --help: ${result.error ?? result.stderr}`);
       return result.stdout;
     };
     const optionsOf = (usage) => [...usage.matchAll(/^ {2}(?:-\w,)?(--[a-z-]+)/gm)].map((match) => match[1]).filter((name) => name !== "--help");
@@ -39,6 +39,10 @@ describe("the documents", () => {
     }
     const common = text.split("## `spindrift`")[1].split("### ")[0];
     assert.deepEqual(rowsOf(common).sort(), optionsOf(overview).sort());
+    for (const suffix of ["-bench", "-study"]) {
+      const own = text.split(`## \`spindrift${suffix}\``)[1].split(/^## /m)[0];
+      assert.deepEqual([...rowsOf(common), ...rowsOf(own)].sort(), optionsOf(help([], suffix)).sort(), suffix);
+    }
   });
 });
 

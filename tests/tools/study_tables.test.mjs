@@ -7,8 +7,8 @@ import { it } from "node:test";
 
 import { repository } from "./workshop.mjs";
 
-const script = join(repository, "server/study/write_tables.py");
-const written = ["server/study/plots/trade.json", "server/study/README.md", "docs/accuracy.md", "web-client/src/ui/fidelity_costs.json"];
+const script = join(repository, "tests/study/write_tables.py");
+const written = ["docs/plots/trade.json", "docs/study.md", "docs/accuracy.md", "web-client/src/ui/fidelity_costs.json"];
 
 function run(...args) {
   const result = spawnSync("python3", [script, ...args], { encoding: "utf8" });

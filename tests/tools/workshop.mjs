@@ -22,7 +22,8 @@ case "$1" in
   --preset) mkdir -p "build/$2"; : >"build/$2/build.ninja" ;;
   --build) [ ! -e "$WORKSHOP/broken" ] || { echo "error: something does not compile"; exit 1; }
     mkdir -p "$2/bin"
-    printf '#!/bin/sh\\npwd\\nprintf "<%%s>" "$@"\\n' >"$2/bin/spindrift"; chmod +x "$2/bin/spindrift" ;;
+    printf '#!/bin/sh\\npwd\\nprintf "<%%s>" "$@"\\n' >"$2/bin/spindrift"; chmod +x "$2/bin/spindrift"
+    cp "$2/bin/spindrift" "$2/bin/spindrift-bench"; cp "$2/bin/spindrift" "$2/bin/spindrift-study" ;;
 esac`,
   npm: `echo "npm $*" >>"$WORKSHOP/calls"
 case "$*" in

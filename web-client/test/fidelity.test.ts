@@ -37,7 +37,7 @@ describe("what a level costs", () => {
     scenes: { scene: string; rows: Row[] }[];
     over_all_scenes: { setting: string; cost_ratio: number; error_ratio: number }[];
   }
-  const study = JSON.parse(readFileSync(join(import.meta.dirname, "../../server/study/plots/trade.json"), "utf8")) as Study;
+  const study = JSON.parse(readFileSync(join(import.meta.dirname, "../../docs/plots/trade.json"), "utf8")) as Study;
   const short = (value: number): number => Number(value.toPrecision(2));
 
   it("is what the study measured, with its day", () => {

@@ -20,7 +20,7 @@ from measured_directory import measure_builds, measure_directory
 
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the built program spindrift")
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="the built program spindrift, with spindrift-bench beside it")
     parser.add_argument("--scene", default="harbor")
     parser.add_argument("--parameters", type=pathlib.Path, default=parameter_file.DEFAULT_FILE)
     parser.add_argument("--write", type=pathlib.Path, help="measure, and write the parameters to this file")

@@ -158,7 +158,7 @@ class Cluster:
 
     def start_load(self, edges: list, clients: int, level: str, seconds: float, commands_per_s: float) -> Process:
         urls = [part for edge in edges for part in ("--url", f"ws://127.0.0.1:{edge.port}/ws")]
-        command = [self.program, "bench", "--suite", "load", *urls, "--clients", str(clients), "--level", level,
+        command = [self.program + "-bench", "--suite", "load", *urls, "--clients", str(clients), "--level", level,
                    "--seconds", str(seconds), "--commands-per-s", str(commands_per_s), "--json", "load.json"]  # fmt: skip
         (self.folder / "load.json").unlink(missing_ok=True)
         return Process("load", command, self.folder)

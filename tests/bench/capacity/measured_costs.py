@@ -10,8 +10,8 @@ from nats_client import NatsClient
 
 # Clients of the runs that give stream sizes and the delay without load; fanout_model.py takes out their own cost.
 PROBE_CLIENTS = 10
-ARRIVALS_PER_S = 200  # server/bench/load.cpp: kArrivals_per_s
-SETTLE_S = 5.0  # server/bench/load.cpp: kSettle
+ARRIVALS_PER_S = 200  # tests/bench/load.cpp: kArrivals_per_s
+SETTLE_S = 5.0  # tests/bench/load.cpp: kSettle
 # The threads that simulate; what the other threads of a server do serves watchers.
 SIMULATING_THREADS = 3
 KINDS = ("deltas", "keyframes")

@@ -1,4 +1,4 @@
-"""Reads the rows that `spindrift bench --suite soak` prints while it runs."""
+"""Reads the rows that `spindrift-bench --suite soak` prints while it runs."""
 
 
 def newest_row(text: str) -> dict:

@@ -2,7 +2,7 @@
 """Runs a server and an edge under the load of people who come and go, and judges memory, descriptors, ticks and answers.
 
 `soak.py --program PATH --minutes 60 --csv FILE` starts a NATS server, a server that keeps its rooms on disk, an edge, and
-clients of both (`spindrift bench --suite soak`) on loopback. Meanwhile rooms are opened and closed over REST, and parameters
+clients of both (`spindrift-bench --suite soak`) on loopback. Meanwhile rooms are opened and closed over REST, and parameters
 and scenes change. Ends with 1 if a bound is missed, 2 for wrong arguments. Nothing else should run on the machine.
 """
 import argparse
@@ -30,7 +30,7 @@ TICK_RATE_HZ = 60.0  # of scenes that do not say it
 
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", type=pathlib.Path, required=True, help="the built program spindrift")
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="the built program spindrift, with spindrift-bench beside it")
     parser.add_argument("--minutes", type=float, default=60.0, help="in all, the warm-up included")
     parser.add_argument("--warm-up-minutes", type=float, default=10.0)
     parser.add_argument("--scene", default="pool", help="shipped scene or file; boats are added if it has none")
@@ -106,7 +106,7 @@ def start_load(cluster: Cluster, ports: list[int], arguments) -> Process:
     rooms = ["", "", "", *(f"/{name}" for name in disturbances.ROOMS)]
     urls = [part for room in rooms for port in ports for part in ("--url", f"ws://127.0.0.1:{port}/ws{room}")]
     warm_up_s = 60.0 * arguments.warm_up_minutes
-    command = [cluster.program, "bench", "--suite", "soak", *urls, "--clients", str(arguments.clients),
+    command = [cluster.program + "-bench", "--suite", "soak", *urls, "--clients", str(arguments.clients),
                "--seconds", str(60.0 * arguments.minutes - warm_up_s), "--warm-up-s", str(warm_up_s),
                "--interval-s", str(arguments.sample_s), "--churn-per-s", str(arguments.churn_per_s),
                "--strokes-per-s", str(arguments.strokes_per_s), "--seed", str(arguments.seed), "--json", "soak.json"]  # fmt: skip

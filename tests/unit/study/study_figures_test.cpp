@@ -18,7 +18,7 @@ namespace {
 
 TEST(StudyFigures, AreOfThisSolver) {
   std::stringstream text;
-  text << std::ifstream(SPINDRIFT_SOURCE_DIR "/server/study/plots/trade.json").rdbuf();
+  text << std::ifstream(SPINDRIFT_SOURCE_DIR "/docs/plots/trade.json").rdbuf();
   const boost::json::object figures = boost::json::parse(text.str()).as_object();
   auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
   if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;

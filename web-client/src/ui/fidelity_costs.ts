@@ -1,5 +1,5 @@
-// What each fidelity level costs and how far off it is, as `spindrift study --suite trade` measured it without a GPU.
-// server/study/write_tables.py writes the figures; `./dev study --update` measures them again.
+// What each fidelity level costs and how far off it is, as `spindrift-study --suite trade` measured it without a GPU.
+// tests/study/write_tables.py writes the figures; `./dev study --update` measures them again.
 import { type FidelityName, kFidelities } from "../codec/fidelity";
 import figures from "./fidelity_costs.json";
 

@@ -1,4 +1,4 @@
-// Fidelity of the simulation: four levels, chosen from what `spindrift study --suite trade` measures (README,
+// Fidelity of the simulation: four levels, chosen from what `spindrift-study --suite trade` measures (README,
 // "What accuracy costs").
 #pragma once
 

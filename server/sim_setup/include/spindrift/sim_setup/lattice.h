@@ -64,7 +64,7 @@ double latticeConstraintSlope2(core::KernelSet set, double s, double H, double r
 double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0, double mass_kg);
 
 /// The same ratio after the lattice has settled into the loose order of resting water, measured in a column of 20
-/// layers at H = 2 s (`spindrift study --suite accuracy`, hydrostatic column).
+/// layers at H = 2 s (`spindrift-study --suite accuracy`, hydrostatic column).
 double settledStressRatio(core::KernelSet set);
 
 /// Input of restingLayers().

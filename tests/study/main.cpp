@@ -1,3 +1,4 @@
+// spindrift-study: the water against theory and experiment.
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -12,6 +13,7 @@
 #include "commands.h"
 #include "forms.h"
 #include "output.h"
+#include "program.h"
 
 namespace spindrift::cli {
 namespace {
@@ -72,27 +74,31 @@ int study(const StudyOptions& options) {
   return result->missed_count == 0 ? 0 : 1;
 }
 
-}  // namespace
-
-ProgramCommand addStudy(CLI::App& program) {
+std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<StudyOptions>();
-  CLI::App* command = program.add_subcommand("study", "Measure the simulation against theory and experiment");
-  command->add_option("--suite", options->suite, "What to study")
+  program.add_option("--suite", options->suite, "What to study")
       ->check(CLI::IsMember({"accuracy", "stability", "trade"}))
       ->capture_default_str();
-  command->add_option("--case", options->only,
-                      "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
-                      "this, or one scene of the trade suite, known, or cost");
-  addDevice(*command, options->device);
-  command->add_flag("--quick", options->quick, "Shorter runs, a few minutes in all");
-  command
-      ->add_option("--journal", options->journal_file,
-                   "Save finished cases in this file; an interrupted study continues from it")
+  program.add_option("--case", options->only,
+                     "One case of the accuracy suite, the sweeps of the stability suite whose name contains "
+                     "this, or one scene of the trade suite, known, or cost");
+  addDevice(program, options->device);
+  program.add_flag("--quick", options->quick, "Shorter runs, a few minutes in all");
+  program
+      .add_option("--journal", options->journal_file,
+                  "Save finished cases in this file; an interrupted study continues from it")
       ->check(isOutputFile());
-  command->add_option("--plot", options->plot_folder,
-                      "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
-  addJson(*command, options->json_file);
-  return {command, [options] { return study(*options); }};
+  program.add_option("--plot", options->plot_folder,
+                     "Write the results into this folder as SUITE.json, from which ./dev charts draws charts");
+  addJson(program, options->json_file);
+  const auto flags_only = [] { return core::Result<void>(); };
+  return {{&program, [options] { return study(*options); }, flags_only}};
 }
 
+}  // namespace
 }  // namespace spindrift::cli
+
+int main(int argc, char** argv) {
+  return spindrift::cli::runProgram("spindrift-study", "Measure the simulation against theory and experiment",
+                                    spindrift::cli::addOptions, argc, argv);
+}

@@ -20,7 +20,7 @@ inline v1::ClientMessage helloOf(const std::string& token, const std::string& re
   v1::ClientMessage out;
   out.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
   out.mutable_hello()->mutable_version()->set_minor(wire::kWireMinor);
-  out.mutable_hello()->set_client("spindrift bench");
+  out.mutable_hello()->set_client("spindrift-bench");
   out.mutable_hello()->set_token(token);
   out.mutable_hello()->set_resume_key(resume_key);
   return out;

@@ -23,7 +23,7 @@ CrowdOptions sceneCrowd(const v1::Scene& scene, std::size_t client_count, double
   v1::ClientMessage hello;
   hello.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
   hello.mutable_hello()->mutable_version()->set_minor(wire::kWireMinor);
-  hello.mutable_hello()->set_client("spindrift bench");
+  hello.mutable_hello()->set_client("spindrift-bench");
   out.on_open.push_back(bytesOf(hello));
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES}) {
     v1::ClientMessage message;

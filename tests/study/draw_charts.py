@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Draws the charts of a study: `draw_charts.py [--list] FOLDER`.
 
-FOLDER holds accuracy.json, stability.json or trade.json, as `spindrift study --suite SUITE --plot FOLDER` writes them;
+FOLDER holds accuracy.json, stability.json or trade.json, as `spindrift-study --suite SUITE --plot FOLDER` writes them;
 the charts are SVG files beside them. --list prints their names and draws nothing, so it does not need matplotlib.
 """
 import argparse
@@ -189,7 +189,7 @@ def charts_of(folder):
     found = [(file, draw) for file, draw in files if file.is_file()]
     if not found:
         names = ", ".join(file.name for file, _ in files)
-        sys.exit(f"draw_charts: {folder}: none of {names} is there; `spindrift study --plot {folder}` writes them")
+        sys.exit(f"draw_charts: {folder}: none of {names} is there; `spindrift-study --plot {folder}` writes them")
     for file, draw in found:
         yield from draw(json.loads(file.read_text(encoding="utf-8")))
 

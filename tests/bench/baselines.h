@@ -1,4 +1,4 @@
-// Existing codecs for comparison: `bench --suite codec` prints them beside the stream's own. zstd, meshoptimizer and
+// Existing codecs for comparison: `spindrift-bench --suite codec` prints them beside the stream's own. zstd, meshoptimizer and
 // Draco are used if they were installed at build time.
 #pragma once
 

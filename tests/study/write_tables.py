@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
-"""Writes what the documents and the page say of the trade study, from server/study/plots/trade.json:
+"""Writes what the documents and the page say of the trade study, from docs/plots/trade.json:
 
     write_tables.py [--root FOLDER]                      the tables and the page's figures
     write_tables.py [--root FOLDER] --check              only compares; exit code 1 and the names of files that differ
-    write_tables.py [--root FOLDER] --take FILE COMMIT   first makes trade.json of FILE, which `spindrift study --suite trade` wrote
+    write_tables.py [--root FOLDER] --take FILE COMMIT   first makes trade.json of FILE, which `spindrift-study --suite trade` wrote
 
 A table stands in a document between the marks `<!-- study:NAME -->` and `<!-- /study -->`; every function table_NAME below is one.
 `./dev study --update` runs all of it.
@@ -16,8 +16,8 @@ import re
 import sys
 
 HERE = pathlib.Path(__file__).resolve()
-FIGURES = "server/study/plots/trade.json"
-DOCUMENTS = ["server/study/README.md", "docs/accuracy.md"]
+FIGURES = "docs/plots/trade.json"
+DOCUMENTS = ["docs/study.md", "docs/accuracy.md"]
 PAGE = "web-client/src/ui/fidelity_costs.json"
 MARKED = re.compile(r"(<!-- study:(\w+) -->\n).*?(<!-- /study -->)", re.DOTALL)
 LEVELS = ["draft", "balanced", "fine", "reference"]

@@ -1,3 +1,4 @@
+// spindrift-bench: times of steps, codecs and crowds.
 #include <cstdio>
 #include <memory>
 #include <optional>
@@ -23,6 +24,7 @@
 #include "commands.h"
 #include "forms.h"
 #include "output.h"
+#include "program.h"
 
 namespace spindrift::cli {
 namespace {
@@ -111,44 +113,40 @@ int bench(const BenchOptions& options) {
   return 0;
 }
 
-}  // namespace
-
-ProgramCommand addBench(CLI::App& program) {
+std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<BenchOptions>();
-  CLI::App* command = program.add_subcommand(
-      "bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients");
-  command->add_option("--suite", options->suite, "What to time")
+  program.add_option("--suite", options->suite, "What to time")
       ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "soak"}))
       ->capture_default_str();
-  command->add_option("--scene", options->scene, "Scene file or name of a shipped scene")
+  program.add_option("--scene", options->scene, "Scene file or name of a shipped scene")
       ->check(isNotEmpty())
       ->capture_default_str();
-  addFidelity(*command, options->fidelity);
-  addDevice(*command, options->device);
-  command->add_option("--seconds", options->seconds, "Measured time per case")
+  addFidelity(program, options->fidelity);
+  addDevice(program, options->device);
+  program.add_option("--seconds", options->seconds, "Measured time per case")
       ->check(numberIn(0.1, 86400.0))
       ->capture_default_str();
-  command
-      ->add_option("--url", options->load.urls,
-                   "For --suite load and soak: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated")
+  program
+      .add_option("--url", options->load.urls,
+                  "For --suite load and soak: a server that runs, ws://HOST:PORT/ws/ROOM; may be repeated")
       ->check(isUrl());
-  command->add_option("--clients", options->load.client_count, "For --suite load and soak: number of clients")
+  program.add_option("--clients", options->load.client_count, "For --suite load and soak: number of clients")
       ->check(integerIn(1, 20000))
       ->capture_default_str();
-  command->add_option("--level", options->level, "For --suite load: level of detail that they watch")
+  program.add_option("--level", options->level, "For --suite load: level of detail that they watch")
       ->check(CLI::IsMember({"coarse", "medium", "fine", "full"}))
       ->capture_default_str();
-  command->add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
+  program.add_option("--commands-per-s", options->load.commands_per_s, "For --suite load: splashes of each client")
       ->check(numberIn(0.0, 100.0))
       ->capture_default_str();
-  command->add_option("--warm-up-s", options->soak.warm_up_s, "For --suite soak: time at the start that does not count")
+  program.add_option("--warm-up-s", options->soak.warm_up_s, "For --suite soak: time at the start that does not count")
       ->check(numberIn(0.0, 86400.0))
       ->capture_default_str();
-  command->add_option("--interval-s", options->soak.interval_s, "For --suite soak: time between two rows")
+  program.add_option("--interval-s", options->soak.interval_s, "For --suite soak: time between two rows")
       ->check(numberIn(1.0, 3600.0))
       ->capture_default_str();
   const auto addRate = [&](const char* name, double& rate, const char* help) {
-    command->add_option(name, rate, help)->check(numberIn(0.0, 100.0))->capture_default_str();
+    program.add_option(name, rate, help)->check(numberIn(0.0, 100.0))->capture_default_str();
   };
   addRate("--churn-per-s", options->soak.churn_per_s, "For --suite soak: connections that clients end, all together");
   addRate("--strokes-per-s", options->soak.strokes_per_s,
@@ -156,17 +154,25 @@ ProgramCommand addBench(CLI::App& program) {
   addRate("--boats-per-s", options->soak.boats_per_s, "For --suite soak: boats that each client launches or removes");
   addRate("--level-changes-per-s", options->soak.level_changes_per_s,
           "For --suite soak: changes of a layer's level, rate and packing by each client");
-  command->add_option("--seed", options->soak.seed, "For --suite soak: of what the clients do")->capture_default_str();
-  CLI::Option* const cert = command
-                                ->add_option("--tls-cert", options->tls.certificate_file,
-                                             "For fanout over TLS: a PEM certificate for 127.0.0.1")
+  program.add_option("--seed", options->soak.seed, "For --suite soak: of what the clients do")->capture_default_str();
+  CLI::Option* const cert = program
+                                .add_option("--tls-cert", options->tls.certificate_file,
+                                            "For fanout over TLS: a PEM certificate for 127.0.0.1")
                                 ->check(CLI::ExistingFile);
   CLI::Option* const key =
-      command->add_option("--tls-key", options->tls.key_file, "Its private key")->check(CLI::ExistingFile);
+      program.add_option("--tls-key", options->tls.key_file, "Its private key")->check(CLI::ExistingFile);
   cert->needs(key);
   key->needs(cert);
-  addJson(*command, options->json_file);
-  return {command, [options] { return bench(*options); }};
+  addJson(program, options->json_file);
+  const auto flags_only = [] { return core::Result<void>(); };
+  return {{&program, [options] { return bench(*options); }, flags_only}};
 }
 
+}  // namespace
 }  // namespace spindrift::cli
+
+int main(int argc, char** argv) {
+  return spindrift::cli::runProgram(
+      "spindrift-bench", "Time the passes of a step, the stream's codecs on real frames, and a crowd of clients",
+      spindrift::cli::addOptions, argc, argv);
+}

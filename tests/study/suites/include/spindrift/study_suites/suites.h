@@ -1,4 +1,4 @@
-// The suites of `spindrift study`. Each prints its table row by row, keeps finished cases in a journal, so that a long
+// The suites of `spindrift-study`. Each prints its table row by row, keeps finished cases in a journal, so that a long
 // run can be continued, and counts the results outside their bounds.
 #pragma once
 

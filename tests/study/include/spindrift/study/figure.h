@@ -1,4 +1,4 @@
-// Curves and fields of a case, beside its table; server/study/draw_charts.py draws them.
+// Curves and fields of a case, beside its table; tests/study/draw_charts.py draws them.
 #pragma once
 
 #include <cstddef>
