@@ -29,7 +29,7 @@ struct FrontOptions {
   std::string token_file;                    ///< empty: `tokens`
   std::string tokens;                 ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
   std::string operator_token;         ///< see makeOperatorToken(); empty: not made. Never logged.
-  std::string guest_role;             ///< "none", or a role; empty: as docs/operations.md#roles-and-tokens says
+  std::string guest_role;             ///< "none", or a role; empty: as docs/operations/secure.md#roles-and-tokens says
   std::vector<std::string> jwt_keys;  ///< FILE: a public key; hs256:FILE: a secret
   std::string jwt_key_set;            ///< file of a JWK set; empty: none
   std::string jwt_issuer;             ///< empty: not checked

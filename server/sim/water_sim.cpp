@@ -13,7 +13,7 @@ namespace spindrift::sim {
 
 void WaterSim::step() {
   if (!waitForDevice()) return;
-  parts_->uniforms.bindUniform(SIM_UNIFORMS);  // rooms share the context
+  parts_->uniforms.bindUniform(SIM_UNIFORMS);  // another WaterSim of the context may have bound its own
   watchHealth();
   startEvents();
   // The surface, its breakers and the boats advance once per tick; the wave divides the tick by its own step-size rule.

@@ -4,7 +4,6 @@
 // first_word on; the first word must be 0 before. If there are more than budget_count particles, a hash of their ids
 // chooses which are packed: the same ones in every frame while their number stays, and a smaller budget chooses a
 // subset of a larger one.
-// particles in every frame while their number stays, and those of a smaller budget among them.
 #include "shared/groups.h"
 #include "common/hash.glsl"
 #include "particles/population.glsl"

@@ -1,5 +1,5 @@
 // Runs the default scene for a long time, as fast as the machine can: 40 simulated seconds in a test run, or
-// SPINDRIFT_SOAK_S (600 for the ten minutes of docs/operations.md).
+// SPINDRIFT_SOAK_S (600 for the ten minutes of docs/operations/watch.md).
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>

@@ -1,4 +1,4 @@
-// The server behind nginx and behind Caddy with TLS, at / and under a path, configured as docs/operations.md says. Skipped where the proxy
+// The server behind nginx and behind Caddy with TLS, at / and under a path, configured as docs/operations/secure.md says. Skipped where the proxy
 // or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -23,7 +23,7 @@ async function freePort() {
 
 /** Returns the blocks of documentation in this language: for the host as a whole, and for a path. */
 function documented(language) {
-  const page = readFileSync(`${repository}/docs/operations.md`, "utf8");
+  const page = readFileSync(`${repository}/docs/operations/secure.md`, "utf8");
   return [...page.matchAll(new RegExp(`\`\`\`${language}\\n([^]*?)\`\`\``, "g"))].map((match) => match[1]);
 }
 

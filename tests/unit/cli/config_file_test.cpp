@@ -151,7 +151,7 @@ TEST_F(ConfigFile, OneMebibyteIsTheBound) {
 }
 
 TEST_F(ConfigFile, TheExampleOfTheDocumentsIsACompleteConfiguration) {
-  std::ifstream in(SPINDRIFT_SOURCE_DIR "/docs/operations.md");
+  std::ifstream in(SPINDRIFT_SOURCE_DIR "/docs/operations/run.md");
   std::string text{std::istreambuf_iterator<char>(in), {}};
   const std::string fence = "```textproto\n";
   text.erase(0, text.find(fence) + fence.size());
