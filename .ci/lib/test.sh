@@ -23,12 +23,18 @@ run_part() {
   reports+=("$name:$code:$root/build/reports/$name.xml")
 }
 
+# CTest runs tests side by side as far as their weights (PROCESSORS in tests/CMakeLists.txt) fit into three per core. The
+# rasteriser computes on the thread that asks: threads of its own would only take turns with those of the other tests.
+# Tests of its threads set their number themselves.
+readonly ctest_options=(--parallel "$((3 * $(nproc)))" --output-on-failure --timeout 600)
+readonly rasteriser_environment=(LP_NUM_THREADS=0)
+
 # test_native NAME PRESET [LABEL]
 test_native() {
   local name="$1" filter=()
   [[ -z "${3:-}" ]] || filter=(--label-regex "^$3\$")
   [[ -z "$test_regex" ]] || filter+=(--tests-regex "$test_regex")
-  run_part "$name" "$ctest_limit_s" ctest --test-dir "build/$2" --parallel 2 --output-on-failure --timeout 600 \
+  run_part "$name" "$ctest_limit_s" env "${rasteriser_environment[@]}" ctest --test-dir "build/$2" "${ctest_options[@]}" \
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 
@@ -53,8 +59,9 @@ test_zink() {
     reports+=("zink:0:$root/build/reports/zink.xml")
     return
   fi
-  run_part zink "$ctest_limit_s" env "${zink_environment[@]}" SPINDRIFT_LEDGER_TICKS=300 SPINDRIFT_STILL_TICKS=300 \
-    ctest --test-dir "build/$preset" --parallel 2 --output-on-failure --timeout 600 --tests-regex "$zink_tests" \
+  run_part zink "$ctest_limit_s" env "${rasteriser_environment[@]}" "${zink_environment[@]}" \
+    SPINDRIFT_LEDGER_TICKS=300 SPINDRIFT_STILL_TICKS=300 \
+    ctest --test-dir "build/$preset" "${ctest_options[@]}" --tests-regex "$zink_tests" \
     --output-junit "$root/build/reports/zink.xml"
 }
 
