@@ -3,22 +3,24 @@ import assert from "node:assert/strict";
 import { spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { createRequire } from "node:module";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { after, before, describe, it } from "node:test";
 
 import { readMetrics } from "./metrics_source.mjs";
-import { parsePlainYaml } from "./plain_yaml.mjs";
 import { faultsOf, metricNamed, selectorsOf } from "./promql.mjs";
 import { repository } from "./workshop.mjs";
+
+const { parse } = createRequire(join(repository, "tests/containers/package.json"))("yaml");
 
 /** Metrics that need no chart, each with the reason. */
 const NOT_ON_THE_DASHBOARD = new Map([]);
 
 const textOf = (path) => readFileSync(join(repository, path), "utf8");
 const metrics = readMetrics();
-const rules = parsePlainYaml(textOf("docker/observability/prometheus-rules.yml")).groups.flatMap((group) => group.rules);
+const rules = parse(textOf("docker/observability/prometheus-rules.yml")).groups.flatMap((group) => group.rules);
 const dashboard = JSON.parse(textOf("docker/observability/grafana-dashboard.json"));
 const charts = dashboard.panels.filter((panel) => panel.type !== "row");
 const targets = charts.flatMap((panel) => panel.targets.map((target) => ({ ...target, panel: panel.title })));
@@ -64,7 +66,7 @@ describe("the alerts", () => {
 
 describe("the example of a Prometheus", () => {
   it("reads the rules that are beside it, under the job that they name", () => {
-    const config = parsePlainYaml(textOf("docker/observability/prometheus.yml"));
+    const config = parse(textOf("docker/observability/prometheus.yml"));
     assert.deepEqual(config.rule_files, ["prometheus-rules.yml"]);
     assert.deepEqual(config.scrape_configs.map((job) => [job.job_name, job.metrics_path]), [["spindrift", "/metrics"]]);
     for (const [, job] of JSON.stringify([rules, dashboard]).matchAll(/job=\\+"(\w+)/g)) assert.equal(job, "spindrift");
@@ -212,17 +214,4 @@ describe("the check of expressions", () => {
   for (const [expr, texts, faults] of cases) {
     it(`${faults.length ? "refuses" : "accepts"} ${expr}${texts.length ? ` with ${texts}` : ""}`, () => assert.deepEqual(faultsOf(expr, known, texts), faults));
   }
-});
-
-describe("the reader of YAML", () => {
-  it("reads maps, lists, quoted texts and blocks", () => {
-    const text = "# top\na:\n  - b: 1\n    c: \"x: y\"\n  - b: it's\n    d: |\n      one\n        two\n\ne: ['f', g]\n";
-    assert.deepEqual(parsePlainYaml(text), { a: [{ b: 1, c: "x: y" }, { b: "it's", d: "one\n  two\n" }], e: ["f", "g"] });
-  });
-
-  it("refuses what it would read otherwise than YAML does", () => {
-    for (const text of ["a: yes", "a: b: c", "a: &b c", "a: 1\na: 2", "a:\n", "a: 1\n  b: 2", "a: >\n  b", "a: b # c", "just words", "a:\n\tb: 1"]) {
-      assert.throws(() => parsePlainYaml(text), Error, text);
-    }
-  });
 });
