@@ -109,8 +109,8 @@ command_lint() {
 usage: ./dev lint [PART…]
        ./dev lint tidy [--all]
 
-Checks the formatting of the C++ sources (format), the shell scripts (shell) and the types of the web client (web), or the
-parts named. `tidy` runs clang-tidy over the C++ files that differ from the upstream branch, and prints which; --all: over
+Checks the formatting of the C++ sources (format), the shell scripts (shell), the types of the web client (web) and the words
+of code and documents (words), or the parts named. `tidy` runs clang-tidy over the C++ files that differ from the upstream branch, and prints which; --all: over
 all of them (as `./dev test tidy`). Fails when any of them complains.
 TEXT
     return
@@ -119,13 +119,13 @@ TEXT
   lint_all=false
   for part in "$@"; do
     case "$part" in
-      format | shell | web | tidy) parts+=("$part") ;;
+      format | shell | web | words | tidy) parts+=("$part") ;;
       --all) lint_all=true ;;
       *) fail 2 "lint does not know '$part'; see ./dev lint --help" ;;
     esac
   done
   "$lint_all" && [[ " ${parts[*]} " != *" tidy "* ]] && fail 2 "--all is for tidy; see ./dev lint --help"
-  ((${#parts[@]} > 0)) || parts=(format shell web)
+  ((${#parts[@]} > 0)) || parts=(format shell web words)
   for part in "${parts[@]}"; do "lint_$part" || code=1; done
   return "$code"
 }
@@ -149,6 +149,11 @@ lint_web() {
   npm_install web-client web
   unlock_build
   npm run --silent --prefix web-client lint
+}
+
+lint_words() {
+  say "words"
+  python3 tests/tools/words.py "$root"
 }
 
 lint_tidy() {

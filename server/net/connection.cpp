@@ -355,7 +355,7 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
     decision.why = Refused::kFull;
     decision.refusal = textReply(503, "Your address has " + std::to_string(context_.addresses.sessionMaxCount()) +
                                           " of this server's " + max_count +
-                                          " sessions open, as many as one address may: close one, or try again later.");
+                                          " sessions open, the limit of one address: close one, or try again later.");
   } else {
     decision.why = Refused::kFull;
     decision.refusal = textReply(503, "The server is full: " + max_count + " sessions are open; try again later.");

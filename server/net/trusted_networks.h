@@ -1,4 +1,4 @@
-// Proxies in front of the server: which peers are trusted ones, and whom they name as their client. Without a socket.
+// Proxies in front of the server: which peers are trusted, and which client a trusted peer names. Without a socket.
 #pragma once
 
 #include <optional>

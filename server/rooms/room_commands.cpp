@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Limit of waiting ticks of Step: as many as one command may request.
+/// Limit of waiting ticks of Step: that of one command.
 constexpr std::uint32_t kPendingTickMaxCount = 600;
 /// Limit of batches per round; the rest waits for the next tick.
 constexpr int kRoundMaxCount = 256;

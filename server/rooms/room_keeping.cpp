@@ -233,7 +233,7 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   record(std::move(line));
   restartScene(true);
   boatsChanged();
-  // Ticks have gone on since the snapshot without the log saying so.
+  // Ticks have passed since the snapshot, and the log does not say so.
   keeper_->openGap("the room continued after its device failed, and no snapshot says so yet");
   return true;
 }

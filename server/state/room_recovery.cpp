@@ -89,13 +89,13 @@ core::Result<void> Recovery::listFiles() {
       case FileKind::kSetAside:
         break;  // noted when it was set aside
       case FileKind::kForeign:
-        if (++foreign_count <= kForeignNotesMaxCount) note(entry.name, "it is none of the room's files; left alone");
+        if (++foreign_count <= kForeignNotesMaxCount) note(entry.name, "not one of the room's files; left alone");
         break;
     }
   }
   if (foreign_count > kForeignNotesMaxCount) {
     note(folder_.string(),
-         std::to_string(foreign_count - kForeignNotesMaxCount) + " more files are none of the room's; left alone");
+         std::to_string(foreign_count - kForeignNotesMaxCount) + " more files are not the room's; left alone");
   }
   return {};
 }

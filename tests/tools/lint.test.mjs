@@ -6,7 +6,7 @@ import { describe, it } from "node:test";
 import { repository } from "./workshop.mjs";
 
 describe("./dev lint", () => {
-  for (const part of ["format", "shell", "web"]) {
+  for (const part of ["format", "shell", "web", "words"]) {
     it(`finds nothing in ${part}`, { timeout: 600_000 }, () => {
       const run = spawnSync("./dev", ["lint", part], { cwd: repository, encoding: "utf8" });
       assert.equal(run.status, 0, run.stdout + run.stderr);

@@ -179,7 +179,7 @@ TEST_F(RoomRecoveryTest, FilesThatAreNotItsOwnAreLeftAlone) {
   EXPECT_THAT(found.notes, SizeIs(foreign.size() + 1));
   for (const std::string& name : foreign) {
     EXPECT_EQ(content(name), "mine");
-    EXPECT_THAT(found.notes, Contains(name + ": it is none of the room's files; left alone"));
+    EXPECT_THAT(found.notes, Contains(name + ": not one of the room's files; left alone"));
   }
   EXPECT_TRUE(fs::is_directory(room / "pictures"));
 }
@@ -328,7 +328,7 @@ TEST_F(RoomRecoveryTest, FilesOfTheVersionBeforeGoOnInThisOne) {
   const auto found = recoverAndGoOn();
   EXPECT_EQ(summary(found), "2=123456789 | 2: 123456789 123456789");
   EXPECT_THAT(found.notes, IsEmpty());
-  // The newest one of that version is lost after all, when this version has gone on from it.
+  // The newest one of that version is lost after all, when this version has continued from it.
   fs::remove(room / kSnapshot2);
   EXPECT_EQ(summary(recovered()), "1=123456789 | 1: 123456789 | 2: 123456789 123456789 | 3: new");
 }

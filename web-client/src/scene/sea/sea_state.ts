@@ -51,7 +51,7 @@ const kWindPaths: Readonly<Record<string, Exclude<keyof WindInfo, "seed" | "come
   gravity_mps2: "gravityMps2",
 };
 
-/** Returns the wind after a change of a parameter; the same object if the parameter is none of the wind's. */
+/** Returns the wind after a change of a parameter; the same object if the parameter is not one of the wind's. */
 export function withParameter(wind: WindInfo, path: string, value: number): WindInfo {
   const field = kWindPaths[path];
   return field ? { ...wind, [field]: value } : wind;

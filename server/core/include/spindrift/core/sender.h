@@ -23,7 +23,7 @@ using SessionId = std::uint64_t;
 /// Who sent a command, in words: for the audit log.
 struct SenderDetails {
   std::string room{};
-  std::string subject{};  ///< whom the token names; empty: a guest
+  std::string subject{};  ///< the token's; empty: a guest
   std::string name{};     ///< what the client calls itself; empty for requests
   std::string peer{};     ///< address and port
 };
