@@ -162,9 +162,9 @@ TEST_F(ProgramAccess, TokensUpTo8KiBPassBothWays) {
 TEST_F(ProgramAccess, AnOperatorOfOneRoomOpensAndClosesThatRoomOnly) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string token = jwt("operator", R"(,"sub":"bob","room":["race"])");
-  EXPECT_EQ(ask("POST", "/api/v1/rooms", token, R"({"name": "other", "scene": "still_pool"})").status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", token, R"({"name": "other", "scene": "wave_only"})").status, 403U);
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/lab", token).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms", token, R"({"name": "race", "scene": "still_pool"})").status, 201U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", token, R"({"name": "race", "scene": "wave_only"})").status, 201U);
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/race", token).status, 204U);
   stop();
 }
@@ -174,7 +174,7 @@ TEST_F(ProgramAccess, TokensOfARoomAreShownOnceAndSurviveARestart) {
   if (!serve(state)) GTEST_SKIP() << "no device";
   const HttpAnswer opened =
       ask("POST", "/api/v1/rooms", kOperator,
-          R"({"name": "race", "scene": "still_pool", "tokens": ["ROLE_PLAYER", "ROLE_OPERATOR"]})");
+          R"({"name": "race", "scene": "wave_only", "tokens": ["ROLE_PLAYER", "ROLE_OPERATOR"]})");
   ASSERT_EQ(opened.status, 201U) << opened.body;
   const boost::json::value answer = boost::json::parse(opened.body);
   const auto& tokens = answer.at("tokens").as_array();
@@ -196,7 +196,7 @@ TEST_F(ProgramAccess, TokensOfARoomAreShownOnceAndSurviveARestart) {
   }
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/race", chief).status, 204U);
   EXPECT_EQ(ask("GET", "/api/v1/rooms", chief).status, 401U) << "the token went with the room";
-  EXPECT_EQ(ask("POST", "/api/v1/rooms", kOperator, R"({"name": "a", "scene": "still_pool", "tokens": [0]})").status,
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", kOperator, R"({"name": "a", "scene": "wave_only", "tokens": [0]})").status,
             422U);
   stop();
   for (const auto& entry : std::filesystem::recursive_directory_iterator(path("state"))) {
@@ -244,7 +244,7 @@ TEST_F(ProgramAccess, TheAuditLogSaysWhatOperatorsDidAndWhoWasRefused) {
   EXPECT_EQ(player.rejected(reset()).reason(), v1::REJECT_REASON_FORBIDDEN);
   (void)client("wrong-wrong-wrong-wrong");
   ASSERT_EQ(ask("POST", "/api/v1/rooms/lab/commands", kOperator, R"({"set_paused": {"paused": true}})").status, 200U);
-  ASSERT_EQ(ask("POST", "/api/v1/rooms", kOperator, R"({"name": "race", "scene": "still_pool"})").status, 201U);
+  ASSERT_EQ(ask("POST", "/api/v1/rooms", kOperator, R"({"name": "race", "scene": "wave_only"})").status, 201U);
   ASSERT_EQ(ask("DELETE", "/api/v1/rooms/race", kOperator).status, 204U);
   stop();
   const auto lines = audit();
@@ -329,7 +329,7 @@ TEST_F(ProgramAccess, NoLogContainsAToken) {
     GTEST_SKIP() << "no device";
   const std::string iss = R"(,"iss":"me")";
   const HttpAnswer opened =
-      ask("POST", "/api/v1/rooms", kOperator, R"({"name": "race", "scene": "still_pool", "tokens": ["ROLE_PLAYER"]})");
+      ask("POST", "/api/v1/rooms", kOperator, R"({"name": "race", "scene": "wave_only", "tokens": ["ROLE_PLAYER"]})");
   ASSERT_EQ(opened.status, 201U) << opened.body;
   const boost::json::value answer = boost::json::parse(opened.body);
   const std::string of_room(answer.at("tokens").at(0).at("token").as_string());
