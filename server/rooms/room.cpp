@@ -3,7 +3,6 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/monotonic.h>
-#include <spindrift/core/version.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
@@ -11,7 +10,6 @@ namespace spindrift::rooms {
 namespace {
 
 using namespace std::chrono_literals;
-using std::chrono::duration;
 
 /// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
 constexpr double kHeavyShare = 0.25;
@@ -24,27 +22,22 @@ constexpr auto kReadbackPollInterval = 1ms;
 constexpr auto kWaitingCommandInterval = 10ms;
 /// A room that stands still looks after its state on disk, its people and its metrics.
 constexpr auto kStandingInterval = 1s;
-/// Time from the last client's leaving until a room whose scene sleeps without clients stops.
-constexpr auto kSleepPatience = 2s;
 constexpr auto kVitalsInterval = 250ms;
-constexpr double kSlowFactor = 0.9;
-constexpr auto kSlowPatience = 5s;
-constexpr auto kSlowWarningInterval = 60s;
 
 }  // namespace
 
 Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-           std::unique_ptr<RoomWater> room_water, std::unique_ptr<CommandLogWriter> log)
+           std::unique_ptr<RoomWater> room_water, Diary diary)
     : name_(std::move(name)),
       rules_(rules),
       builder_(builder),
       outlets_(outlets),
       water_(std::move(room_water)),
-      log_(std::move(log)),
+      diary_(std::move(diary)),
       heavy_budget_(kHeavyShare, kHeavyBurst),
       chosen_fidelity_(water_->scene().fidelity()),
       roster_(rules.grace, [this] { wake(); }),
-      clock_(water_->sim().derived().tick_s),
+      time_(water_->sim().derived().tick_s),
       boats_(water_->boats()) {
   recovery_news_.restart(water_->sim().recoveredCount());
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
@@ -66,25 +59,10 @@ core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_pt
                                                 WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
                                                 v1::RoomAccess access) {
   auto room_water = std::make_unique<RoomWater>(std::move(water));
-  std::unique_ptr<CommandLogWriter> log;
-  if (!rules.record_folder.empty() && place.kept) {
-    spdlog::warn(
-        "room {}: is not recorded, because it continues from its state on disk, and a log has to begin with a scene",
-        name);
-  } else if (!rules.record_folder.empty()) {
-    v1::RecordHeader header;
-    header.set_server(std::string(core::nameAndVersion()));
-    describeDevice(header, room_water->device());
-    header.set_room(name);
-    *header.mutable_scene() = room_water->scene();
-    header.set_hash_interval_ticks(rules.hash_interval_ticks);
-    auto opened = CommandLogWriter::create(rules.record_folder, header);
-    if (!opened) return opened.error();
-    log = *std::move(opened);
-    spdlog::info("room {}: recorded to {}", name, log->file().string());
-  }
-  auto room =
-      std::shared_ptr<Room>(new Room(std::move(name), rules, builder, outlets, std::move(room_water), std::move(log)));
+  auto diary = Diary::create(name, *room_water, rules.record_folder, rules.hash_interval_ticks, place.kept.has_value());
+  if (!diary) return diary.error();
+  auto room = std::shared_ptr<Room>(
+      new Room(std::move(name), rules, builder, outlets, std::move(room_water), *std::move(diary)));
   room->access_ = std::move(access);
   if (!place.keeper) return room;
   room->restoration_ = std::make_unique<Restoration>();
@@ -103,22 +81,22 @@ std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
 }
 
 void Room::publishSnapshot() {
-  auto fresh = std::make_shared<const RoomSnapshot>(
-      RoomSnapshot{water_->scene(), water_->sceneVersion(), paused_, clock_.speed(), boats_, water_->sim().gauges()});
+  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{
+      water_->scene(), water_->sceneVersion(), time_.isPaused(), time_.speed(), boats_, water_->sim().gauges()});
   const std::lock_guard lock(snapshot_mutex_);
   snapshot_ = std::move(fresh);
 }
 
 bool Room::askForSnapshot() {
-  if (!keeper_) return false;
-  keeper_->ask();
+  if (!diary_.keeper()) return false;
+  diary_.keeper()->ask();
   wake();
   return true;
 }
 
 std::optional<StateKeeper::Status> Room::keptStatus() const {
-  if (!keeper_) return std::nullopt;
-  return keeper_->status();
+  if (!diary_.keeper()) return std::nullopt;
+  return diary_.keeper()->status();
 }
 
 std::shared_ptr<const RoomVitals> Room::vitals() const {
@@ -131,11 +109,11 @@ void Room::publishVitals(TimePoint now) {
   auto fresh = std::make_shared<RoomVitals>();
   fresh->tick = tick();
   fresh->time_s = water_->sim().time_s();
-  fresh->asleep = asleep_;
+  fresh->asleep = time_.isAsleep();
   fresh->lost = is_lost_;
   fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
   fresh->dropped_frame_count = dropped_frames_;
-  fresh->tick_times = tick_times_;
+  fresh->tick_times = tick_meter_.times();
   fresh->diagnostics = diagnostics();
   const std::lock_guard lock(snapshot_mutex_);
   vitals_ = std::move(fresh);
@@ -148,33 +126,26 @@ void Room::publishLoss() {
   vitals_ = std::move(fresh);
 }
 
-void Room::record(v1::Record record) {
-  if (!log_) return;
-  record.set_tick(tick());
-  log_->write(std::move(record));
-}
-
 // One tick
 
 void Room::start(TimePoint now) {
-  clock_.restart(now);
-  last_run_ = last_watched_ = now;
+  time_.start(now);
 }
 
 Room::TimePoint Room::due() const {
   const auto is_ready = [](const auto& work) { return work.wait_for(0s) == std::future_status::ready; };
   if (change_ ? is_ready(change_->prepared) : build_ && is_ready(build_->water)) return ran_;
   const bool is_stopped = is_lost_ || change_;
-  const bool stands_still = is_stopped || paused_ || asleep_;
-  TimePoint next = stands_still ? ran_ + kStandingInterval : clock_.due();
+  const bool stands_still = is_stopped || !time_.runs();
+  TimePoint next = stands_still ? ran_ + kStandingInterval : time_.due();
   const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
   if (!is_lost_ && water_->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
   if (!stands_still) return next;
-  if (is_woken_ || (pending_tick_count_ > 0 && !is_stopped)) return ran_;
+  if (is_woken_ || (time_.stepsToCome() > 0 && !is_stopped)) return ran_;
   if (commands_.size() > 0 || put_off_) no_later_than(ran_ + kWaitingCommandInterval);
   if (is_lost_ && !build_) no_later_than(next_rebuild_);
   if (has_people_news_) no_later_than(next_people_news_);
-  if (paused_ && !is_stopped && outlets_.sessionCount(*this) > 0) no_later_than(frames_.idleDue());
+  if (time_.isPaused() && !is_stopped && outlets_.sessionCount(*this) > 0) no_later_than(frames_.idleDue());
   return next;
 }
 
@@ -194,20 +165,19 @@ void Room::run(TimePoint now, double thread_load) {
     announce();
     return;
   }
-  const bool stands_still = paused_ || asleep_;
-  if (!stands_still) unpaused_wall_s_ += duration<double>(now - last_run_).count();
-  last_run_ = now;
+  time_.beginRound(now);
   handOverFrames();
-  watchOverSleep(now);
+  const bool may_sleep = water_->scene().unwatched() == v1::UNWATCHED_SLEEP;
+  if (time_.watchOver(!may_sleep || outlets_.sessionCount(*this) > 0, now)) publishVitals(now);
   settlePeople(now);
   finishChange();
-  if (paused_ || asleep_ || now >= clock_.due()) applyCommands(now);
+  if (!time_.runs() || now >= time_.due()) applyCommands(now);
   announce();
   if (change_) {
     // The state stands still until the particles are laid out.
-  } else if (paused_) {
+  } else if (time_.isPaused()) {
     advancePaused(now);
-  } else if (!asleep_ && now >= clock_.due()) {
+  } else if (time_.runs() && now >= time_.due()) {
     step(now);
   }
   announceRecovery(now);
@@ -216,40 +186,25 @@ void Room::run(TimePoint now, double thread_load) {
   if (now >= next_vitals_) publishVitals(now);
 }
 
-void Room::watchOverSleep(TimePoint now) {
-  if (water_->scene().unwatched() != v1::UNWATCHED_SLEEP || outlets_.sessionCount(*this) > 0) {
-    last_watched_ = now;
-    if (!asleep_) return;
-    asleep_ = false;
-    clock_.restart(now);
-  } else if (!asleep_ && now - last_watched_ >= kSleepPatience) {
-    asleep_ = true;
-    publishVitals(now);
-  }
-}
-
 void Room::step(TimePoint now) {
-  const TimePoint scheduled = clock_.due();
+  const TimePoint scheduled = time_.due();
   const TimePoint end = timedStep();
-  run_s_ += water_->sim().derived().tick_s;
-  unpaused_wall_s_ += duration<double>(end - std::max(now, last_run_)).count();
-  last_run_ = end;
-  clock_.ticked(end);
+  time_.ticked(now, end);
   restartIfOver();
   const auto levels = frames_.afterTick({.time_s = water_->sim().time_s(),
                                          .scheduled = scheduled,
                                          .end = end,
-                                         .speed = clock_.speed(),
+                                         .speed = time_.speed(),
                                          .frame_rate_hz = water_->scene().stream().frame_rate_hz()});
   if (levels) requestFrame(end, *levels);
-  watchRealTime(end);
+  time_.warnIfSlow(name_, end);
   adaptFidelity(end);
 }
 
 void Room::advancePaused(TimePoint now) {
-  if (pending_tick_count_ > 0) {
+  if (time_.stepsToCome() > 0) {
     const TimePoint end = timedStep();
-    if (--pending_tick_count_ == 0) frames_.setIdleDue(end);  // what was asked for is there to see at once
+    if (time_.stepped()) frames_.setIdleDue(end);  // what was asked for is there to see at once
     now = end;
   }
   if (now < frames_.idleDue()) return;
@@ -261,24 +216,10 @@ Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
   water_->step();
   const auto end = std::chrono::steady_clock::now();
-  const double step_ms = duration<double, std::milli>(end - begin).count();
+  const double step_ms = std::chrono::duration<double, std::milli>(end - begin).count();
   tick_cost_.note(step_ms);
-  tick_times_.note(1e-3 * step_ms);
-  step_ms_sum_ += step_ms;
-  ++step_count_;
-  if (log_ && !log_->ended()) {
-    if (const std::uint64_t count = water_->sim().recoveredCount(); count != logged_recovery_count_) {
-      logged_recovery_count_ = count;
-      v1::Record recovered;
-      recovered.set_recovered(true);
-      record(std::move(recovered));
-    }
-    if (tick() % log_->hashInterval_ticks() == 0) {
-      v1::Record hash;
-      hash.set_state_hash(water_->sim().stateHash());
-      record(std::move(hash));
-    }
-  }
+  tick_meter_.note(step_ms);
+  diary_.ticked(tick(), water_->sim());
   return end;
 }
 
@@ -337,13 +278,13 @@ std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& wate
 }
 
 core::DiagnosticsView Room::diagnostics() {
-  if (step_count_ > 0) last_step_ms_ = step_ms_sum_ / step_count_;
   sim::WaterSim& water = water_->sim();
+  const TickMeter::Means& means = tick_meter_.takeMeans(water);
   const sim::Health& h = water.health();
   const sim::Derived& d = water.derived();
   core::DiagnosticsView out;
-  out.step_ms = last_step_ms_;
-  out.real_time_factor = paused_ || asleep_ ? 0.0 : clock_.realTimeFactor();
+  out.step_ms = means.step_ms;
+  out.real_time_factor = time_.realTimeFactor();
   out.substeps_count = d.substeps_count;
   out.particle_count = water.particleCount();
   out.max_particle_speed_mps = h.max_speed_mps;
@@ -361,37 +302,9 @@ core::DiagnosticsView Room::diagnostics() {
   out.emitted_m3 = h.emitted_m3;
   out.absorbed_m3 = h.absorbed_m3;
   out.breaking_ratio = h.breaking_ratio;
-  if (step_count_ > 0) {
-    last_passes_.clear();
-    for (const gpu::PassCost& pass : water.takePassCosts())
-      last_passes_.push_back({pass.name, pass.total_ms / step_count_});
-  }
-  out.passes = last_passes_;
+  out.passes = means.passes;
   out.gauges = gaugesNow(water);
-  step_ms_sum_ = 0.0;
-  step_count_ = 0;
   return out;
-}
-
-void Room::watchRealTime(TimePoint now) {
-  const double factor = clock_.realTimeFactor();
-  if (factor == 0.0 || factor >= kSlowFactor * clock_.speed()) {
-    slow_since_ = now;
-    return;
-  }
-  if (slow_since_ == TimePoint{}) slow_since_ = now;
-  if (now - slow_since_ < kSlowPatience || now < next_slow_warning_) return;
-  next_slow_warning_ = now + kSlowWarningInterval;
-  spdlog::warn(
-      "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use a lower fidelity (serve --adapt "
-      "does so by itself), fewer particles, or a lower speed",
-      name_, factor, clock_.speed());
-}
-
-double Room::meanRealTimeFactor(TimePoint now) const {
-  const double open_s = paused_ || asleep_ ? 0.0 : duration<double>(now - last_run_).count();
-  const double wall_s = unpaused_wall_s_ + open_s;
-  return wall_s > 0 ? run_s_ / wall_s : 0.0;
 }
 
 }  // namespace spindrift::rooms

@@ -78,10 +78,7 @@ void Room::finishChange() {
   heavy_budget_.spend(std::chrono::steady_clock::now() - change.begin);
   const bool is_taken = !outcome;
   if (is_taken) {
-    recordCommand(change.command);
-    v1::StateRecord line;
-    *line.mutable_command() = change.command.message;
-    keepWhatHappened(std::move(line));
+    diary_.carriedOutLate(tick(), change.command.message);
     parameterChanged(change.command.message.set_parameter());
   }
   change.others.tried.push_back({std::move(change.command), std::move(outcome)});

@@ -150,24 +150,17 @@ void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
 }
 
 Room::Outcome Room::applyToWater(const Command& command) {
-  if (auto refused = keep(command)) return refused;
+  if (auto refused = diary_.writeAhead(tick(), command.message)) return refused;
   if (auto rejected = water_->apply(command.message)) return rejected;
-  recordCommand(command);
+  diary_.carriedOut(tick(), command.message);
   return {};
-}
-
-void Room::recordCommand(const Command& command) {
-  if (!log_) return;
-  v1::Record line;
-  *line.mutable_command() = command.message;
-  record(std::move(line));
 }
 
 Room::Outcome Room::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
   frames_.restart();
   frames_.setIdleDue({});
-  pending_tick_count_ = 0;
+  time_.setSteps(0);
   news_.reset = true;
   boatsChanged();
   return {};
@@ -183,17 +176,14 @@ void Room::restartIfOver() {
 
 Room::Outcome Room::setPaused(const Command& command) {
   if (auto refused = keep(command)) return refused;
-  const bool paused = command.message.set_paused().paused();
-  if (paused_ && !paused) clock_.restart(std::chrono::steady_clock::now());
-  paused_ = paused;
-  pending_tick_count_ = 0;
+  time_.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
   news_.state = true;
   return {};
 }
 
 Room::Outcome Room::setSpeed(const Command& command) {
   if (auto refused = keep(command)) return refused;
-  clock_.setSpeed(command.message.set_speed().speed());
+  time_.setSpeed(command.message.set_speed().speed());
   news_.state = true;
   return {};
 }
@@ -286,16 +276,16 @@ void Room::settlePeople(TimePoint now) {
 
 Room::Outcome Room::advance(const Command& command) {
   const std::uint32_t tick_count = command.message.step().tick_count();
-  if (!paused_) {
+  if (!time_.isPaused()) {
     return rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
   }
-  if (pending_tick_count_ + tick_count > kPendingTickMaxCount) {
+  if (time_.stepsToCome() + tick_count > kPendingTickMaxCount) {
     return rejection(v1::REJECT_REASON_BUSY, "step.tick_count",
                      fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done",
-                                 tick_count, pending_tick_count_, kPendingTickMaxCount));
+                                 tick_count, time_.stepsToCome(), kPendingTickMaxCount));
   }
   if (auto refused = keep(command)) return refused;
-  pending_tick_count_ += tick_count;
+  time_.setSteps(time_.stepsToCome() + tick_count);
   return {};
 }
 
@@ -304,12 +294,12 @@ Room::Outcome Room::advance(const Command& command) {
 void Room::announce() {
   const News news = std::exchange(news_, {});
   if (news.state || !news.parameters.empty()) publishSnapshot();
-  if (news.state) outlets_.timeChanged(*this, paused_, clock_.speed());
+  if (news.state) outlets_.timeChanged(*this, time_.isPaused(), time_.speed());
   for (const auto& [path, value] : news.parameters) outlets_.parameterChanged(*this, path, value);
   if (news.reset) outlets_.wasReset(*this);
   if (!news.rebuilt.empty()) outlets_.hasRecovered(*this, news.rebuilt);
   if (news.boats) announceBoats();
-  keepPeople();
+  diary_.people(tick(), roster_);
   flushKept();
   deliverAnswers();
 }

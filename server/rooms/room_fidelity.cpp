@@ -36,12 +36,7 @@ Room::Outcome Room::goOnIn(std::unique_ptr<Water>& next, const std::string& why)
   builder_.dispose(std::move(next));
   // As it was built: the lattice of its particles follows from the parameters of that moment, and the present ones from
   // the commands before.
-  v1::Record line;
-  *line.mutable_continued_scene() = built;
-  record(std::move(line));
-  v1::StateRecord kept;
-  *kept.mutable_continued_scene() = built;
-  keepWhatHappened(std::move(kept));
+  diary_.continuedIn(tick(), built);
   restartScene(true);
   const std::string news = fmt::format("{}fidelity is now {} instead of {}", why.empty() ? why : why + ": ",
                                        scene::fidelityName(water_->scene().fidelity()), before);
@@ -55,7 +50,7 @@ void Room::adaptFidelity(TimePoint now) {
   const v1::Fidelity level = water_->scene().fidelity();
   const auto lower = scene::coarserThan(level);
   const auto upper = scene::finerThan(level);
-  const double pace = clock_.realTimeFactor() / clock_.speed();
+  const double pace = time_.pace();
   const Step step = governor_.note({.now_s = core::monotonic_s(now),
                                     .pace = pace,
                                     .can_fall = lower.has_value(),
@@ -86,7 +81,7 @@ void Room::adoptAdapted(TimePoint now, const WaterBuild& build, WaterBuilder::Bu
   if (!water) return fail(firstLine(water.error().message));
   if (is_lost_) return finishRebuild(now, std::move(water));
   // It ran for the first time: a device that works beside this thread shows what it costs only now.
-  const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / clock_.speed();
+  const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / time_.speed();
   if (build.step == Step::kUp && (*water)->warmTick_ms() > budget_ms) {
     const double tick_ms = (*water)->warmTick_ms();
     builder_.dispose(*std::move(water));
@@ -105,8 +100,8 @@ double Room::loadAt(v1::Fidelity level) const {
   const core::Scene wanted = scene::toCore(*scene);
   const auto derived = sim::derive(wanted);
   if (!derived) return std::numeric_limits<double>::infinity();
-  const double per_s_now = clock_.speed() / water_->sim().derived().tick_s;
-  const double per_s_then = clock_.speed() / derived->tick_s;
+  const double per_s_now = time_.speed() / water_->sim().derived().tick_s;
+  const double per_s_then = time_.speed() / derived->tick_s;
   const double more_ms_per_s =
       tick_cost_.predict_ms(workOf(wanted, *derived)) * per_s_then - tick_cost_.tick_ms() * per_s_now;
   return thread_load_ + more_ms_per_s / 1e3;

@@ -18,13 +18,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A room that comes back lost at most so much simulated time after the last command.
-constexpr auto kRunningInterval = 500ms;
-
-wire::CommandRejection notKept(const std::string& why) {
-  return rejection(v1::REJECT_REASON_BUSY, "", "the server cannot keep this on disk and does not carry it out: " + why);
-}
-
 std::int64_t nowUnix_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
       .count();
@@ -34,35 +27,10 @@ std::int64_t nowUnix_ms() {
 
 // While it runs
 
-Room::Outcome Room::keep(const Command& command) {
-  if (!keeper_) return {};
-  if (const auto gap = keeper_->gap()) return notKept(*gap);
-  v1::StateRecord record;
-  record.set_tick(tick());
-  *record.mutable_command() = command.message;
-  if (auto appended = keeper_->append(record); !appended) return notKept(appended.error().message);
-  return {};
-}
-
-void Room::keepWhatHappened(v1::StateRecord record) {
-  if (!keeper_) return;
-  record.set_tick(tick());
-  keeper_->appendWhatHappened(record);
-}
-
-void Room::keepPeople() {
-  if (!keeper_) return;
-  const std::uint64_t version = roster_.version();
-  if (version == std::exchange(kept_people_version_, version)) return;
-  v1::StateRecord record;
-  *record.mutable_people() = roster_.kept();
-  keepWhatHappened(std::move(record));
-}
-
 void Room::flushKept() {
   // A refusal promises nothing, and does not wait for the disk.
-  if (!keeper_ || std::ranges::all_of(answers_, [](const Answer& one) { return one.rejected.has_value(); })) return;
-  const auto flushed = keeper_->flush();
+  if (std::ranges::all_of(answers_, [](const Answer& one) { return one.rejected.has_value(); })) return;
+  const auto flushed = diary_.flush();
   if (flushed) return;
   for (Answer& answer : answers_) {
     if (answer.rejected) continue;
@@ -73,24 +41,11 @@ void Room::flushKept() {
 }
 
 void Room::keepState(TimePoint now) {
-  if (!keeper_ || is_lost_ || change_) return;
-  // What the watchdog restored does not follow from the log.
-  const std::uint64_t recovered_count = water_->sim().recoveredCount();
-  if (recovered_count != std::exchange(kept_recovery_count_, recovered_count)) keeper_->ask();
-  if (keeper_->isDue(now, water_->stateId() != saved_state_id_)) {
+  if (is_lost_ || change_) return;
+  if (diary_.wantsSnapshot(now, water_->stateId(), water_->sim().recoveredCount()))
     (void)save();
-    next_running_ = now + kRunningInterval;
-  } else if (now >= next_running_) {
-    keepTick();
-    next_running_ = now + kRunningInterval;
-  }
-}
-
-void Room::keepTick() {
-  if (std::exchange(kept_state_id_, water_->stateId()) == water_->stateId()) return;
-  v1::StateRecord record;
-  record.set_running(true);
-  keepWhatHappened(std::move(record));
+  else
+    diary_.progress(now, tick(), water_->stateId());
 }
 
 core::Result<void> Room::save() {
@@ -98,21 +53,22 @@ core::Result<void> Room::save() {
   auto state = stateNow();
   if (!state) return core::Error{core::ErrorCode::kUnavailable, "the device does not answer"};
   const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  keeper_->save(*std::move(state), begin, copy_s);
+  diary_.save(*std::move(state), water_->stateId(), begin, copy_s);
   return {};
 }
 
 core::Result<void> Room::saveUntil(TimePoint deadline) {
-  if (!keeper_ || is_lost_) return {};
+  StateKeeper* const keeper = diary_.keeper();
+  if (!keeper || is_lost_) return {};
   water_->bind();
   const core::Error late{core::ErrorCode::kUnavailable, "the disk took too long"};
   // One that is being written is older. Without time for another the log says how far the room has come.
-  if (!keeper_->outcome(deadline) || std::chrono::steady_clock::now() >= deadline) {
-    keepTick();
+  if (!keeper->outcome(deadline) || std::chrono::steady_clock::now() >= deadline) {
+    diary_.progress(tick(), water_->stateId());
     return late;
   }
   if (auto begun = save(); !begun) return begun;
-  const auto saved = keeper_->outcome(deadline);
+  const auto saved = keeper->outcome(deadline);
   return saved ? *saved : late;
 }
 
@@ -124,11 +80,10 @@ std::optional<v1::KeptState> Room::stateNow() {
   out.set_room(name_);
   out.set_saved_at_ms(nowUnix_ms());
   water_->save(out);
-  saved_state_id_ = water_->stateId();
   if (water_->failure()) return std::nullopt;  // a lost device reads as zeros
-  out.set_paused(paused_);
-  out.set_speed(clock_.speed());
-  out.set_pending_tick_count(pending_tick_count_);
+  out.set_paused(time_.isPaused());
+  out.set_speed(time_.speed());
+  out.set_pending_tick_count(time_.stepsToCome());
   out.set_chosen_fidelity(chosen_fidelity_);
   *out.mutable_people() = roster_.kept();
   *out.mutable_access() = access_;
@@ -145,8 +100,8 @@ core::Result<bool> Room::restoreUntil(TimePoint deadline) {
     if (!done || !*done) return done;
     restorePeople(repetition->kept);
   }
-  keeper_ = std::move(restoration_->keeper);
-  if (!restoration_->repetition) keeper_->openGap("its first snapshot is not on the disk yet");
+  diary_.keepIn(std::move(restoration_->keeper));
+  if (!restoration_->repetition) diary_.keeper()->openGap("its first snapshot is not on the disk yet");
   restoration_.reset();
   first_snapshot_until_ = std::chrono::steady_clock::now() + rules_.disk_patience;
   if (auto begun = save(); !begun) return cannotBeWritten(begun.error());
@@ -154,14 +109,15 @@ core::Result<bool> Room::restoreUntil(TimePoint deadline) {
 }
 
 core::Result<bool> Room::isOnDisk(TimePoint deadline) {
-  if (!keeper_) return true;
-  const auto outcome = keeper_->outcome(std::min(deadline, first_snapshot_until_));
+  StateKeeper* const keeper = diary_.keeper();
+  if (!keeper) return true;
+  const auto outcome = keeper->outcome(std::min(deadline, first_snapshot_until_));
   if (outcome && !*outcome) return cannotBeWritten(outcome->error());
   if (outcome) return true;
   if (std::chrono::steady_clock::now() < first_snapshot_until_) return false;
   spdlog::warn("room {}: its first snapshot is not on the disk after {}: the disk is slow; the room opens without it{}",
                name_, rules_.disk_patience,
-               keeper_->gap() ? " and refuses commands until it is there" : ", on what was there before");
+               keeper->gap() ? " and refuses commands until it is there" : ", on what was there before");
   return true;
 }
 
@@ -191,9 +147,7 @@ void Room::restorePeople(const KeptRoom& kept) {
 core::Result<Room::Repetition> Room::repetitionOf(KeptRoom kept) {
   const v1::KeptState& state = *kept.state;
   if (auto done = water_->restore(state); !done) return done.error();
-  clock_ = RealTimeClock(water_->sim().derived().tick_s);
-  if (state.speed() > 0) clock_.setSpeed(state.speed());
-  paused_ = state.paused();
+  time_.restore(water_->sim().derived().tick_s, state.speed(), state.paused());
   chosen_fidelity_ = state.chosen_fidelity();
   const std::uint64_t steps_until = tick() + state.pending_tick_count();
   return Repetition{.kept = std::move(kept), .next = 0, .steps_until = steps_until};
@@ -205,15 +159,16 @@ core::Result<bool> Room::repeatUntil(Repetition& all, TimePoint deadline) {
     if (!done || !*done) return done;
     if (std::chrono::steady_clock::now() >= deadline && all.next < all.kept.records.size()) return false;
   }
-  pending_tick_count_ = paused_ && all.steps_until > tick() ? static_cast<std::uint32_t>(all.steps_until - tick()) : 0;
+  time_.setSteps(time_.isPaused() && all.steps_until > tick() ? static_cast<std::uint32_t>(all.steps_until - tick())
+                                                              : 0);
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
   recovery_news_.restart(water_->sim().recoveredCount());
-  kept_recovery_count_ = water_->sim().recoveredCount();
+  diary_.setRecovered(water_->sim().recoveredCount());
   return true;
 }
 
 bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
-  auto kept = keeper_ ? keeper_->newest() : std::nullopt;
+  auto kept = diary_.keeper() ? diary_.keeper()->newest() : std::nullopt;
   if (!kept) return false;
   const std::uint64_t lost_tick = tick();
   builder_.dispose(water_->replaceWater(std::move(water)));
@@ -228,13 +183,11 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   }
   water_->goOnAfter(lost_tick);
   is_lost_ = false;
-  v1::Record line;
-  line.set_recovered(true);  // a replay does not repeat it
-  record(std::move(line));
+  diary_.recovered(tick());
   restartScene(true);
   boatsChanged();
   // Ticks have passed since the snapshot, and the log does not say so.
-  keeper_->openGap("the room continued after its device failed, and no snapshot says so yet");
+  diary_.keeper()->openGap("the room continued after its device failed, and no snapshot says so yet");
   return true;
 }
 
@@ -279,11 +232,11 @@ void Room::repeat(const v1::Command& message, std::uint64_t& steps_until) {
   if (!command) return;
   switch (command->action_case()) {
     case v1::Command::kSetPaused:
-      paused_ = command->set_paused().paused();
+      time_.setPaused(command->set_paused().paused(), std::chrono::steady_clock::now());
       steps_until = 0;
       return;
     case v1::Command::kSetSpeed:
-      clock_.setSpeed(command->set_speed().speed());
+      time_.setSpeed(command->set_speed().speed());
       return;
     case v1::Command::kStep:
       steps_until = std::max(steps_until, tick()) + command->step().tick_count();

@@ -138,7 +138,7 @@ void Room::finishRebuild(TimePoint now, WaterBuilder::Built water) {
 }
 
 v1::Scene Room::sceneAfterLoss() const {
-  const auto kept = keeper_ ? keeper_->newest() : std::nullopt;
+  const auto kept = diary_.keeper() ? diary_.keeper()->newest() : std::nullopt;
   if (!kept) return water_->scene();
   v1::Scene out = kept->state->start_scene();
   scene::fillDefaults(out);
@@ -146,37 +146,17 @@ v1::Scene Room::sceneAfterLoss() const {
 }
 
 void Room::restartScene(bool goes_on) {
-  if (!goes_on) {
-    v1::Record line;
-    *line.mutable_scene() = water_->scene();
-    record(std::move(line));
-    v1::StateRecord kept;
-    *kept.mutable_scene() = water_->scene();
-    keepWhatHappened(std::move(kept));
-  }
-  if (keeper_) {
-    kept_recovery_count_ = water_->sim().recoveredCount();
-    keeper_->ask();
-  }
-  const double speed = clock_.speed();
-  clock_ = RealTimeClock(water_->sim().derived().tick_s);
-  clock_.setSpeed(speed);
+  if (!goes_on) diary_.beganScene(tick(), water_->scene());
+  diary_.waterReplaced(water_->sim().recoveredCount());
   const auto ready = std::chrono::steady_clock::now();
-  clock_.restart(ready);
-  last_run_ = last_watched_ = ready;
-  asleep_ = false;
+  time_.restart(water_->sim().derived().tick_s, goes_on, ready);
   next_scene_change_ = ready + kSceneChangeInterval;
   frames_.restart();
   frames_.setIdleDue({});
-  if (!goes_on) pending_tick_count_ = 0;
   wants_diagnostics_ = false;
-  step_ms_sum_ = last_step_ms_ = 0.0;
-  step_count_ = 0;
-  last_passes_.clear();
-  slow_since_ = {};
+  tick_meter_.restart();
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
   recovery_news_.restart(water_->sim().recoveredCount());
-  logged_recovery_count_ = water_->sim().recoveredCount();
   boats_ = water_->boats();
   news_ = {};                          // the greeting contains all of it
   if (!goes_on) roster_.keepOnly({});  // the boats of the new scene have no owner yet, whatever their ids

@@ -18,19 +18,19 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/rooms/command.h>
-#include <spindrift/rooms/command_log.h>
 #include <spindrift/rooms/command_queue.h>
+#include <spindrift/rooms/diary.h>
 #include <spindrift/rooms/fidelity_governor.h>
 #include <spindrift/rooms/frame_schedule.h>
 #include <spindrift/rooms/growth_news.h>
-#include <spindrift/rooms/real_time_clock.h>
 #include <spindrift/rooms/room_outlets.h>
+#include <spindrift/rooms/room_time.h>
 #include <spindrift/rooms/room_water.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/rooms/scene_catalog.h>
 #include <spindrift/rooms/state_store.h>
 #include <spindrift/rooms/tick_cost.h>
-#include <spindrift/rooms/tick_times.h>
+#include <spindrift/rooms/tick_meter.h>
 #include <spindrift/rooms/water_builder.h>
 #include <spindrift/rooms/work_budget.h>
 #include <spindrift/v1/scene.pb.h>
@@ -87,7 +87,7 @@ std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& wate
 
 class Room {
  public:
-  using TimePoint = RealTimeClock::TimePoint;
+  using TimePoint = RoomTime::TimePoint;
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
   /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room continues
@@ -159,9 +159,9 @@ class Room {
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice() {
     water_.reset();
-    if (keeper_) keeper_->finish();
+    if (diary_.keeper()) diary_.keeper()->finish();
   }
-  [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
+  [[nodiscard]] double meanRealTimeFactor(TimePoint now) const { return time_.meanRealTimeFactor(now); }
   [[nodiscard]] std::uint64_t droppedFrameCount() const { return dropped_frames_; }
 
  private:
@@ -206,10 +206,9 @@ class Room {
   };
 
   Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-       std::unique_ptr<RoomWater> room_water, std::unique_ptr<CommandLogWriter> log);
+       std::unique_ptr<RoomWater> room_water, Diary diary);
 
   void step(TimePoint now);
-  void watchOverSleep(TimePoint now);
   TimePoint timedStep();
   void advancePaused(TimePoint now);
 
@@ -224,9 +223,8 @@ class Room {
   void apply(Batch batch);
   /// Checks the command against the scene again if the scene changed since the command was admitted.
   [[nodiscard]] Outcome checkAgain(const Command& command) const;
-  /// Applies the command to the water and writes it to the log.
+  /// Applies the command to the water, and writes it to the diary.
   Outcome applyToWater(const Command& command);
-  void recordCommand(const Command& command);
   Outcome reset(const Command& command);
   /// Resets a scene that repeats itself, as a command would: logs hold it.
   void restartIfOver();
@@ -253,17 +251,12 @@ class Room {
   void announceRecovery(TimePoint now);
 
   // room_keeping.cpp
-  /// Writes the command to the log on disk before it is carried out; a rejection if that is not possible.
-  [[nodiscard]] Outcome keep(const Command& command);
-  void keepWhatHappened(v1::StateRecord record);
-  /// Writes who is here if that has changed.
-  void keepPeople();
-  /// Call it before answers are sent: they must not promise what the disk refused.
+  /// Diary::writeAhead() for a command that does not change the water.
+  [[nodiscard]] Outcome keep(const Command& command) { return diary_.writeAhead(tick(), command.message); }
+  /// Rejects what the disk refused, before the answers are sent.
   void flushKept();
-  /// Writes a snapshot when one is due, and how far the room has come.
+  /// Writes a snapshot when one is due, otherwise how far the room has come.
   void keepState(TimePoint now);
-  /// Writes to the log how far the room has come, unless it stands still.
-  void keepTick();
   /// Begins to write a snapshot. Error: the device does not answer.
   core::Result<void> save();
   [[nodiscard]] core::Error cannotBeWritten(const core::Error& why) const;
@@ -351,10 +344,8 @@ class Room {
   void requestFrame(TimePoint now, core::LevelSet due);
   void handOverFrames();
   core::DiagnosticsView diagnostics();
-  void watchRealTime(TimePoint now);
   void publishSnapshot();
   void publishVitals(TimePoint now);
-  void record(v1::Record record);
 
   const std::string name_;
   v1::RoomAccess access_;  ///< set by create() only
@@ -362,14 +353,8 @@ class Room {
   WaterBuilder& builder_;
   RoomOutlets& outlets_;
   std::unique_ptr<RoomWater> water_;
-  std::unique_ptr<CommandLogWriter> log_;     ///< null: no log
-  std::unique_ptr<StateKeeper> keeper_;       ///< null: the room is not kept on disk
+  Diary diary_;
   std::unique_ptr<Restoration> restoration_;  ///< until the room is where it was
-  std::uint64_t kept_people_version_ = 0;
-  std::uint64_t kept_recovery_count_ = 0;
-  std::uint64_t kept_state_id_ = 0;   ///< of the last record that the room runs
-  std::uint64_t saved_state_id_ = 0;  ///< of the last snapshot
-  TimePoint next_running_{};
   TimePoint first_snapshot_until_{};
   CommandQueue commands_;
   WorkBudget heavy_budget_;
@@ -388,14 +373,9 @@ class Room {
   FidelityGovernor governor_;
   v1::Fidelity chosen_fidelity_;  ///< of the scene, or chosen by a person; adapting never goes above it
   Roster roster_;
-  RealTimeClock clock_;
-  bool paused_ = false;
-  bool asleep_ = false;
-  TimePoint last_watched_{};
-  std::uint32_t pending_tick_count_ = 0;  ///< ticks of Step commands that the paused room has still to advance
-  v1::BoatList boats_;                    ///< as last announced
+  RoomTime time_;
+  v1::BoatList boats_;  ///< as last announced
   GrowthNews recovery_news_{std::chrono::seconds(1)};
-  std::uint64_t logged_recovery_count_ = 0;
   bool has_people_news_ = false;
   TimePoint next_people_news_{};
   TimePoint next_vitals_{};
@@ -404,19 +384,10 @@ class Room {
   bool wants_diagnostics_ = false;
   std::uint64_t dropped_frames_ = 0;
 
-  TickTimes tick_times_;
-  double step_ms_sum_ = 0.0;  ///< since the last diagnostics
-  std::uint32_t step_count_ = 0;
-  double last_step_ms_ = 0.0;
-  std::vector<core::DiagnosticsView::PassTime> last_passes_;
-  double run_s_ = 0.0;  ///< simulated seconds since the start; a reset does not subtract
-  double unpaused_wall_s_ = 0.0;
-  TimePoint last_run_{};
+  TickMeter tick_meter_;
   TimePoint ran_{};                    ///< begin of the last run()
   std::atomic<bool> is_woken_{false};  ///< since the last run()
   std::function<void()> on_wake_;
-  TimePoint slow_since_{};
-  TimePoint next_slow_warning_{};
 
   mutable std::mutex snapshot_mutex_;
   std::shared_ptr<const RoomSnapshot> snapshot_;

@@ -1,0 +1,72 @@
+// The time of a room: its pace beside the wall clock, pause, single steps, and sleep. The caller passes the wall time
+// in; no clock is read.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include <spindrift/rooms/real_time_clock.h>
+
+namespace spindrift::rooms {
+
+class RoomTime {
+ public:
+  using TimePoint = RealTimeClock::TimePoint;
+
+  /// `tick_s`: simulated seconds per tick.
+  explicit RoomTime(double tick_s) : tick_s_(tick_s), clock_(tick_s) {}
+
+  void start(TimePoint now);
+  /// Other water at the same speed; awake, and paused as before. `keeps_steps`: with the steps that were still to come.
+  void restart(double tick_s, bool keeps_steps, TimePoint now);
+  /// Continues with what was kept. `speed`: 0 for the usual one.
+  void restore(double tick_s, double speed, bool is_paused);
+
+  [[nodiscard]] bool isPaused() const { return is_paused_; }
+  [[nodiscard]] bool isAsleep() const { return is_asleep_; }
+  /// Neither paused nor asleep.
+  [[nodiscard]] bool runs() const { return !is_paused_ && !is_asleep_; }
+  [[nodiscard]] double speed() const { return clock_.speed(); }
+  /// Simulated over wall time in the last second, of the speed that is wanted.
+  [[nodiscard]] double pace() const { return clock_.realTimeFactor() / clock_.speed(); }
+  /// Simulated over wall time in the last second; 0 in a room that stands still.
+  [[nodiscard]] double realTimeFactor() const { return runs() ? clock_.realTimeFactor() : 0.0; }
+  /// The same since the start, without the time in which the room stood still.
+  [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
+  /// When the next tick of a running room is due.
+  [[nodiscard]] TimePoint due() const { return clock_.due(); }
+
+  /// Ends the steps that were still to come.
+  void setPaused(bool is_paused, TimePoint now);
+  void setSpeed(double speed) { clock_.setSpeed(speed); }
+  /// Ticks that the paused room has still to advance.
+  [[nodiscard]] std::uint32_t stepsToCome() const { return steps_to_come_; }
+  void setSteps(std::uint32_t count) { steps_to_come_ = count; }
+  /// Notes that such a tick is done; returns whether it was the last one.
+  bool stepped() { return --steps_to_come_ == 0; }
+
+  /// Call it at the begin of each round of the room.
+  void beginRound(TimePoint now);
+  /// Lets the room sleep when nobody has `watched` it for a while, and wakes it. Returns whether it fell asleep now.
+  bool watchOver(bool is_watched, TimePoint now);
+  /// A tick of the running room that began at `begin` and ended at `end`.
+  void ticked(TimePoint begin, TimePoint end);
+  /// Warns, seldom, while the machine does not keep up with the wanted speed.
+  void warnIfSlow(const std::string& room, TimePoint now);
+
+ private:
+  double tick_s_;
+  RealTimeClock clock_;
+  bool is_paused_ = false;
+  bool is_asleep_ = false;
+  std::uint32_t steps_to_come_ = 0;
+  TimePoint last_watched_{};
+  TimePoint last_run_{};         ///< up to which running_wall_s_ counts
+  double run_s_ = 0.0;           ///< simulated seconds since the start; a reset does not subtract
+  double running_wall_s_ = 0.0;  ///< wall time in which the room ran
+  TimePoint slow_since_{};
+  TimePoint next_slow_warning_{};
+};
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,94 @@
+#include <algorithm>
+
+#include <spdlog/spdlog.h>
+
+#include <spindrift/rooms/room_time.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Time from the last client's leaving until a room whose scene sleeps without clients stops.
+constexpr auto kSleepPatience = 2s;
+constexpr double kSlowPace = 0.9;
+constexpr auto kSlowPatience = 5s;
+constexpr auto kSlowWarningInterval = 60s;
+
+double seconds(std::chrono::steady_clock::duration duration) {
+  return std::chrono::duration<double>(duration).count();
+}
+
+}  // namespace
+
+void RoomTime::start(TimePoint now) {
+  clock_.restart(now);
+  last_run_ = last_watched_ = now;
+}
+
+void RoomTime::restart(double tick_s, bool keeps_steps, TimePoint now) {
+  restore(tick_s, clock_.speed(), is_paused_);
+  start(now);
+  is_asleep_ = false;
+  if (!keeps_steps) steps_to_come_ = 0;
+  slow_since_ = {};
+}
+
+void RoomTime::restore(double tick_s, double speed, bool is_paused) {
+  tick_s_ = tick_s;
+  clock_ = RealTimeClock(tick_s);
+  if (speed > 0) clock_.setSpeed(speed);
+  is_paused_ = is_paused;
+}
+
+double RoomTime::meanRealTimeFactor(TimePoint now) const {
+  const double wall_s = running_wall_s_ + (runs() ? seconds(now - last_run_) : 0.0);
+  return wall_s > 0 ? run_s_ / wall_s : 0.0;
+}
+
+void RoomTime::setPaused(bool is_paused, TimePoint now) {
+  if (is_paused_ && !is_paused) clock_.restart(now);
+  is_paused_ = is_paused;
+  steps_to_come_ = 0;
+}
+
+void RoomTime::beginRound(TimePoint now) {
+  if (runs()) running_wall_s_ += seconds(now - last_run_);
+  last_run_ = now;
+}
+
+bool RoomTime::watchOver(bool is_watched, TimePoint now) {
+  if (is_watched) {
+    last_watched_ = now;
+    if (is_asleep_) clock_.restart(now);
+    is_asleep_ = false;
+    return false;
+  }
+  if (is_asleep_ || now - last_watched_ < kSleepPatience) return false;
+  is_asleep_ = true;
+  return true;
+}
+
+void RoomTime::ticked(TimePoint begin, TimePoint end) {
+  run_s_ += tick_s_;
+  running_wall_s_ += seconds(end - std::max(begin, last_run_));
+  last_run_ = end;
+  clock_.ticked(end);
+}
+
+void RoomTime::warnIfSlow(const std::string& room, TimePoint now) {
+  const double factor = clock_.realTimeFactor();
+  if (factor == 0.0 || factor >= kSlowPace * clock_.speed()) {
+    slow_since_ = now;
+    return;
+  }
+  if (slow_since_ == TimePoint{}) slow_since_ = now;
+  if (now - slow_since_ < kSlowPatience || now < next_slow_warning_) return;
+  next_slow_warning_ = now + kSlowWarningInterval;
+  spdlog::warn(
+      "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use a lower fidelity (serve --adapt "
+      "does so by itself), fewer particles, or a lower speed",
+      room, factor, clock_.speed());
+}
+
+}  // namespace spindrift::rooms

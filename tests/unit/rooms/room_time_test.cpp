@@ -1,0 +1,80 @@
+#include <gtest/gtest.h>
+
+#include <spindrift/rooms/room_time.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kTick_s = 1.0 / 60.0;
+const RoomTime::TimePoint kStart = RoomTime::TimePoint{} + 1h;
+
+RoomTime running() {
+  RoomTime time(kTick_s);
+  time.start(kStart);
+  return time;
+}
+
+TEST(RoomTime, SleepsTwoSecondsAfterTheLastClientLeftAndWakesWithTheNext) {
+  RoomTime time = running();
+  EXPECT_FALSE(time.watchOver(true, kStart + 1s));
+  EXPECT_FALSE(time.watchOver(false, kStart + 2900ms));
+  EXPECT_TRUE(time.runs());
+  EXPECT_TRUE(time.watchOver(false, kStart + 3s)) << "falls asleep now";
+  EXPECT_FALSE(time.watchOver(false, kStart + 4s)) << "told once";
+  EXPECT_TRUE(time.isAsleep());
+  EXPECT_FALSE(time.watchOver(true, kStart + 60s));
+  EXPECT_TRUE(time.runs());
+  EXPECT_EQ(time.due(), kStart + 60s) << "without lag";
+}
+
+TEST(RoomTime, PausingEndsTheStepsThatWereStillToCome) {
+  RoomTime time = running();
+  time.setPaused(true, kStart);
+  time.setSteps(2);
+  EXPECT_FALSE(time.stepped());
+  EXPECT_TRUE(time.stepped()) << "the last one";
+  time.setSteps(5);
+  time.setPaused(true, kStart + 1s);
+  EXPECT_EQ(time.stepsToCome(), 0u);
+}
+
+TEST(RoomTime, ResumesWithoutLagAfterAPause) {
+  RoomTime time = running();
+  time.setPaused(true, kStart);
+  time.setPaused(false, kStart + 1min);
+  EXPECT_EQ(time.due(), kStart + 1min);
+}
+
+TEST(RoomTime, MeanFactorLeavesOutTheTimeInWhichTheRoomStoodStill) {
+  RoomTime time = running();
+  auto now = kStart;
+  for (int k = 0; k < 60; ++k) {
+    time.beginRound(now);
+    time.ticked(now, now + 5ms);
+    now += 1000ms / 60;
+  }
+  time.beginRound(now);
+  EXPECT_NEAR(time.meanRealTimeFactor(now), 1.0, 0.01);
+  time.setPaused(true, now);
+  time.beginRound(now + 1h);
+  EXPECT_NEAR(time.meanRealTimeFactor(now + 2h), 1.0, 0.01);
+  EXPECT_EQ(time.realTimeFactor(), 0.0) << "it stands still";
+}
+
+TEST(RoomTime, OtherWaterKeepsSpeedAndPauseAndStepsWhereTheyContinue) {
+  for (const bool keeps_steps : {false, true}) {
+    RoomTime time = running();
+    time.setSpeed(2.0);
+    time.setPaused(true, kStart);
+    time.setSteps(3);
+    time.restart(2 * kTick_s, keeps_steps, kStart + 1s);
+    EXPECT_EQ(time.speed(), 2.0);
+    EXPECT_TRUE(time.isPaused());
+    EXPECT_EQ(time.stepsToCome(), keeps_steps ? 3u : 0u);
+  }
+}
+
+}  // namespace
+}  // namespace spindrift::rooms
