@@ -68,9 +68,9 @@ core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_pt
   room->restoration_ = std::make_unique<Restoration>();
   room->restoration_->keeper = std::move(place.keeper);
   if (place.kept) {
-    auto repetition = room->repetitionOf(*std::move(place.kept));
+    auto repetition = room->beginRepetition(*std::move(place.kept));
     if (!repetition) return repetition.error();
-    room->restoration_->repetition = *std::move(repetition);
+    room->restoration_->repetition.emplace(*std::move(repetition));
   }
   return room;
 }

@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <chrono>
 #include <utility>
-#include <variant>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -10,8 +9,6 @@
 
 #include <spindrift/core/version.h>
 #include <spindrift/rooms/room.h>
-#include <spindrift/scene/scene_loader.h>
-#include <spindrift/wire/client_message.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -98,7 +95,7 @@ core::Result<bool> Room::restoreUntil(TimePoint deadline) {
   if (auto& repetition = restoration_->repetition) {
     const auto done = repeatUntil(*repetition, deadline);
     if (!done || !*done) return done;
-    restorePeople(repetition->kept);
+    restorePeople(repetition->kept());
   }
   diary_.keepIn(std::move(restoration_->keeper));
   if (!restoration_->repetition) diary_.keeper()->openGap("its first snapshot is not on the disk yet");
@@ -144,23 +141,13 @@ void Room::restorePeople(const KeptRoom& kept) {
                fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
 }
 
-core::Result<Room::Repetition> Room::repetitionOf(KeptRoom kept) {
-  const v1::KeptState& state = *kept.state;
-  if (auto done = water_->restore(state); !done) return done.error();
-  time_.restore(water_->sim().derived().tick_s, state.speed(), state.paused());
-  chosen_fidelity_ = state.chosen_fidelity();
-  const std::uint64_t steps_until = tick() + state.pending_tick_count();
-  return Repetition{.kept = std::move(kept), .next = 0, .steps_until = steps_until};
+core::Result<Repetition> Room::beginRepetition(KeptRoom kept) {
+  return Repetition::begin(std::move(kept), {*water_, time_, chosen_fidelity_, builder_});
 }
 
-core::Result<bool> Room::repeatUntil(Repetition& all, TimePoint deadline) {
-  while (all.next < all.kept.records.size()) {
-    const auto done = repeatSome(all, deadline == TimePoint::max());
-    if (!done || !*done) return done;
-    if (std::chrono::steady_clock::now() >= deadline && all.next < all.kept.records.size()) return false;
-  }
-  time_.setSteps(time_.isPaused() && all.steps_until > tick() ? static_cast<std::uint32_t>(all.steps_until - tick())
-                                                              : 0);
+core::Result<bool> Room::repeatUntil(Repetition& repetition, TimePoint deadline) {
+  const auto done = repetition.continueUntil(deadline);
+  if (!done || !*done) return done;
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
   recovery_news_.restart(water_->sim().recoveredCount());
   diary_.setRecovered(water_->sim().recoveredCount());
@@ -172,7 +159,7 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   if (!kept) return false;
   const std::uint64_t lost_tick = tick();
   builder_.dispose(water_->replaceWater(std::move(water)));
-  auto repetition = repetitionOf(*std::move(kept));
+  auto repetition = beginRepetition(*std::move(kept));
   const auto done = repetition ? repeatUntil(*repetition, TimePoint::max()) : core::Result<bool>(repetition.error());
   if (!done) {
     spdlog::error("room {}: its state cannot be restored: {}", name_, done.error().message);
@@ -189,70 +176,6 @@ bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
   // Ticks have passed since the snapshot, and the log does not say so.
   diary_.keeper()->openGap("the room continued after its device failed, and no snapshot says so yet");
   return true;
-}
-
-core::Result<bool> Room::repeatSome(Repetition& all, bool waits) {
-  const v1::StateRecord& record = all.kept.records[all.next];
-  const bool changes_water =
-      record.has_scene() || record.has_continued_scene();  // written after it, which takes a tick
-  if (tick() + (changes_water ? 1 : 0) < record.tick()) {
-    water_->step();
-    if (const auto& error = water_->sim().deviceError()) return *error;
-    return true;
-  }
-  if (changes_water) {
-    if (!all.water.valid()) {
-      v1::Scene scene = record.has_scene() ? record.scene() : record.continued_scene();
-      scene::fillDefaults(scene);
-      chosen_fidelity_ = scene.fidelity();
-      all.water = builder_.build(std::move(scene));
-    }
-    if (!waits && all.water.wait_for(0s) != std::future_status::ready) return false;
-    auto next = all.water.get();
-    if (!next) return next.error();
-    if (record.has_scene()) {
-      builder_.dispose(water_->replaceWater(*std::move(next)));
-      all.steps_until = 0;
-    } else {
-      if (auto done = water_->continueIn(*next); !done) return done.error();
-      builder_.dispose(*std::move(next));
-      if (all.steps_until >= tick()) ++all.steps_until;  // the change took a tick, which is none of Step's
-    }
-    water_->bind();
-  } else if (record.has_command()) {
-    repeat(record.command(), all.steps_until);
-  }
-  ++all.next;
-  return true;
-}
-
-void Room::repeat(const v1::Command& message, std::uint64_t& steps_until) {
-  const auto checked = wire::checkCommand(message);
-  const auto* command = std::get_if<v1::Command>(&checked);
-  if (!command) return;
-  switch (command->action_case()) {
-    case v1::Command::kSetPaused:
-      time_.setPaused(command->set_paused().paused(), std::chrono::steady_clock::now());
-      steps_until = 0;
-      return;
-    case v1::Command::kSetSpeed:
-      time_.setSpeed(command->set_speed().speed());
-      return;
-    case v1::Command::kStep:
-      steps_until = std::max(steps_until, tick()) + command->step().tick_count();
-      return;
-    case v1::Command::kReset:
-      steps_until = 0;
-      break;
-    case v1::Command::kChangeScene:  // to the level that the room had: only the choice counts
-      chosen_fidelity_ = command->change_scene().fidelity();
-      return;
-    default:
-      break;
-  }
-  // What the water refused then, it refuses again.
-  if (RoomWater::takes(*command)) (void)water_->apply(*command);
-  return;
 }
 
 }  // namespace spindrift::rooms

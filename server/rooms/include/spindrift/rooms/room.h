@@ -23,6 +23,7 @@
 #include <spindrift/rooms/fidelity_governor.h>
 #include <spindrift/rooms/frame_schedule.h>
 #include <spindrift/rooms/growth_news.h>
+#include <spindrift/rooms/repetition.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_time.h>
 #include <spindrift/rooms/room_water.h>
@@ -262,30 +263,19 @@ class Room {
   [[nodiscard]] core::Error cannotBeWritten(const core::Error& why) const;
   /// The state between two ticks; nullopt when the device does not answer.
   std::optional<v1::KeptState> stateNow();
-  /// The way of the water, pause, speed and steps from a snapshot to where the room was.
-  struct Repetition {
-    KeptRoom kept;
-    std::size_t next = 0;                      ///< of kept.records
-    std::uint64_t steps_until = 0;             ///< the tick up to which Step commands lead
-    std::future<WaterBuilder::Built> water{};  ///< of the next record, if that changes the scene
-  };
   /// What a room that begins still needs.
   struct Restoration {
     std::unique_ptr<StateKeeper> keeper;
     std::optional<Repetition> repetition;
   };
-  /// Puts the snapshot into the water. After an error the water may have any state.
-  core::Result<Repetition> repetitionOf(KeptRoom kept);
+  core::Result<Repetition> beginRepetition(KeptRoom kept);
   /// As restoreUntil().
-  core::Result<bool> repeatUntil(Repetition& all, TimePoint deadline);
-  /// A tick, or what the next record says. Returns false if it has to wait for new water and `waits` is not set.
-  core::Result<bool> repeatSome(Repetition& all, bool waits);
+  core::Result<bool> repeatUntil(Repetition& repetition, TimePoint deadline);
   /// The people and what the other threads know, after the water.
   void restorePeople(const KeptRoom& kept);
   /// Continues in new water after the device failed, from what is kept; returns false, with nothing changed, if nothing
   /// is.
   bool restoreAfterLoss(std::unique_ptr<Water>& water);
-  void repeat(const v1::Command& message, std::uint64_t& steps_until);
 
   // room_change.cpp
   void setParameters(Batch values);
