@@ -80,9 +80,9 @@ ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
   return uses;
 }
 
-/// Waits until the driver has compiled the linked program, where it must not compile two at a time. Mesa's zink compiles
-/// on up to four threads, which allocate below one shared object without a lock (ralloc on the screen in create_layout()
-/// and descriptor_util_pool_key_get() of zink_descriptors.c, Mesa 22.3): rarely, the heap is damaged.
+/// Waits until the driver has compiled the linked program, where it must not compile two at a time. Mesa's zink
+/// compiles on up to four threads, which allocate below one shared object without a lock (ralloc on the screen in
+/// create_layout() and descriptor_util_pool_key_get() of zink_descriptors.c, Mesa 22.3): rarely, the heap is damaged.
 void waitForCompiler(const Context& ctx, GLuint program) {
   if (!ctx.device().name.starts_with("zink")) return;
   constexpr GLenum kCompletionStatus = 0x91B1;  // GL_COMPLETION_STATUS_KHR of KHR_parallel_shader_compile

@@ -1,5 +1,5 @@
-// Existing codecs for comparison: `spindrift-bench --suite codec` prints them beside the stream's own. zstd, meshoptimizer and
-// Draco are used if they were installed at build time.
+// Existing codecs for comparison: `spindrift-bench --suite codec` prints them beside the stream's own. zstd,
+// meshoptimizer and Draco are used if they were installed at build time.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,6 @@
 // Properties that must hold in long runs under any commands: the volume ledger, still water, ten thousand commands,
-// places of particles. The tests are short; environment variables make them as long as docs/operations/watch.md describes.
+// places of particles. The tests are short; environment variables make them as long as docs/operations/watch.md
+// describes.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
