@@ -53,7 +53,7 @@ TEST(RoomTime, MeanFactorLeavesOutTheTimeInWhichTheRoomStoodStill) {
   for (int k = 0; k < 60; ++k) {
     time.beginRound(now);
     time.ticked(now, now + 5ms);
-    now += 1000ms / 60;
+    now += std::chrono::nanoseconds(1s) / 60;
   }
   time.beginRound(now);
   EXPECT_NEAR(time.meanRealTimeFactor(now), 1.0, 0.01);
