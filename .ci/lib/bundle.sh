@@ -2,10 +2,10 @@
 # Packs a folder that runs on another x86-64 Linux: program, page, scenes, the libraries they need, and Mesa's software
 # rasteriser for machines without a driver. Sourced by ./dev; the launcher is .ci/bundle/spindrift.
 #
-# The programs in bin/ find lib/ by their RUNPATH. Libraries that drivers of the machine use, too, are in lib/fallback/NAME/ and
-# are used only if the machine has none, because a newer driver must not load an older library; OpenSSL as well, because
-# the machine's own gets security updates. Mesa's libraries find
-# each other by RUNPATH, and no other program sees them.
+# The programs in bin/ find lib/ by their RUNPATH. Libraries that drivers of the machine use, too, are in
+# lib/fallback/NAME/ and are used only if the machine has none, because a newer driver must not load an older library;
+# OpenSSL as well, because the machine's own gets security updates. Mesa's libraries find each other by RUNPATH, and no
+# other program sees them.
 
 # The C library is not bundled; it is the machine's.
 readonly glibc_libraries='^(ld-linux-.*|lib(c|m|mvec|dl|pthread|rt|resolv|util|anl|nsl)\.so\..*|libnss_.*|linux-vdso\.so.*)$'

@@ -109,9 +109,9 @@ command_lint() {
 usage: ./dev lint [PART…]
        ./dev lint tidy [--all]
 
-Checks the formatting of the C++ sources (format), the shell scripts (shell), the types of the web client (web) and the words
-of code and documents (words), or the parts named. `tidy` runs clang-tidy over the C++ files that differ from the upstream branch, and prints which; --all: over
-all of them (as `./dev test tidy`). Fails when any of them complains.
+Checks the formatting of the C++ sources (format), the shell scripts (shell), the types of the web client (web) and the
+words of code and documents (words), or the parts named. `tidy` runs clang-tidy over the C++ files that differ from the
+upstream branch, and prints which; --all: over all of them (as `./dev test tidy`). Fails when any of them complains.
 TEXT
     return
   fi

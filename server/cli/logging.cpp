@@ -28,8 +28,9 @@ class MessageText final : public spdlog::custom_flag_formatter {
   }
 };
 
-/// A failure can occur anywhere in main(), so its form cannot be passed down like an option.
+/// A failure can occur anywhere in main(), so its form and the name cannot be passed down like an option.
 bool writes_json = false;
+std::string program_name = "spindrift";
 
 }  // namespace
 
@@ -53,9 +54,13 @@ void addLogOptions(CLI::App& program, LogOptions& options) {
       ->capture_default_str();
 }
 
+void nameProgram(const std::string& name) {
+  program_name = name;
+}
+
 void setUpLogging(const LogOptions& options) {
   writes_json = options.format == "json";
-  auto logger = spdlog::stderr_color_mt("spindrift");
+  auto logger = spdlog::stderr_color_mt(program_name);
   if (writes_json) {
     logger->set_formatter(std::make_unique<JsonLogFormatter>());
   } else {
@@ -69,12 +74,12 @@ void setUpLogging(const LogOptions& options) {
 
 void reportFailure(const std::string& message) {
   if (!writes_json) {
-    std::fprintf(stderr, "spindrift: %s\n", message.c_str());
+    std::fprintf(stderr, "%s: %s\n", program_name.c_str(), message.c_str());
     return;
   }
   // Not through the logger: --log-level off must not hide why the program ended.
   spdlog::memory_buf_t line;
-  JsonLogFormatter().format(spdlog::details::log_msg("spindrift", spdlog::level::err, message), line);
+  JsonLogFormatter().format(spdlog::details::log_msg(program_name, spdlog::level::err, message), line);
   std::fwrite(line.data(), 1, line.size(), stderr);
 }
 

@@ -47,6 +47,7 @@ int parseAndRun(CLI::App& program, const std::vector<ProgramCommand>& commands, 
 int runProgram(const std::string& name, const std::string& description,
                const std::function<std::vector<ProgramCommand>(CLI::App&)>& add, int argc, char** argv) {
   try {
+    nameProgram(name);
     CLI::App program{description};
     program.name(name);
     program.set_version_flag("--version", std::string(core::nameAndVersion()));

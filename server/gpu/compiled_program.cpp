@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <chrono>
 #include <thread>
 #include <utility>
 
@@ -90,7 +91,7 @@ void waitForCompiler(const Context& ctx, GLuint program) {
     GLint is_complete = GL_TRUE;  // stays so if the driver does not know the query
     glGetProgramiv(program, kCompletionStatus, &is_complete);
     if (is_complete) return;
-    std::this_thread::yield();
+    std::this_thread::sleep_for(std::chrono::microseconds(100));
   }
 }
 

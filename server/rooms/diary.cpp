@@ -102,9 +102,11 @@ void Diary::recovered(std::uint64_t tick) {
 }
 
 void Diary::ticked(std::uint64_t tick, sim::WaterSim& water) {
-  if (!log_ || log_->ended()) return;
-  if (std::exchange(logged_recovered_count_, water.recoveredCount()) != water.recoveredCount()) recovered(tick);
-  if (tick % log_->hashInterval_ticks() != 0) return;
+  if (std::exchange(recovered_count_, water.recoveredCount()) != water.recoveredCount()) {
+    recovered(tick);
+    if (keeper_) keeper_->ask();
+  }
+  if (!log_ || log_->ended() || tick % log_->hashInterval_ticks() != 0) return;
   v1::Record hash;
   hash.set_state_hash(water.stateHash());
   log(tick, std::move(hash));
@@ -129,11 +131,8 @@ core::Result<void> Diary::flush() {
   return keeper_->flush();
 }
 
-bool Diary::wantsSnapshot(TimePoint now, std::uint64_t state_id, std::uint64_t recovered_count) {
-  if (!keeper_) return false;
-  // What the watchdog restored does not follow from the log.
-  if (recovered_count != std::exchange(kept_recovered_count_, recovered_count)) keeper_->ask();
-  return keeper_->isDue(now, state_id != saved_state_id_);
+bool Diary::wantsSnapshot(TimePoint now, std::uint64_t state_id) const {
+  return keeper_ && keeper_->isDue(now, state_id != saved_state_id_);
 }
 
 void Diary::save(v1::KeptState state, std::uint64_t state_id, TimePoint now, double copy_s) {
@@ -145,10 +144,10 @@ void Diary::save(v1::KeptState state, std::uint64_t state_id, TimePoint now, dou
 void Diary::progress(TimePoint now, std::uint64_t tick, std::uint64_t state_id) {
   if (!keeper_ || now < next_progress_) return;
   next_progress_ = now + kProgressInterval;
-  progress(tick, state_id);
+  progressNow(tick, state_id);
 }
 
-void Diary::progress(std::uint64_t tick, std::uint64_t state_id) {
+void Diary::progressNow(std::uint64_t tick, std::uint64_t state_id) {
   if (std::exchange(kept_state_id_, state_id) == state_id) return;
   v1::StateRecord record;
   record.set_running(true);

@@ -150,7 +150,7 @@ void Room::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
 }
 
 Room::Outcome Room::applyToWater(const Command& command) {
-  if (auto refused = diary_.writeAhead(tick(), command.message)) return refused;
+  if (auto refused = keep(command)) return refused;
   if (auto rejected = water_->apply(command.message)) return rejected;
   diary_.carriedOut(tick(), command.message);
   return {};

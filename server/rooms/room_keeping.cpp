@@ -39,7 +39,7 @@ void Room::flushKept() {
 
 void Room::keepState(TimePoint now) {
   if (is_lost_ || change_) return;
-  if (diary_.wantsSnapshot(now, water_->stateId(), water_->sim().recoveredCount()))
+  if (diary_.wantsSnapshot(now, water_->stateId()))
     (void)save();
   else
     diary_.progress(now, tick(), water_->stateId());
@@ -61,7 +61,7 @@ core::Result<void> Room::saveUntil(TimePoint deadline) {
   const core::Error late{core::ErrorCode::kUnavailable, "the disk took too long"};
   // One that is being written is older. Without time for another the log says how far the room has come.
   if (!keeper->outcome(deadline) || std::chrono::steady_clock::now() >= deadline) {
-    diary_.progress(tick(), water_->stateId());
+    diary_.progressNow(tick(), water_->stateId());
     return late;
   }
   if (auto begun = save(); !begun) return begun;

@@ -17,6 +17,7 @@
 #include <spindrift/net/client.h>
 #include <spindrift/v1/wire.pb.h>
 
+#include "client_urls.h"
 #include "messages.h"
 
 namespace spindrift::bench {
@@ -228,16 +229,9 @@ class Load {
 }  // namespace
 
 core::Result<boost::json::object> measureLoad(const LoadOptions& options, std::FILE* out) {
-  std::vector<net::ClientUrl> urls;
-  for (const std::string& text : options.urls) {
-    auto url = net::ClientUrl::parse(text);
-    if (!url) return url.error();
-    urls.push_back(*std::move(url));
-  }
-  if (urls.empty())
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "--suite load measures servers that run: give --url ws://HOST:PORT/ws"};
-  Load load(options, std::move(urls));
+  auto urls = parseUrls(options.urls);
+  if (!urls) return urls.error();
+  Load load(options, *std::move(urls));
   load.run();
   if (!load.sawFrames())
     return core::Error{core::ErrorCode::kUnavailable, "no client received a frame from " + options.urls.front()};

@@ -4,6 +4,7 @@
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
+#include "client_urls.h"
 #include "soak_client.h"
 
 namespace spindrift::bench {
@@ -125,16 +126,9 @@ class Soak {
 }  // namespace
 
 core::Result<boost::json::object> measureSoak(const SoakOptions& options, std::FILE* out) {
-  std::vector<net::ClientUrl> urls;
-  for (const std::string& text : options.urls) {
-    auto url = net::ClientUrl::parse(text);
-    if (!url) return url.error();
-    urls.push_back(*std::move(url));
-  }
-  if (urls.empty())
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "--suite soak measures servers that run: give --url ws://HOST:PORT/ws"};
-  Soak soak(options, std::move(urls));
+  auto urls = parseUrls(options.urls);
+  if (!urls) return urls.error();
+  Soak soak(options, *std::move(urls));
   soak.run(out);
   if (!soak.sawFrames())
     return core::Error{core::ErrorCode::kUnavailable, "no client received a frame from " + options.urls.front()};

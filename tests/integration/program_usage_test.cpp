@@ -107,6 +107,8 @@ TEST_F(Usage, LaboratoryHasHelpAndNamesAnUnknownFlag) {
     const Outcome wrong = runProgram({"--swim"}, {}, program);
     EXPECT_EQ(wrong.exit_code, 2);
     EXPECT_THAT(wrong.err, testing::AllOf(StartsWith(name + ": "), HasSubstr("--swim"), HasSubstr(name + " --help")));
+    const Outcome late = runProgram({"--device", "999"}, {}, program);
+    EXPECT_THAT(late.err, StartsWith(name + ": ")) << "also of what is found after the flags were parsed";
   }
 }
 

@@ -15,6 +15,7 @@ THINGS = "address|boolean|bus|folder|integer|key|line|name|number|option|path|po
 WORDS = [
     (rf"\b(?:is|are) no (?:{THINGS})s?\b", "'is not a ...', or 'is invalid'"),
     (r"\b(?:is|are) none of (?:its|our|the|them|these|those)\b", "'is not one of ...'"),
+    (r"\b(?:is|are) none (?:that|to|without)\b", "'there is no ...', or what is left out"),
     (r"\bas many as (?:may|one \w+ may)\b", "'limit', 'the limit is reached'"),
     (r"\b(?:go|goes|gone|went) on\b(?! I/O)", "'continue', 'resume'"),
     (r"\bwhom\b", "the noun that is meant: 'the clients that ...', 'the person that ...'"),

@@ -42,7 +42,7 @@ describe("the places of buoys", () => {
     }
   });
 
-  it("are none without room, without breakwaters, in a pool, and without a wave", () => {
+  it("are left out without room, without breakwaters, in a pool, and without a wave", () => {
     expect(buoyPlaces({ ...harbor, beaches: [{ side: "+x", widthM: 32, shoreDepthM: 0 }, { side: "+z", widthM: 32, shoreDepthM: 0 }], waterExtents: { sideM: 32, longM: 32, depthM: 1.2 }, obstacles: [wall(12, 12, 6, 0)] })).toEqual([]);
     expect(buoyPlaces({ ...harbor, obstacles: harbor.obstacles.slice(2) })).toEqual([]);
     expect(buoyPlaces({ ...harbor, setting: "pool" })).toEqual([]);

@@ -28,7 +28,7 @@ class Diary {
   static core::Result<Diary> create(const std::string& room, const RoomWater& water,
                                     const std::filesystem::path& record_folder, std::uint32_t hash_interval_ticks,
                                     bool is_continued);
-  /// From now on the state is kept on disk as well.
+  /// From now on the state is kept on disk, too.
   void keepIn(std::unique_ptr<StateKeeper> keeper) { keeper_ = std::move(keeper); }
   /// Null if the state is not kept.
   [[nodiscard]] StateKeeper* keeper() const { return keeper_.get(); }
@@ -46,24 +46,24 @@ class Diary {
   void continuedIn(std::uint64_t tick, const v1::Scene& built);
   /// The water went back to an earlier state; a replay does not repeat it.
   void recovered(std::uint64_t tick);
-  /// A tick has passed.
+  /// A tick has passed. What the watchdog restored in it does not follow from the logs: a snapshot is wanted then.
   void ticked(std::uint64_t tick, sim::WaterSim& water);
   /// Writes who is here if that has changed.
   void people(std::uint64_t tick, const Roster& roster);
   /// Other water, whose watchdog has acted so many times; a snapshot of it is wanted.
   void waterReplaced(std::uint64_t recovered_count);
-  void setRecovered(std::uint64_t count) { logged_recovered_count_ = kept_recovered_count_ = count; }
+  void setRecovered(std::uint64_t count) { recovered_count_ = count; }
 
   /// Call it before answers are sent: they must not promise what the disk refused.
   core::Result<void> flush();
   /// Returns whether a snapshot is due. `state_id`: RoomWater::stateId().
-  [[nodiscard]] bool wantsSnapshot(TimePoint now, std::uint64_t state_id, std::uint64_t recovered_count);
+  [[nodiscard]] bool wantsSnapshot(TimePoint now, std::uint64_t state_id) const;
   /// Writes a snapshot beside the room: StateKeeper::save().
   void save(v1::KeptState state, std::uint64_t state_id, TimePoint now, double copy_s);
   /// Writes from time to time how far the room has come, unless it stands still.
   void progress(TimePoint now, std::uint64_t tick, std::uint64_t state_id);
   /// The same at once.
-  void progress(std::uint64_t tick, std::uint64_t state_id);
+  void progressNow(std::uint64_t tick, std::uint64_t state_id);
 
  private:
   explicit Diary(std::unique_ptr<CommandLogWriter> log) : log_(std::move(log)) {}
@@ -72,8 +72,7 @@ class Diary {
 
   std::unique_ptr<CommandLogWriter> log_;
   std::unique_ptr<StateKeeper> keeper_;
-  std::uint64_t logged_recovered_count_ = 0;
-  std::uint64_t kept_recovered_count_ = 0;
+  std::uint64_t recovered_count_ = 0;  ///< sim::WaterSim::recoveredCount() as of the last tick
   std::uint64_t kept_people_version_ = 0;
   std::uint64_t kept_state_id_ = 0;   ///< of the last progress()
   std::uint64_t saved_state_id_ = 0;  ///< of the last snapshot

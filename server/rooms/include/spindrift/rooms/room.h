@@ -252,7 +252,7 @@ class Room {
   void announceRecovery(TimePoint now);
 
   // room_keeping.cpp
-  /// Diary::writeAhead() for a command that does not change the water.
+  /// Writes the command to the diary before it is carried out; a rejection if that is not possible.
   [[nodiscard]] Outcome keep(const Command& command) { return diary_.writeAhead(tick(), command.message); }
   /// Rejects what the disk refused, before the answers are sent.
   void flushKept();

@@ -28,7 +28,7 @@ class RoomTime {
   /// Neither paused nor asleep.
   [[nodiscard]] bool runs() const { return !is_paused_ && !is_asleep_; }
   [[nodiscard]] double speed() const { return clock_.speed(); }
-  /// Simulated over wall time in the last second, of the speed that is wanted.
+  /// realTimeFactor() of a running room as a share of speed(): 1 where the machine keeps up.
   [[nodiscard]] double pace() const { return clock_.realTimeFactor() / clock_.speed(); }
   /// Simulated over wall time in the last second; 0 in a room that stands still.
   [[nodiscard]] double realTimeFactor() const { return runs() ? clock_.realTimeFactor() : 0.0; }

@@ -20,7 +20,7 @@ class SceneCatalog {
  public:
   SceneCatalog() = default;
   /// Lists the regular files NAME.textproto in the folder, where NAME has letters, digits, '_' and '-'; empty if there
-  /// are none. `fidelity` replaces the fidelity of every scene.
+  /// is no such file. `fidelity` replaces the fidelity of every scene.
   explicit SceneCatalog(std::filesystem::path folder, std::optional<v1::Fidelity> fidelity = std::nullopt);
 
   /// Lists a file under this name, in place of the folder's if that has one. Does nothing for a name that a scene may

@@ -40,7 +40,7 @@ class StateStore {
   StateStore(const StateStore&) = delete;
   StateStore& operator=(const StateStore&) = delete;
 
-  /// Returns the names of the rooms that have files, sorted. Folders whose names no room can have are none.
+  /// Returns the names of the rooms that have files, sorted. Folders whose names no room can have are left out.
   [[nodiscard]] core::Result<std::vector<std::string>> rooms() const;
   /// Reads what there is of a room and logs what cannot be used: from the newest snapshot that is whole and of this
   /// room, and older than generation `before`, which a caller gives that could not continue from that one. If there are
