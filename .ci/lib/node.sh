@@ -16,13 +16,17 @@ node_is_new_enough() {
   esac
 }
 
-# need_node: puts a new enough `node` and `npm` on the PATH.
+system_node_is_ready() { command -v npm >/dev/null && node_is_new_enough "$(node --version 2>/dev/null)"; }
+
+# need_node: puts a new enough `node` and `npm` on the PATH: those of the system, installed first if there are none, or
+# where they are too old, newer ones of our own.
 need_node() {
-  if command -v npm >/dev/null && node_is_new_enough "$(node --version 2>/dev/null)"; then return; fi
+  if system_node_is_ready; then return; fi
   if ! private_node_is_ready; then
+    command -v npm >/dev/null || need_packages npm
+    if system_node_is_ready; then return; fi
     [[ "$(uname -m)" == x86_64 ]] ||
       fail 1 "the web client needs Node 20.19 or newer with npm, and this machine ($(uname -m)) has none: install it and start again"
-    command -v npm >/dev/null || need_packages npm
     say "Node $(node --version 2>/dev/null) is too old for the web client (20.19 or newer)"
     rm -rf "$private_node"
     mkdir -p "$private_node"

@@ -1,9 +1,15 @@
 # shellcheck shell=bash
 # Debian packages: names, reasons, installation. Sourced by ./dev.
 
+# Packages whose names Debian 12 and later releases do not share. The default Boost of Debian 12 is older than 1.81.
+boost_package=libboost-dev wasm_package=libc++-dev-wasm32
+if grep --quiet '^VERSION_CODENAME=bookworm$' /etc/os-release 2>/dev/null; then
+  boost_package=libboost1.81-dev wasm_package=libc++-14-dev-wasm32
+fi
+
 # group:package …; the text of a group gives the reason.
 declare -rA package_groups=(
-  [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad libboost1.81-dev
+  [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad $boost_package
     libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev libpng-dev libssl-dev libnats-dev nats-server glslang-tools spirv-tools libegl-dev googletest libbenchmark-dev"
   [driver]="libegl1 libegl-mesa0 libgl1-mesa-dri"
   [zink]="mesa-vulkan-drivers libvulkan1"
@@ -18,7 +24,7 @@ declare -rA package_groups=(
   [charts]="python3 python3-matplotlib"
   [video]="ffmpeg"
   [npm]="nodejs npm"
-  [wasm]="clang lld libc++-14-dev-wasm32"
+  [wasm]="clang lld $wasm_package"
 )
 declare -rA package_reasons=(
   [server]="building the server and its tests"

@@ -32,14 +32,14 @@ SPDX_NAMES = {
     "SGI-B-2.0": "SGI-B-2.0", "MPL-2.0": "MPL-2.0", "bzip2-1.0.6": "bzip2-1.0.6", "curl": "curl", "Unicode": "Unicode-DFS-2015",
 }
 GNU = re.compile(r"^(A?GPL|LGPL|GFDL)-?v?(\d)(?:\.(\d))?(\+)?(?:-only|-or-later)?$")
-# Packages whose headers are compiled into the page's WebAssembly, which ninja does not build.
-PAGE_HEADERS = ["libc++-14-dev-wasm32"]
+# Pattern of the package whose headers are compiled into the page's WebAssembly, which ninja does not build.
+PAGE_HEADERS = "libc++-*-dev-wasm32"
 # The loader of OpenGL is code that this package generates.
 GENERATED_BY = ["python3-glad"]
 
 
 def spdx_id(short_name):
-    """Returns the SPDX identifier of a licence's short name, or None when there is none."""
+    """Returns the SPDX identifier of a licence's short name, or None if the licence is not in its list."""
     gnu = GNU.match(short_name)
     if gnu:
         family, major, minor, later = gnu.groups()
@@ -89,6 +89,14 @@ def copyright_path(root, package):
     if not path.is_file():
         sys.exit(f"sbom: {path} is missing, so the licence of {package} is unknown")
     return path
+
+
+def installed_names(pattern):
+    """Returns the names of the installed packages that match the pattern, at least one."""
+    lines = subprocess.run(
+        ["dpkg-query", "--show", "--showformat=${Package} ${db:Status-Status}\n", pattern], check=True, capture_output=True, text=True
+    ).stdout.splitlines()
+    return [line.split()[0] for line in lines if line.endswith(" installed")]
 
 
 def installed_package(package, use, licence_folder):
@@ -166,7 +174,7 @@ def bundle(options):
     folder = Path(options.licences)
     folder.mkdir(parents=True, exist_ok=True)
     linked = owners(options.files)
-    compiled = (owners(system_headers(options.build_dir)) | set(PAGE_HEADERS) | set(GENERATED_BY)) - linked
+    compiled = (owners(system_headers(options.build_dir)) | set(installed_names(PAGE_HEADERS)) | set(GENERATED_BY)) - linked
     components = [installed_package(name, "shared library in the bundle", folder) for name in linked]
     components += [installed_package(name, "headers or generated code, compiled in", folder) for name in compiled]
     return document(options.version, components + npm_components(Path(options.web_client), folder))

@@ -42,7 +42,7 @@ test_native() {
 # fences signal later, readbacks arrive some ticks after the request, and it has a different shader compiler.
 readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=zink)
 # Runs all gpu and sim tests, and the stability tests that compare no times, some of them shorter than in `native`.
-readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinuteWithPositionsSolvedFor)$)'
+readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinutePositionBased)$)'
 
 # Prints nothing if the program can use zink, otherwise the reason in one line.
 zink_problem() {
@@ -68,9 +68,8 @@ test_zink() {
 # The programs of the part `memory`: unit tests that need no device, under clang's address and undefined-behaviour
 # sanitizers, in the tree of the fuzz targets, whose libraries are built with them already. Tests on a device stay out: the
 # shaders that the rasteriser compiles are not instrumented, and it is slow under the sanitizers. Without a named part only
-# the first ones run (label memory): clang takes minutes for the files of net and gpu.
-readonly memory_programs=(core_test state_test codec_test scene_test wire_test sim_setup_test bus_test cluster_test)
-readonly memory_programs_when_named=(net_test rooms_test service_test gpu_text_test)
+# those with the label memory run: clang takes minutes for the files of net and gpu.
+readonly memory_programs_when_named=(net_test water_test history_test rooms_test service_test gpu_text_test)
 
 # write_skipped FILE NAME REASON: writes a report of one skipped test and prints the reason.
 write_skipped() {
@@ -99,7 +98,7 @@ test_wire() {
 test_tidy() {
   local files=()
   mapfile -t files < <(list_tidy_sources)
-  run_part tidy "$tidy_limit_s" python3 tests/tools/tidy.py build/fuzz "$root/build/reports/tidy.xml" "${files[@]}"
+  run_part tidy "$tidy_limit_s" python3 tests/tools/tidy.py build/tidy "$root/build/reports/tidy.xml" "${files[@]}"
 }
 
 # node_tests NAME SECONDS FILE…
@@ -131,9 +130,9 @@ Builds everything and runs every test, or the parts named: unit, integration, ac
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
 own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents, Compose and Kubernetes files), fuzz (parsers and decoders under hostile input, some
-seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those of core, state, codec, scene,
-wire and sim_setup, or all of them when the part is named), threads (network, encoder and files of the state under the
-thread sanitizer). The last three have presets of their own.
+seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those with MEMORY in tests/unit, or
+all of them when the part is named), threads (network, encoder, access and files of the state under the thread sanitizer).
+The last three have presets of their own.
 Only when named, otherwise skipped: containers (builds the image with buildah, as root, and runs it; about ten minutes).
 Only when named: tidy (clang-tidy over every C++ file, a test per file).
 -R runs only the C++ tests whose names match, for example `./dev test unit -R Outbox`, and builds only their programs.
@@ -192,7 +191,7 @@ TEXT
 
 build_memory_tests() {
   need_packages server fuzz
-  local programs=("${memory_programs[@]}")
+  local programs=(memory_tests)
   [[ "$memory_label" == memory ]] || programs+=("${memory_programs_when_named[@]}")
   build_server fuzz "${programs[@]}"
 }
@@ -229,7 +228,7 @@ prepare_tests() {
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz
   [[ "$wanted" != *" memory "* ]] || build_memory_tests
   [[ "$wanted" != *" tidy "* ]] || prepare_tidy
-  [[ "$wanted" != *" threads "* ]] || build_server tsan net_test state_test join_leave_test
+  [[ "$wanted" != *" threads "* ]] || build_server tsan threads_tests
   [[ "$wanted" != *" web "* ]] || npm_install web-client web
   [[ ! "$wanted" =~ \ (wire|browser|tools)\  ]] || build_web
   [[ "$wanted" != *" browser "* ]] || npm_install tests/browser browser

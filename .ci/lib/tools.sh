@@ -26,7 +26,7 @@ usage: ./dev study [--preset release|debug|asan|tsan] [OPTIONS OF spindrift-stud
 The water against theory and experiment, and where it stays stable; --quick for minutes, --json FILE writes it down,
 --plot FOLDER as well, for ./dev charts FOLDER.
 --update measures the trade suite anew (about 20 minutes; an interrupted run continues) and writes everything that is made
-of it, with date and commit: numbers and charts in docs/plots, tables in the documents, the figures of the page.
+of it, with date and commit: numbers and charts in docs/plots, tables in the documents, the errors that the server tells its clients.
 TEXT
     return
   fi
@@ -169,13 +169,13 @@ lint_tidy() {
   lock_build
   prepare_tidy
   unlock_build
-  python3 tests/tools/tidy.py build/fuzz build/reports/lint-tidy.xml "${files[@]}"
+  python3 tests/tools/tidy.py build/tidy build/reports/lint-tidy.xml "${files[@]}"
 }
 
 # Every .cpp file that a build compiles. server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
 list_tidy_sources() { git ls-files -- 'server/*.cpp' 'tests/*.cpp' ':!server/codec/wasm'; }
 
-# What a change is compared with: where the branch left its upstream, the last commit where there is none.
+# What a change is compared with: where the branch left its upstream, the last commit without an upstream.
 tidy_base() { git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD; }
 
 # included_by HEADER: one .cpp file that includes it, if any.
@@ -198,14 +198,14 @@ list_changed_sources() {
     done | sort --unique
 }
 
-# prepare_tidy: build/fuzz, whose compiler is clang, with all that must exist before a file can be parsed: generated sources
-# and precompiled headers. Nothing else is compiled.
+# prepare_tidy: build/tidy, whose compiler is clang and which compiles each file by itself, with all that must exist before
+# a file can be parsed: generated sources and precompiled headers. Nothing else is compiled.
 prepare_tidy() {
   local inputs=()
   need_packages server fuzz tidy
-  [[ -f build/fuzz/build.ninja ]] || step configure-fuzz "configuring build/fuzz" cmake --preset fuzz
-  mapfile -t inputs < <(ninja -C build/fuzz -t targets all | sed -n 's/^\(.*cmake_pch\.hxx\.pch\|cmake_object_order_depends_target_.*\): .*/\1/p')
-  build_server fuzz "${inputs[@]}"
+  [[ -f build/tidy/build.ninja ]] || step configure-tidy "configuring build/tidy" cmake --preset fuzz -B build/tidy -D CMAKE_UNITY_BUILD=OFF
+  mapfile -t inputs < <(ninja -C build/tidy -t targets all | sed -n 's/^\(.*cmake_pch\.hxx\.pch\|cmake_object_order_depends_target_.*\): .*/\1/p')
+  build_server tidy "${inputs[@]}"
   mkdir -p build/reports
 }
 

@@ -52,26 +52,26 @@ std::string takeOption(const std::string& option, Grant& grant) {
     return option.substr(name.size());
   };
   if (const auto until = valueOf("until=")) {
-    if (grant.expires) return "until= stands twice";
+    if (grant.expires) return "until= is given twice";
     grant.expires = parseUtc(*until);
     return grant.expires ? "" : "until= has to read until=2030-01-31T12:00:00Z (UTC)";
   }
   if (const auto rooms = valueOf("room=")) {
-    if (grant.rooms) return "room= stands twice: write room=ONE,OTHER";
+    if (grant.rooms) return "room= is given twice: write room=ONE,OTHER";
     grant.rooms = parseRooms(*rooms);
     return grant.rooms ? ""
                        : "room= has to be a list of 1 to " + std::to_string(kTokenRoomMaxCount) +
                              " rooms with ',' between them, each with " + std::string(core::kRoomNameRule);
   }
   if (const auto subject = valueOf("sub=")) {
-    if (grant.is_person) return "sub= stands twice";
+    if (grant.is_person) return "sub= is given twice";
     if (subject->empty() || subject->size() > kSubjectMaxBytes)
       return "sub= has to name a person, with 1 to " + std::to_string(kSubjectMaxBytes) + " bytes";
     grant.subject = *subject;
     grant.is_person = true;
     return "";
   }
-  return "after the token only room=, sub= and until=2030-01-31T12:00:00Z (UTC) may stand";
+  return "after the token only room=, sub= and until=2030-01-31T12:00:00Z (UTC) are allowed";
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ core::Result<Access> Access::parse(std::string_view text, const std::string& lab
       if (const std::string why = takeOption(option, token.grant); !why.empty()) return refuse(why);
     }
     for (const Token& known : out.tokens_) {
-      if (isEqual(known.digest, token.digest)) return refuse("the same token stands on an earlier line");
+      if (isEqual(known.digest, token.digest)) return refuse("the same token is on an earlier line");
     }
     out.tokens_.push_back(std::move(token));
   }

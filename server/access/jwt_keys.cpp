@@ -62,7 +62,7 @@ core::Result<JwtKey> parseSecret(std::string_view text, const std::string& label
   if (text.ends_with('\n')) text.remove_suffix(1);
   if (text.ends_with('\r')) text.remove_suffix(1);
   if (text.starts_with("-----BEGIN ")) {
-    return refusal(label, "this is a PEM file and no secret; a public key is given without hs256:");
+    return refusal(label, "this is a PEM file, not a secret; a public key is given without hs256:");
   }
   if (text.size() < kJwtSecretMinBytes) {
     return refusal(label, "the secret has " + std::to_string(text.size()) + " bytes; HS256 needs at least " +

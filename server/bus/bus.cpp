@@ -94,19 +94,11 @@ class NatsBus final : public Bus {
   }
   [[nodiscard]] BusStats stats() const override {
     return {.is_connected = isConnected(),
-            .sent_message_count = sent_message_count,
-            .sent_bytes_count = sent_bytes_count,
-            .received_message_count = received_message_count,
-            .received_bytes_count = received_bytes_count,
             .dropped_message_count = dropped_message_count,
             .reconnect_count = reconnect_count};
   }
   [[nodiscard]] void* connection() const override { return connection_; }
 
-  std::atomic<std::uint64_t> sent_message_count{0};
-  std::atomic<std::uint64_t> sent_bytes_count{0};
-  std::atomic<std::uint64_t> received_message_count{0};
-  std::atomic<std::uint64_t> received_bytes_count{0};
   std::atomic<std::uint64_t> dropped_message_count{0};
   std::atomic<std::uint64_t> reconnect_count{0};
 
@@ -249,7 +241,6 @@ void NatsBus::publish(const std::string& subject, core::ByteView head, core::Byt
       waiting_.push_back(std::move(part));
     }
   }
-  ++sent_message_count;
   wake_.notify_one();
 }
 
@@ -264,10 +255,7 @@ void NatsBus::send() {
     lock.unlock();
     const natsStatus status =
         natsConnection_Publish(connection_, next.subject.c_str(), next.part.data(), static_cast<int>(next.part.size()));
-    if (status == NATS_OK)
-      sent_bytes_count += next.part.size();
-    else
-      ++dropped_message_count;
+    if (status != NATS_OK) ++dropped_message_count;
     lock.lock();
   }
 }
@@ -311,12 +299,10 @@ void NatsSubscription::ended(void* closure) {
 }
 
 void NatsSubscription::handle(core::ByteView part) {
-  bus_.received_bytes_count += part.size();
   std::uint64_t lost = 0;
   const auto message = parts_.take(part, lost);
   bus_.dropped_message_count += lost;
   if (!message) return;
-  ++bus_.received_message_count;
   const auto handler = handler_;  // it may end this subscription
   try {
     (*handler)(*message);

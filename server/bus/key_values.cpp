@@ -80,7 +80,7 @@ class NatsKeyValues final : public KeyValues {
  private:
   /// Watches the bucket, anew after a reconnection: the watch of before may be gone, and the bucket another one.
   core::Result<void> makeReady();
-  /// Opens the bucket, makes it if there is none, and takes all its values.
+  /// Opens the bucket, makes it if it does not exist, and takes all its values.
   core::Result<void> watch();
   /// Compares the copy with the bucket and takes what is missing.
   core::Result<void> check();
@@ -198,7 +198,7 @@ core::Result<void> NatsKeyValues::check() {
   }
   if (auto taken = take((*now)->revision); !taken) return taken;
   if (copy_.revision() >= (*now)->revision) return {};
-  spdlog::warn("the watch of the bucket '{}' on NATS ended at revision {}, the bucket is at {}: watching it anew",
+  spdlog::warn("the watch of the bucket '{}' on NATS ended at revision {}, the bucket is at {}: watching it again",
                bucket_, copy_.revision(), (*now)->revision);
   return watch();
 }

@@ -97,7 +97,7 @@ void printParticles(const core::Scene& scene) {
   const core::ParticleScene& particles = *scene.particles;
   const bool iterates = particles.solver == core::PressureSolver::kPositionBased;
   fmt::print("  solver     {}{}\n",
-             iterates ? fmt::format("position-based, {} iterations a substep", particles.iterations_count)
+             iterates ? fmt::format("position-based, {} iterations per substep", particles.iterations_count)
                       : fmt::format("weakly compressible, {} equation of state, {} pressure force",
                                     particles.equation_of_state == core::EquationOfState::kTait ? "Tait's" : "linear",
                                     particles.pressure_force == core::PressureForce::kMean ? "mean" : "conserving"),
@@ -134,11 +134,11 @@ void printStorm(const core::Scene& scene, const sim::Derived& derived) {
 }
 
 void print(const std::string& file, const v1::Scene& scene, const core::Scene& in, const sim::Derived& d) {
-  fmt::print("{}: fine\n  scene      {} ({}), {}\n  setting    {}\n", file, scene.name(), scene.title(),
+  fmt::print("{}: valid\n  scene      {} ({}), {}\n  setting    {}\n", file, scene.name(), scene.title(),
              scene::fidelityName(scene.fidelity()), scene::settingName(scene.setting()));
   fmt::print("  tick       {:.3f} ms, {} substeps of {:.3f} ms\n", d.tick_s * 1e3, d.substeps_count, d.dt_s * 1e3);
   if (d.wave) {
-    fmt::print("  wave       {} x {} cells of {:.3f} m, speed {:.2f} m/s, {} steps a tick, Courant number {:.3f}\n",
+    fmt::print("  wave       {} x {} cells of {:.3f} m, speed {:.2f} m/s, {} steps per tick, Courant number {:.3f}\n",
                d.wave->count_x, d.wave->count_z, d.wave->cell_m, d.wave->speed_mps, d.wave->substeps_count,
                d.wave->courant);
     printWave(in);

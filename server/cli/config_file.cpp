@@ -38,8 +38,8 @@ std::string wantedForm(const FieldDescriptor& field, const OptionSources& option
   }
 }
 
-/// Returns the part of `text` before a place, counted as Protobuf's tokenizer does: from 0, with tab stops at multiples
-/// of 8.
+/// Returns the part of `text` before a location, counted as Protobuf's tokenizer does: from 0, with tab stops at
+/// multiples of 8.
 std::string_view textBefore(std::string_view text, int line, int column) {
   std::size_t at = 0;
   for (int i = 0; i < line; ++i) {
@@ -51,7 +51,7 @@ std::string_view textBefore(std::string_view text, int line, int column) {
   return text.substr(0, at);
 }
 
-/// Returns the field whose name, perhaps with a colon, ends `text`; nullptr where there is none.
+/// Returns the field whose name, perhaps with a colon, ends `text`; nullptr if it ends with no field.
 const FieldDescriptor* lastField(std::string_view text) {
   const auto removeSpace = [&text] {
     while (!text.empty() && std::isspace(static_cast<unsigned char>(text.back())) != 0) text.remove_suffix(1);
@@ -94,7 +94,7 @@ class FirstError final : public google::protobuf::io::ErrorCollector {
     const FieldDescriptor* const field = lastField(textBefore(text_, line, column));
     if (field == nullptr) return fmt::format("{}; write lines of FIELD: VALUE", message);
     if (message.find("specified multiple times") != std::string_view::npos)
-      return fmt::format("{}: it is here a second time; remove one", field->name());
+      return fmt::format("{}: it is given twice; remove one", field->name());
     return fmt::format("{}: {}; {}", field->name(), message, wantedForm(*field, options_));
   }
 

@@ -18,7 +18,7 @@ inline constexpr std::size_t kConfigFileMaxBytes = 1 << 20;
 /// read. kInvalidInput: it is bigger than kConfigFileMaxBytes, or as for takeConfigText().
 core::Result<void> takeConfigFile(const std::string& file, OptionSources& options);
 
-/// The same for text. kInvalidInput names the first place that is wrong, as LABEL:LINE:COLUMN.
+/// The same for text. kInvalidInput names the first location that is wrong, as LABEL:LINE:COLUMN.
 core::Result<void> takeConfigText(std::string_view text, const std::string& label, OptionSources& options);
 
 /// Returns the values of all options as text that takeConfigText() accepts, each with its source as a comment.

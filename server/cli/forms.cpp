@@ -10,8 +10,8 @@
 #include <unistd.h>
 
 #include <spindrift/core/text.h>
+#include <spindrift/http/network_text.h>
 #include <spindrift/net/client.h>
-#include <spindrift/net/network_text.h>
 
 namespace spindrift::cli {
 namespace {

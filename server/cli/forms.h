@@ -21,7 +21,8 @@ CLI::Validator isText();
 CLI::Validator isListenAddress();
 /// A network of a proxy: net::checkNetwork(). Removes blanks at its ends; use with transform().
 CLI::Validator isNetwork();
-/// What browsers send as Origin, or "*" for any: net::checkOrigin(). Removes blanks at its ends; use with transform().
+/// Accepts an Origin as browsers send it, or "*" for any: net::checkOrigin(). Removes blanks at its ends; use with
+/// transform().
 CLI::Validator isOrigin();
 /// ws://HOST[:PORT][/PATH] or wss://HOST[:PORT][/PATH].
 CLI::Validator isUrl();

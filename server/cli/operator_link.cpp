@@ -4,7 +4,7 @@
 
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/digest.h>
-#include <spindrift/net/network_text.h>
+#include <spindrift/http/network_text.h>
 
 namespace spindrift::cli {
 namespace {

@@ -11,8 +11,8 @@ namespace spindrift::cli {
 /// Returns whether clients on other machines can reach the server, directly or through a proxy.
 bool isReachable(const FrontOptions& options);
 
-/// Where others can reach the server and neither tokens, keys nor a role of the guests are given, makes a token for the
-/// one who starts it; loadAccess() then makes guests players. Call it once, before loadAccess().
+/// Makes a token for the person who starts the server, if others can reach it and neither tokens, keys nor a role of
+/// guests are given; loadAccess() then makes guests players. Call it once, before loadAccess().
 void makeOperatorToken(FrontOptions& options);
 
 /// Returns the lines for standard output at the start: the URL of the page, and if makeOperatorToken() made a token, a

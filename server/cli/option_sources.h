@@ -1,6 +1,7 @@
 // Where the values of a command's options come from: a flag, else the environment, else a configuration file, else the
 // default. CLI11 parses the flags; its own order puts the file above the environment and its messages know neither
-// variables nor lines, so the other sources are added here, through CLI11's options and with their checks.
+// variables nor lines, so the other sources are added here, through CLI11's options and with their checks (decision
+// 123).
 #pragma once
 
 #include <initializer_list>
@@ -48,7 +49,7 @@ class OptionSources {
   /// The environment decides about this option by another variable than its own: a file cannot set it any more.
   void replaceByVariable(const std::string& field, const std::string& variable);
 
-  /// Whether an option has this field: the file knows those of all commands.
+  /// Returns whether an option has this field: the file knows those of all commands.
   bool has(const std::string& field) const;
   /// The field must be one of an option here.
   const Entry& at(const std::string& field) const;

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <spindrift/gpu/device.h>
-#include <spindrift/rooms/replay.h>
+#include <spindrift/history/replay.h>
 
 #include "commands.h"
 #include "output.h"
@@ -21,7 +21,7 @@ struct ReplayOptions {
   std::string json_file;
 };
 
-void print(const rooms::ReplayOutcome& outcome) {
+void print(const history::ReplayOutcome& outcome) {
   fmt::print("{} ticks, {} commands carried out again, {} states compared\n", outcome.tick_count, outcome.command_count,
              outcome.hash_count);
   if (outcome.truncation)
@@ -42,7 +42,7 @@ void print(const rooms::ReplayOutcome& outcome) {
   }
 }
 
-boost::json::object toJson(const rooms::ReplayOutcome& outcome) {
+boost::json::object toJson(const history::ReplayOutcome& outcome) {
   boost::json::object out{
       {"tick_count", outcome.tick_count},
       {"command_count", outcome.command_count},
@@ -63,11 +63,11 @@ boost::json::object toJson(const rooms::ReplayOutcome& outcome) {
 int replay(const ReplayOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
-  auto log = rooms::CommandLogReader::open(options.file);
+  auto log = history::CommandLogReader::open(options.file);
   if (!log) return fail(log.error());
   const v1::RecordHeader& header = (*log)->header();
   const bool shows_progress = isatty(STDERR_FILENO) != 0;
-  const auto outcome = rooms::replayLog(*device, **log, [&](std::uint64_t tick) {
+  const auto outcome = history::replayLog(*device, **log, [&](std::uint64_t tick) {
     if (shows_progress) fmt::print(stderr, "\rtick {} ", tick);
   });
   if (shows_progress) fmt::print(stderr, "\r");

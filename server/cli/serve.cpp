@@ -32,7 +32,7 @@ using core::ErrorCode;
 
 /// Lists the scene's file in `catalog`, so that the room can return to it and change its fidelity.
 core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity,
-                                        rooms::SceneCatalog& catalog) {
+                                        water::SceneCatalog& catalog) {
   if (!core::isRoomName(name)) {
     return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have " + std::string(core::kRoomNameRule)};
   }
@@ -44,7 +44,7 @@ core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::stri
   return rooms::RoomSetup{name, *std::move(loaded)};
 }
 
-core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options, rooms::SceneCatalog& catalog) {
+core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options, water::SceneCatalog& catalog) {
   std::vector<rooms::RoomSetup> rooms;
   auto first = loadRoom("main", options.scene, options.fidelity, catalog);
   if (!first) return first.error();
@@ -63,7 +63,7 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
   return rooms;
 }
 
-rooms::StateOptions stateOptions(const ServeOptions& options) {
+history::StateOptions stateOptions(const ServeOptions& options) {
   return {.folder = options.state_folder,
           .sync = options.sync == "never"    ? state::Sync::kNever
                   : options.sync == "always" ? state::Sync::kAlways
@@ -75,7 +75,7 @@ rooms::StateOptions stateOptions(const ServeOptions& options) {
 
 /// Of the rooms that this server shall run: all, or in a cluster those that no other server runs.
 core::Result<std::vector<rooms::RoomSetup>> chooseRooms(const ServeOptions& options, cluster::Node* node,
-                                                        rooms::SceneCatalog& catalog) {
+                                                        water::SceneCatalog& catalog) {
   auto rooms = loadRooms(options, catalog);
   if (!rooms || !node) return rooms;
   return node->claim(*std::move(rooms));
@@ -88,13 +88,13 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
   out.device = *device;
   out.device.shader_folder = options.shader_folder;
   if (!options.state_folder.empty()) {
-    auto states = rooms::StateStore::open(stateOptions(options));
+    auto states = history::StateStore::open(stateOptions(options));
     if (!states) {
       return Error{states.error().code, "--state-dir " + options.state_folder + ": " + states.error().message};
     }
     out.rules.states = *std::move(states);
   }
-  rooms::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
+  water::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
   auto rooms = chooseRooms(options, node, catalog);
   if (!rooms) return rooms.error();
   out.rooms = *std::move(rooms);

@@ -68,7 +68,7 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       ->check(isText());
   command
       .add_option("--person-commands-per-s", options.person_commands_per_s,
-                  "Commands a second of one person over all sessions and rooms; bursts of twice as many")
+                  "Commands per second of one person over all sessions and rooms; bursts of twice as many")
       ->check(numberIn(1.0, 10'000.0))
       ->capture_default_str();
   command

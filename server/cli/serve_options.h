@@ -15,7 +15,7 @@
 
 namespace spindrift::cli {
 
-/// What serves clients, with or without rooms of its own.
+/// Options of a process that serves clients, with or without rooms of its own.
 struct FrontOptions {
   std::string address = "127.0.0.1";
   std::uint16_t port = 8080;

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include <spindrift/bus/key_values.h>
+#include <spindrift/core/worker.h>
 #include <spindrift/rooms/simulation_thread.h>
-#include <spindrift/rooms/worker.h>
 #include <spindrift/v1/cluster.pb.h>
 
 #include "placement.h"
@@ -31,7 +31,7 @@ class Directory {
     std::function<void(const std::string& room, const std::string& server)> lost;
   };
 
-  /// What the hooks need outlives it. `self`: the name of this server.
+  /// Objects that the hooks use outlive it. `self`: the name of this server.
   Directory(std::unique_ptr<bus::KeyValues> values, std::string self, Hooks hooks);
   ~Directory();
   Directory(const Directory&) = delete;
@@ -66,7 +66,7 @@ class Directory {
   void reviewNow();
   /// Removes the entries of closed rooms.
   core::Result<void> removeClosed();
-  /// What a review has to do, by the rooms' names.
+  /// Work of a review, by the rooms' names.
   struct Decision {
     std::vector<std::string> settle;  ///< they run here, and the directory says otherwise
     std::vector<std::string> take;
@@ -94,7 +94,7 @@ class Directory {
   bool was_cut_off_ = false;                              ///< on the worker, like the next one
   Clock::time_point decides_from_{};                      ///< not before it has heard the others
   std::string said_;                                      ///< the last failure, not to repeat it; on the worker
-  rooms::Worker worker_;                                  ///< last: ends first
+  core::Worker worker_;                                   ///< last: ends first
 };
 
 }  // namespace spindrift::cluster

@@ -1,6 +1,5 @@
 #include "feed.h"
 
-#include <random>
 #include <utility>
 
 #include <spdlog/spdlog.h>
@@ -9,7 +8,7 @@
 #include <spindrift/core/room_name.h>
 #include <spindrift/wire/client_message.h>
 
-#include "frame_head.h"
+#include "node_name.h"
 
 namespace spindrift::cluster {
 namespace {
@@ -26,9 +25,10 @@ core::SessionId sessionOf(std::uint32_t prefix, std::uint64_t session) {
   return (core::SessionId{prefix} << kPrefixShift) | session;
 }
 
-std::uint64_t newRun() {
-  std::random_device device;
-  return (std::uint64_t{device()} << 32u) | device();
+v1::ReducedCounts toWire(const core::ReducedCounts& counts) {
+  v1::ReducedCounts out;
+  for (const codec::Stream& stream : codec::allStreams()) out.add_counts(codec::reducedCountOf(stream.layer, counts));
+  return out;
 }
 
 }  // namespace
@@ -74,6 +74,14 @@ void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const 
       }
       ++link;
     }
+    if (const auto counts = room.room->snapshot()->reduced_counts; counts != room.reduced_counts) {
+      room.reduced_counts = counts;
+      for (auto& [node, link] : room.links) {
+        v1::FromRoom out;
+        *out.mutable_reduced_counts() = toWire(counts);
+        send(name, node, link, std::move(out));
+      }
+    }
     if (now < room.next_unlisted) continue;
     std::uint32_t unlisted_count = 0;
     for (const auto& [node, link] : room.links) unlisted_count += link.unlisted_count;
@@ -106,19 +114,19 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   *view.mutable_boats() = snapshot->boats;
   view.set_device(room.device);
   for (const std::string& scene : room.scenes) view.add_scenes(scene);
+  *view.mutable_fidelity_levels() = room.room->vitals()->fidelity_levels;
   view.set_grace_s(std::chrono::duration<double>(room.room->roster().grace()).count());
   *view.mutable_people() = room.room->roster().people();
   view.set_node_time_s(node_time_s);
   view.set_room_time_s(core::monotonic_s());
   view.set_run(room.run);
   *view.mutable_access() = room.room->access();
-  if (room.knows_reduced_counts) {
-    for (const std::uint32_t count : room.reduced_counts) view.mutable_reduced_counts()->add_counts(count);
-  }
+  *view.mutable_reduced_counts() = toWire(snapshot->reduced_counts);
   send(name, node, link, std::move(message));
 }
 
-void Feed::endLink(FedRoom& room, const Link& link) {
+void Feed::endLink(FedRoom& room, Link& link) {
+  takeWatching(room, link, {});
   const auto now = rooms::Roster::Clock::now();
   for (const std::uint64_t session : link.arrived) room.room->roster().leave(sessionOf(link.prefix, session), now);
 }
@@ -161,24 +169,8 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
   Link& link = known->second;
   link.heard = Clock::now();
   switch (message.message_case()) {
-    case v1::ToRoom::kWatching: {
-      const bool is_first = link.session_count == 0;
-      link.session_count = message.watching().session_count();
-      link.unlisted_count = message.watching().unlisted_count();
-      StreamTable watched{};
-      for (const v1::Watching::Stream& stream : message.watching().streams()) {
-        const auto level = codec::fromWire(stream.level());
-        if (stream.stream() >= codec::kStreamCount || !level) continue;
-        Watched& entry = watched[stream.stream()][core::indexOf(*level)];
-        const Watched& before = link.watched[stream.stream()][core::indexOf(*level)];
-        entry.watcher_count = stream.watcher_count();
-        entry.wants_keyframe = stream.wants_keyframe() || (before.wants_keyframe && before.watcher_count > 0);
-      }
-      // Told at every pulse, mostly without news.
-      if ((is_first && link.session_count > 0) || watched != link.watched) room.room->wake();
-      link.watched = watched;
-      return;
-    }
+    case v1::ToRoom::kWatching:
+      return takeWatching(room, link, message.watching());
     case v1::ToRoom::kArrive: {
       const v1::Arrive& who = message.arrive();
       if (link.arrived.size() >= kArrivedMaxCount) return;
@@ -316,103 +308,6 @@ bool Feed::commandRejected(const rooms::Command& command, const wire::CommandRej
   outcome.set_session(session & ((core::SessionId{1} << kPrefixShift) - 1));
   *outcome.mutable_reject() = wire::toWire(rejection);
   return sendOutcome(session, std::move(message));
-}
-
-// Frames
-
-void Feed::addDemand(const std::string& name, codec::Stream stream, std::uint32_t reduced_count,
-                     core::StreamDemand& demand) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = rooms_.find(name);
-  if (found == rooms_.end()) return;
-  FedRoom& room = found->second;
-  const std::size_t index = codec::indexOf(stream);
-  if (!room.knows_reduced_counts || room.reduced_counts[index] != reduced_count) {
-    room.reduced_counts[index] = reduced_count;
-    // The last stream completes the table.
-    room.knows_reduced_counts = room.knows_reduced_counts || index == codec::indexOf(codec::allStreams().back());
-    if (room.knows_reduced_counts) {
-      for (auto& [node, link] : room.links) {
-        v1::FromRoom out;
-        for (const std::uint32_t count : room.reduced_counts) out.mutable_reduced_counts()->add_counts(count);
-        send(name, node, link, std::move(out));
-      }
-    }
-  }
-  for (const auto& [node, link] : room.links) {
-    for (const core::Level level : core::kLevels) {
-      const Watched& watched = link.watched[index][core::indexOf(level)];
-      core::LevelDemand& total = demand[core::indexOf(level)];
-      total.watcher_count += watched.watcher_count;
-      total.wants_keyframe = total.wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);
-    }
-  }
-}
-
-void Feed::publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
-                   const core::FrameLevels& levels) {
-  const std::size_t index = codec::indexOf(stream);
-  const core::Level level = levels.level;
-  FrameHead head{.reduced_count = static_cast<std::uint16_t>(levels.reduced_count), .due = levels.due};
-  bool is_watched = false;
-  bool wants_keyframe = false;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto found = rooms_.find(name);
-    if (found == rooms_.end()) return;
-    FedRoom& room = found->second;
-    head.run = room.run;
-    head.sequence = ++room.sequences[index][core::indexOf(level)];
-    for (auto& [node, link] : room.links) {
-      for (const core::Level asked : core::kLevels) {
-        if (!levels.isOf(asked)) continue;
-        Watched& watched = link.watched[index][core::indexOf(asked)];
-        is_watched = is_watched || watched.watcher_count > 0;
-        wants_keyframe = wants_keyframe || (watched.watcher_count > 0 && watched.wants_keyframe);
-        if (frame.keyframe) watched.wants_keyframe = false;
-      }
-    }
-  }
-  if (!is_watched) return;
-  const auto send = [&](const std::string& subject, const core::SharedBytes& keyframe, const core::SharedBytes& delta) {
-    head.keyframe_bytes = keyframe ? static_cast<std::uint32_t>(keyframe->size()) : 0;
-    head.delta_bytes = delta ? static_cast<std::uint32_t>(delta->size()) : 0;
-    core::Bytes bytes;
-    bytes.reserve(kFrameHeadBytes + head.keyframe_bytes);
-    const auto first = toBytes(head);
-    bytes.insert(bytes.end(), first.begin(), first.end());
-    if (keyframe) bytes.insert(bytes.end(), keyframe->begin(), keyframe->end());
-    bus_.publish(subject, bytes, delta ? core::ByteView(*delta) : core::ByteView());
-    frame_bytes_count_ += bytes.size() + head.delta_bytes;
-  };
-  ++frame_count_;
-  if (frame.keyframe && frame.delta && wants_keyframe)
-    send(subjects_.keyframes(name, index, level), frame.keyframe, frame.delta);
-  if (frame.delta)
-    send(subjects_.frames(name, index, level), nullptr, frame.delta);
-  else
-    send(subjects_.frames(name, index, level), frame.keyframe, nullptr);
-}
-
-std::size_t Feed::sessionCount(const std::string& name) const {
-  const std::lock_guard lock(mutex_);
-  std::size_t count = 0;
-  for (const auto& [known, room] : rooms_) {
-    if (!name.empty() && known != name) continue;
-    for (const auto& [node, link] : room.links) count += link.session_count;
-  }
-  return count;
-}
-
-FeedStats Feed::stats() const {
-  FeedStats out{
-      .frame_count = frame_count_, .frame_bytes_count = frame_bytes_count_, .lost_link_count = lost_link_count_};
-  const std::lock_guard lock(mutex_);
-  for (const auto& [name, room] : rooms_) {
-    out.link_count += room.links.size();
-    for (const auto& [node, link] : room.links) out.session_count += link.session_count;
-  }
-  return out;
 }
 
 }  // namespace spindrift::cluster

@@ -1,6 +1,6 @@
-// Rooms of this server, for nodes of the cluster: publishes each watched stream and level once a frame, tells the nodes
-// what changes, and takes their people and commands in. What it costs depends on the number of nodes that watch a room,
-// not on the number of their clients.
+// Rooms of this server, for nodes of the cluster: publishes each watched stream and level once per frame, tells the
+// nodes what changes, and takes their people and commands in. What it costs depends on the number of nodes that watch a
+// room, not on the number of their clients.
 #pragma once
 
 #include <array>
@@ -34,10 +34,7 @@ inline constexpr std::chrono::milliseconds kPulseInterval{200};
 core::Role roleOf(v1::Role role);
 
 struct FeedStats {
-  std::size_t link_count = 0;
-  std::size_t session_count = 0;
   std::uint64_t frame_count = 0;
-  std::uint64_t frame_bytes_count = 0;
   std::uint64_t lost_link_count = 0;  ///< whose node fell silent
 };
 
@@ -64,7 +61,7 @@ class Feed final : public service::RemoteAudience {
               Clock::time_point now);
   /// The room continues at another server, to which the nodes attach: they are not told that it was closed.
   void giveUp(const std::string& name);
-  [[nodiscard]] FeedStats stats() const;
+  [[nodiscard]] FeedStats stats() const { return {.frame_count = frame_count_, .lost_link_count = lost_link_count_}; }
 
   // RemoteAudience
   void sceneChanged(const rooms::Room& room) override;
@@ -72,19 +69,13 @@ class Feed final : public service::RemoteAudience {
   void closed(const rooms::Room& room) override;
   bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
-  void addDemand(const std::string& name, codec::Stream stream, std::uint32_t reduced_count,
-                 core::StreamDemand& demand) const override;
   void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
-  [[nodiscard]] std::size_t sessionCount(const std::string& name) const override;
 
  private:
-  struct Watched {
-    std::uint32_t watcher_count = 0;
-    bool wants_keyframe = false;
-    friend bool operator==(const Watched&, const Watched&) = default;
-  };
-  using StreamTable = std::array<std::array<Watched, core::kLevelCount>, codec::kStreamCount>;
+  /// Needs of a node; nullopt: it does not watch this stream at this level.
+  using StreamTable =
+      std::array<std::array<std::optional<core::DemandTable::Need>, core::kLevelCount>, codec::kStreamCount>;
   /// One node that has attached to one room.
   struct Link {
     std::uint64_t number = 0;    ///< of the node
@@ -101,8 +92,7 @@ class Feed final : public service::RemoteAudience {
     std::uint64_t run = 0;
     std::map<std::string, Link> links;  ///< by node
     std::array<std::array<std::uint64_t, core::kLevelCount>, codec::kStreamCount> sequences{};
-    std::array<std::uint32_t, codec::kStreamCount> reduced_counts{};
-    bool knows_reduced_counts = false;
+    core::ReducedCounts reduced_counts{};   ///< as the nodes know them
     std::uint32_t told_unlisted_count = 0;  ///< of all links, as the roster has it
     Clock::time_point next_unlisted{};
     std::string device;
@@ -112,8 +102,10 @@ class Feed final : public service::RemoteAudience {
 
   void take(const std::string& name, core::ByteView bytes);
   void attach(FedRoom& room, const v1::ToRoom& message);
-  /// The people of a link leave the room.
-  static void endLink(FedRoom& room, const Link& link);
+  /// The people of a link leave the room, and nobody of it watches.
+  static void endLink(FedRoom& room, Link& link);
+  /// The node says what its sessions watch.
+  static void takeWatching(FedRoom& room, Link& link, const v1::Watching& watching);
   /// Call with the mutex held.
   void send(const std::string& room, const std::string& node, Link& link, v1::FromRoom message) const;
   void sendView(const std::string& name, FedRoom& room, const std::string& node, Link& link, double node_time_s) const;
@@ -129,7 +121,6 @@ class Feed final : public service::RemoteAudience {
   std::map<std::uint32_t, std::pair<std::string, std::string>> by_prefix_;  ///< room and node
   Clock::time_point next_pulse_{};
   std::atomic<std::uint64_t> frame_count_{0};
-  std::atomic<std::uint64_t> frame_bytes_count_{0};
   std::atomic<std::uint64_t> lost_link_count_{0};
 };
 

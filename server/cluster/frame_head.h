@@ -15,7 +15,7 @@ struct FrameHead {
   std::uint64_t sequence = 0;       ///< of this stream and level in this run: a delta builds on the frame before
   std::uint16_t reduced_count = 0;  ///< core::FrameLevels::reduced_count
   core::LevelSet due = core::LevelSet::all();  ///< core::FrameLevels::due
-  std::uint32_t keyframe_bytes = 0;            ///< 0: there is none
+  std::uint32_t keyframe_bytes = 0;            ///< 0: no keyframe follows
   std::uint32_t delta_bytes = 0;               ///< likewise
 };
 inline constexpr std::size_t kFrameHeadBytes = 32;
@@ -24,7 +24,7 @@ std::array<std::uint8_t, kFrameHeadBytes> toBytes(const FrameHead& head);
 
 struct FrameParts {
   FrameHead head;
-  core::ByteView keyframe;  ///< empty: there is none
+  core::ByteView keyframe;  ///< empty: not sent
   core::ByteView delta;
 };
 /// Views into `message`; nullopt for bytes that are not a frame.

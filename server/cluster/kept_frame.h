@@ -17,10 +17,10 @@ class KeptFrame {
   void takeDelta(const core::SharedBytes& delta, bool follows_planes);
   void forget();
 
-  /// Whether keyframe() is there.
+  /// Returns whether keyframe() is there.
   [[nodiscard]] bool isWhole() const { return keyframe_ || planes_; }
-  /// Of the newest frame taken: a session that has it can use the next delta. Null: it is not known. Made at the first
-  /// call where the frame came as a delta.
+  /// Returns the newest frame as a keyframe: a session that has it can use the next delta. Null if it is not known.
+  /// Made at the first call where the frame came as a delta.
   [[nodiscard]] core::SharedBytes keyframe();
 
  private:

@@ -11,14 +11,14 @@
 #include <spindrift/bus/bus.h>
 #include <spindrift/cluster/node.h>
 #include <spindrift/core/room_name.h>
-#include <spindrift/service/metrics.h>
-#include <spindrift/wire/api_message.h>
 
+#include "cluster_metrics.h"
 #include "directory.h"
 #include "feed.h"
 #include "node_name.h"
 #include "placement.h"
 #include "remote_room.h"
+#include "request_route.h"
 #include "requests.h"
 #include "subjects.h"
 
@@ -34,26 +34,12 @@ constexpr auto kRound = 50ms;
 constexpr auto kDirectoryInterval = 250ms;
 constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
 constexpr std::size_t kPulsesWaitingMaxBytes = 4u << 20;
-constexpr std::string_view kApi = "/api/v1/";
-constexpr const char* kNotHeardAll = "not all servers of the cluster were heard yet: try again";
 
 template <typename Message>
 std::optional<Message> parse(core::ByteView bytes) {
   Message message;
   if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
   return message;
-}
-
-net::HttpReply problem(unsigned status, std::string line) {
-  v1::Problem out;
-  out.set_message(std::move(line));
-  return {.status = status, .content_type = "application/json", .body = wire::toJson(out) + "\n"};
-}
-
-net::HttpReply tryAgain(std::string line) {
-  net::HttpReply out = problem(503, std::move(line));
-  out.headers.emplace_back("Retry-After", "1");
-  return out;
 }
 
 class NodeImpl final : public Node {
@@ -101,8 +87,8 @@ class NodeImpl final : public Node {
   void takeMail(core::ByteView message);
   /// Returns whether all servers that are alive were heard, so that a room that none of them runs does not exist.
   [[nodiscard]] bool hasHeardAll() const;
-  /// Returns what the client of a request that goes to another server may. Nullopt: the request was refused.
-  std::optional<Requests::Grant> admit(const net::HttpRequest& request, const net::HttpResponder& respond);
+  /// Joins the list of rooms of this process, if it runs some, with those of other servers.
+  void listRooms(const net::HttpRequest& request, std::vector<std::string> servers, const net::HttpResponder& respond);
   [[nodiscard]] std::string metrics() const;
   [[nodiscard]] std::string nameTaken(const std::string& process) const;
   [[nodiscard]] Servers servers() const {
@@ -257,10 +243,7 @@ void NodeImpl::round(Clock::time_point now) {
     room->detach();
     const LinkStats stats = room->stats();
     const std::lock_guard lock(mutex_);
-    ended_.frame_count += stats.frame_count;
-    ended_.frame_bytes_count += stats.frame_bytes_count;
-    ended_.gap_count += stats.gap_count;
-    ended_.lost_link_count += stats.lost_link_count;
+    ended_.add(stats);
   }
   for (const auto& room : rooms) room->review(now);
   requests_.review(now);
@@ -339,133 +322,62 @@ bool NodeImpl::hasHeardAll() const {
   return Clock::now() >= heard_all_;
 }
 
-std::optional<Requests::Grant> NodeImpl::admit(const net::HttpRequest& request, const net::HttpResponder& respond) {
-  service::AccessControl& access = sessions_->access();
-  auto grant = access.resolveForwarded(request.authorization, std::chrono::system_clock::now());
-  if (grant) return *std::move(grant);
-  access.audit().refused({.peer = request.peer}, grant.error().message);
-  net::HttpReply refusal = problem(401, grant.error().message);
-  refusal.headers.emplace_back("WWW-Authenticate", "Bearer");
-  respond(std::move(refusal));
-  return std::nullopt;
-}
-
 bool NodeImpl::takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) {
   if (!serving_ || !request.path.starts_with(kApi)) return false;
-  const std::string_view rest = std::string_view(request.path).substr(kApi.size());
-  const auto now = Clock::now();
-  const Servers known = servers();
-  const std::string& self = options_.name;
   if (!simulation_) {
     if (const auto can = ready(); !can) {
       respond(tryAgain(can.error().message));
       return true;
     }
   }
-  if (rest == "rooms" && request.method == "GET") {
-    std::vector<std::string> others = known.alive(now);
-    std::erase(others, self);
-    std::optional<net::HttpReply> own;
-    if (simulation_) {
-      answer_(
-          request, [&own](std::optional<net::HttpReply> reply) { own = std::move(reply); }, std::nullopt);
-      if (!own || own->status != 200) {
-        respond(std::move(own));
-        return true;
-      }
-    }
-    if (const auto grant = admit(request, respond))
-      requests_.askForRooms(others, request, *grant, own ? std::move(own->body) : "", respond);
-    return true;
-  }
-  std::string target;
-  if (rest.starts_with("rooms/")) {
-    const std::string_view named = rest.substr(std::string_view("rooms/").size());
-    const std::string room(named.substr(0, named.find('/')));
-    if (simulation_ && simulation_->find(room)) return false;
-    target = known.serverOf(room);
-    if (!target.empty() && !known.isAlive(target, now)) {
-      respond(tryAgain("the server of room '" + room + "' has failed; the room starts elsewhere: try again"));
-      return true;
-    }
-    if (target.empty() && !hasHeardAll()) {
-      respond(tryAgain(kNotHeardAll));
-      return true;
-    }
+  const auto now = Clock::now();
+  const Servers known = servers();
+  RequestRoute route = routeOf(request,
+                               {.servers = known,
+                                .self = options_.name,
+                                .is_server = simulation_ != nullptr,
+                                .has_heard_all = hasHeardAll(),
+                                .runs = [this](const std::string& room) { return simulation_->find(room) != nullptr; }},
+                               now);
+  if (std::holds_alternative<Here>(route)) return false;
+  if (auto* const reply = std::get_if<net::HttpReply>(&route)) {
+    respond(std::move(*reply));
+  } else if (const auto* const ask = std::get_if<Ask>(&route)) {
+    if (const auto grant = admit(sessions_->access(), request, respond))
+      requests_.ask(ask->server, request, *grant, respond);
   } else {
-    // Any server can answer; a new room goes to the least loaded one.
-    target = known.choose(now);
-    if (simulation_ && rest != "rooms") return false;
-    if (target.empty() && rest == "rooms" && request.method == "POST" && simulation_) return false;
+    listRooms(request, known.alive(now), respond);
   }
-  if (target == self || (target.empty() && simulation_)) return false;
-  if (target.empty() && rest != "rooms") {
-    const std::vector<std::string> alive = known.alive(now);
-    if (!alive.empty()) target = alive.front();  // of a room it says that there is none
-  }
-  if (target.empty()) {
-    respond(problem(503, "no server of the cluster has a place for a room: close one, or add a server"));
-    return true;
-  }
-  if (const auto grant = admit(request, respond)) requests_.ask(target, request, *grant, respond);
   return true;
 }
 
+void NodeImpl::listRooms(const net::HttpRequest& request, std::vector<std::string> servers,
+                         const net::HttpResponder& respond) {
+  std::erase(servers, options_.name);
+  std::optional<net::HttpReply> own;
+  if (simulation_) {
+    answer_(
+        request, [&own](std::optional<net::HttpReply> reply) { own = std::move(reply); }, std::nullopt);
+    if (!own || own->status != 200) return respond(std::move(own));
+  }
+  if (const auto grant = admit(sessions_->access(), request, respond))
+    requests_.askForRooms(servers, request, *grant, own ? std::move(own->body) : "", respond);
+}
+
 std::string NodeImpl::metrics() const {
-  using service::metric;
-  const bus::BusStats bus = bus_->stats();
-  const auto number = [](auto value) { return static_cast<double>(value); };
-  LinkStats links;
-  std::size_t link_count = 0;
-  std::size_t alive_count = 0;
+  ClusterCounts out{.bus = bus_->stats()};
   {
     const std::lock_guard lock(mutex_);
-    links = ended_;
-    link_count = remote_.size();
-    alive_count = servers_.alive(Clock::now()).size();
-    for (const auto& [name, room] : remote_) {
-      const LinkStats one = room->stats();
-      links.frame_count += one.frame_count;
-      links.frame_bytes_count += one.frame_bytes_count;
-      links.gap_count += one.gap_count;
-      links.lost_link_count += one.lost_link_count;
-    }
+    out.links = ended_;
+    out.alive_server_count = servers_.alive(Clock::now()).size();
+    for (const auto& [name, room] : remote_) out.links.add(room->stats());
   }
-  std::string out;
-  out += metric("nats_connected", "gauge", "1 while there is a connection to NATS.", bus.is_connected ? 1 : 0);
-  out += metric("nats_reconnects_total", "counter", "Times the connection to NATS came back.",
-                number(bus.reconnect_count));
-  out += metric("nats_sent_bytes_total", "counter", "Bytes sent to NATS.", number(bus.sent_bytes_count));
-  out += metric("nats_received_bytes_total", "counter", "Bytes received from NATS.", number(bus.received_bytes_count));
-  out += metric("nats_sent_messages_total", "counter", "Messages sent to NATS.", number(bus.sent_message_count));
-  out += metric("nats_received_messages_total", "counter", "Messages received from NATS.",
-                number(bus.received_message_count));
-  out += metric("nats_dropped_messages_total", "counter",
-                "Messages lost: not sent while disconnected, or more than a receiver took.",
-                number(bus.dropped_message_count));
-  out += metric("cluster_servers", "gauge", "Servers of the cluster that are alive.", number(alive_count));
-  out += metric("cluster_remote_rooms", "gauge", "Rooms of other servers that sessions of this process watch.",
-                number(link_count));
-  out += metric("cluster_remote_frames_total", "counter", "Frames received from rooms of other servers.",
-                number(links.frame_count));
-  out += metric("cluster_remote_gaps_total", "counter", "Times that frames or messages of a room were missing.",
-                number(links.gap_count));
-  out += metric("cluster_lost_links_total", "counter", "Times that the server of a room fell silent.",
-                number(links.lost_link_count));
-  if (!feed_) return out;
-  const FeedStats feed = feed_->stats();
-  out += metric("cluster_links", "gauge", "Nodes that watch rooms of this server, counted per room.",
-                number(feed.link_count));
-  out += metric("cluster_node_sessions", "gauge", "Sessions behind those nodes.", number(feed.session_count));
-  out += metric("cluster_published_frames_total", "counter", "Frames published for nodes.", number(feed.frame_count));
-  out += metric("cluster_lost_nodes_total", "counter", "Nodes that fell silent while they watched a room.",
-                number(feed.lost_link_count));
-  out += metric("cluster_rooms_taken_total", "counter", "Rooms taken over from other servers.",
-                number(directory_->takenCount()));
-  out += metric("cluster_directory_failures_total", "counter",
-                "Rooms that could not be taken over, and failures of the directory of rooms.",
-                number(directory_->failureCount()));
-  return out;
+  if (feed_) {
+    out.server = {.feed = feed_->stats(),
+                  .taken_room_count = directory_->takenCount(),
+                  .directory_failure_count = directory_->failureCount()};
+  }
+  return metricsText(out);
 }
 
 }  // namespace

@@ -13,11 +13,6 @@ namespace {
 /// A second process of the name is told by few messages; more are of no use.
 constexpr std::size_t kWaitingMaxBytes = 64u << 10;
 
-std::uint64_t newRun() {
-  std::random_device device;
-  return (std::uint64_t{device()} << 32u) | device();
-}
-
 std::string thisProcess() {
   std::array<char, 256> host{};
   if (::gethostname(host.data(), host.size() - 1) != 0) host.fill('\0');
@@ -25,6 +20,11 @@ std::string thisProcess() {
 }
 
 }  // namespace
+
+std::uint64_t newRun() {
+  std::random_device device;
+  return (std::uint64_t{device()} << 32u) | device();
+}
 
 bool yields(const v1::NamePulse& mine, const v1::NamePulse& other) {
   if (mine.is_settled() != other.is_settled()) return other.is_settled();

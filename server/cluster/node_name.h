@@ -5,6 +5,7 @@
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <mutex>
@@ -15,6 +16,9 @@
 #include <spindrift/v1/cluster.pb.h>
 
 namespace spindrift::cluster {
+
+/// Returns a random number that no other run of a process or a room has.
+std::uint64_t newRun();
 
 /// Returns which of two processes of one name ends: every process comes to the same decision from the same two
 /// messages. One that has the name keeps it against one that starts; otherwise the numbers of their runs decide.

@@ -28,14 +28,14 @@ class Servers {
   void review(Clock::time_point now);
 
   [[nodiscard]] bool isAlive(const std::string& server, Clock::time_point now) const;
-  /// Names of those alive, in order.
+  /// Returns the names of those alive, in order.
   [[nodiscard]] std::vector<std::string> alive(Clock::time_point now) const;
-  /// The server that says that it runs the room; also a dead one, until another has the room. Empty: none.
+  /// Returns the server that says that it runs the room; also a dead one, until another has the room. Empty: none.
   [[nodiscard]] std::string serverOf(const std::string& room) const;
-  /// All rooms that a server runs, or ran until it died, in order.
+  /// Returns all rooms that a server runs, or ran until it died, in order.
   [[nodiscard]] std::vector<std::string> rooms() const;
-  /// The server to open one more room: the least loaded with a free place, that is alive and not leaving. `placed`:
-  /// rooms placed on servers too lately for their pulses to show it. Empty: none has a place.
+  /// Returns the server to open one more room: the least loaded that is alive, is not leaving and may have more rooms.
+  /// `placed`: rooms placed on servers too lately for their pulses to show it. Empty: all have reached their limit.
   [[nodiscard]] std::string choose(Clock::time_point now, const std::map<std::string, int>& placed = {}) const;
 
  private:

@@ -24,8 +24,7 @@ void RemoteRoom::reviewStreams(Clock::time_point now, bool must_tell, Dropped& d
   for (const codec::Stream stream : codec::allStreams()) {
     const std::size_t index = codec::indexOf(stream);
     const std::uint32_t reduced_count = (*reduced_counts_)[index];
-    const core::StreamDemand asked =
-        sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), reduced_count, aheadOf(index));
+    const core::StreamDemand asked = demand_->of(index, now + aheadOf(index));
     const core::StreamDemand demand = core::demandOfFrame(asked, reduced_count);
     core::LevelSet wanting_keyframe;
     for (const core::Level level : core::kLevels) {
@@ -76,7 +75,7 @@ void RemoteRoom::reviewStreams(Clock::time_point now, bool must_tell, Dropped& d
   }
   if (!must_tell) return;
   told_ = now;
-  watching.set_session_count(static_cast<std::uint32_t>(sessions_.hub().sessionCount(name_)));
+  watching.set_session_count(static_cast<std::uint32_t>(demand_->sessionCount()));
   watching.set_unlisted_count(static_cast<std::uint32_t>(
       std::ranges::count_if(guests_, [](const auto& guest) { return !guest.second.is_listed; })));
   send(std::move(message));
@@ -108,7 +107,6 @@ void RemoteRoom::takeFrame(std::size_t stream, core::Level level, core::ByteView
     one.is_whole = follows || !frame->keyframe.empty();
     one.asked = false;
     ++stats_.frame_count;
-    stats_.frame_bytes_count += message.size();
     if (!frame->keyframe.empty()) out.keyframe = core::share({frame->keyframe.begin(), frame->keyframe.end()});
     // Without the frame before, nobody in this process can use the delta.
     if (follows && !frame->delta.empty()) out.delta = core::share({frame->delta.begin(), frame->delta.end()});
@@ -126,8 +124,7 @@ void RemoteRoom::takeFrame(std::size_t stream, core::Level level, core::ByteView
   }
   if (!attached_ || !reduced_counts_) return;
   // Sessions may need a keyframe now. Only this stream is looked at, because this runs for every frame.
-  const core::StreamDemand demand =
-      sessions_.hub().demand(name_, static_cast<net::StreamIndex>(stream), (*reduced_counts_)[stream], aheadOf(stream));
+  const core::StreamDemand demand = demand_->of(stream, now + aheadOf(stream));
   const bool wants_keyframe = std::ranges::any_of(demand, &core::LevelDemand::wants_keyframe);
   if (wants_keyframe || !one.is_whole || one.lacksKept()) reviewStreams(now, false, dropped);
 }
@@ -143,8 +140,7 @@ void RemoteRoom::offerKept() {
       const std::size_t index = codec::indexOf(stream);
       if (std::ranges::none_of(feeds_[index], [](const Feed& one) { return one.kept.isWhole(); })) continue;
       const core::StreamDemand demand =
-          demandOfFrame(sessions_.hub().demand(name_, static_cast<net::StreamIndex>(index), (*reduced_counts_)[index]),
-                        (*reduced_counts_)[index]);
+          core::demandOfFrame(demand_->of(index, Clock::now()), (*reduced_counts_)[index]);
       for (const core::Level level : core::kLevels) {
         Feed& one = feed(index, level);
         if (!demand[core::indexOf(level)].has_newcomer || !one.kept.isWhole()) continue;

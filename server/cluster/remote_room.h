@@ -35,10 +35,14 @@ inline constexpr std::chrono::milliseconds kRareFrameInterval{100};
 
 struct LinkStats {
   std::uint64_t frame_count = 0;
-  std::uint64_t frame_bytes_count = 0;
   std::uint64_t gap_count = 0;  ///< frames or messages that did not come
   std::uint64_t lost_link_count = 0;
-  double last_gap_s = 0.0;  ///< how long the last loss of the link lasted
+
+  void add(const LinkStats& other) {
+    frame_count += other.frame_count;
+    gap_count += other.gap_count;
+    lost_link_count += other.lost_link_count;
+  }
 };
 
 /// Thread-safe. Frames and messages come on the thread of the bus.
@@ -63,6 +67,7 @@ class RemoteRoom final : public service::Venue {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::shared_ptr<const service::VenueView> view() const override;
   [[nodiscard]] v1::People people() const override;
+  [[nodiscard]] std::shared_ptr<core::DemandTable> demand() const override { return demand_; }
   [[nodiscard]] bool isOpen() const override;
   void arrive(const rooms::Arrival& arrival, Arrived arrived) override;
   void leave(core::SessionId session) override;
@@ -101,6 +106,8 @@ class RemoteRoom final : public service::Venue {
     std::string why;
   };
 
+  /// Returns what the answer to a command needs of it.
+  static rooms::Command commandOf(core::SessionId session, std::uint64_t id);
   void attach(Clock::time_point now);
   void send(v1::ToRoom message);
   void sendArrival(const Guest& guest);
@@ -118,7 +125,7 @@ class RemoteRoom final : public service::Venue {
   /// Compares what the sessions watch with what comes, and tells the room if `must_tell` or something changed. What is
   /// no longer needed goes to `dropped`, to be destroyed without the lock.
   void reviewStreams(Clock::time_point now, bool must_tell, Dropped& dropped);
-  /// How long from now the next frame of the stream will come.
+  /// Returns the expected time from now to the next frame of the stream.
   [[nodiscard]] Clock::duration aheadOf(std::size_t stream) const;
   [[nodiscard]] Feed& feed(std::size_t stream, core::Level level) { return feeds_[stream][core::indexOf(level)]; }
 
@@ -127,6 +134,7 @@ class RemoteRoom final : public service::Venue {
   bus::Bus& bus_;
   const Subjects& subjects_;
   service::Sessions& sessions_;
+  const std::shared_ptr<core::DemandTable> demand_ = std::make_shared<core::DemandTable>();
   /// Held from the choice of a frame until it is in the outboxes, so that sessions get frames in their order. Lock it
   /// before mutex_.
   std::mutex frames_mutex_;

@@ -10,6 +10,7 @@
 #include <spindrift/wire/client_message.h>
 
 #include "feed.h"
+#include "request_route.h"
 
 namespace spindrift::cluster {
 namespace {
@@ -24,12 +25,6 @@ core::Bytes serialize(const google::protobuf::Message& message) {
   core::Bytes bytes(message.ByteSizeLong());
   message.SerializeWithCachedSizesToArray(bytes.data());
   return bytes;
-}
-
-net::HttpReply problem(unsigned status, std::string line) {
-  v1::Problem out;
-  out.set_message(std::move(line));
-  return {.status = status, .content_type = "application/json", .body = wire::toJson(out) + "\n"};
 }
 
 v1::Grant toMessage(const access::Grant& grant) {
@@ -141,6 +136,17 @@ void Requests::review(Clock::time_point now) {
     }
   }
   for (const Taken& taken : late) taken(nullptr);
+}
+
+std::optional<Requests::Grant> admit(service::AccessControl& access, const net::HttpRequest& request,
+                                     const net::HttpResponder& respond) {
+  auto grant = access.resolveForwarded(request.authorization, std::chrono::system_clock::now());
+  if (grant) return *std::move(grant);
+  access.audit().refused({.peer = request.peer}, grant.error().message);
+  net::HttpReply refusal = problem(401, grant.error().message);
+  refusal.headers.emplace_back("WWW-Authenticate", "Bearer");
+  respond(std::move(refusal));
+  return std::nullopt;
 }
 
 void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& forward,

@@ -14,6 +14,7 @@
 #include <spindrift/bus/bus.h>
 #include <spindrift/cluster/node.h>
 #include <spindrift/net/server.h>
+#include <spindrift/service/access_control.h>
 #include <spindrift/v1/cluster.pb.h>
 
 #include "subjects.h"
@@ -28,7 +29,7 @@ class Requests {
   Requests(bus::Bus& bus, const Subjects& subjects, std::string node)
       : bus_(bus), subjects_(subjects), node_(std::move(node)) {}
 
-  /// What the client may; nullopt: the asked server decides.
+  /// Rights of the client; nullopt: the asked server decides.
   using Grant = std::optional<access::Grant>;
 
   /// Asks one server; 504 if it does not answer.
@@ -58,6 +59,9 @@ class Requests {
   std::map<std::uint64_t, Waiting> waiting_;  ///< at most one per connection
 };
 
+/// Returns what the client of a request that goes to another server may. Nullopt: the request was refused.
+std::optional<Requests::Grant> admit(service::AccessControl& access, const net::HttpRequest& request,
+                                     const net::HttpResponder& respond);
 /// Sends the answer of this server to the node that passed the request on.
 void answerForward(bus::Bus& bus, const Subjects& subjects, const v1::HttpForward& request, const Node::Answer& answer);
 

@@ -9,14 +9,6 @@
 
 namespace spindrift::codec {
 
-core::Error invalid(std::string message) {
-  return {core::ErrorCode::kInvalidInput, std::move(message)};
-}
-
-core::ByteView viewOf(const std::string& bytes) {
-  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-}
-
 std::optional<core::Error> checkRange(const char* name, double value, double min) {
   if (value >= min && value <= kMaxMagnitude) return std::nullopt;
   return invalid(std::string(name) + ": " + core::formatNumber(value) + " is not a finite number from " +
@@ -31,7 +23,7 @@ std::optional<core::Error> checkExtents(const PlaneExtents& extents) {
   };
   if (auto error = check("resolution_count", extents.count.x)) return error;
   if (auto error = check("count_z", extents.count.z)) return error;
-  // With an extent of 0 all samples would be in one place.
+  // With an extent of 0 all samples would be at one position.
   if (auto error = checkRange("side_m", extents.length_m, 1e-6)) return error;
   return checkRange("width_m", extents.width_m, 1e-6);
 }

@@ -15,8 +15,8 @@ namespace spindrift::codec {
 /// Larger than any scene; keeps every decoded value finite as a float.
 inline constexpr double kMaxMagnitude = 1e6;
 
-core::Error invalid(std::string message);
-core::ByteView viewOf(const std::string& bytes);
+using core::invalid;
+using core::viewOf;
 
 /// Requires min <= value <= kMaxMagnitude; NaN is out of range too.
 std::optional<core::Error> checkRange(const char* name, double value, double min);

@@ -17,8 +17,8 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
                                  std::optional<std::uint64_t> base_tick, const v1::LayerFrame& codec,
                                  core::ByteView payload);
 
-/// Serializes the frame's diagnostics; null if there are none. Values pass unchanged, including non-finite ones,
-/// because clients must see them.
+/// Serializes the frame's diagnostics; null if the frame has no diagnostics. Values pass unchanged, including
+/// non-finite ones, because clients must see them.
 core::SharedBytes serializeDiagnostics(const core::FrameView& frame);
 
 }  // namespace spindrift::codec

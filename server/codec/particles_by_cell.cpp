@@ -21,7 +21,7 @@ namespace {
 constexpr double kCellSpacings = 2.0;
 constexpr std::uint32_t kOffsetBits = 5;
 /// The page extrapolates particles by their velocity for some frames. Over this time, one quantum of velocity moves a
-/// particle by two quanta of its place.
+/// particle by two quanta of its position.
 constexpr double kAdvance_s = 1.0 / 30.0;
 
 struct Grid {
@@ -30,7 +30,7 @@ struct Grid {
   [[nodiscard]] double quantum_m() const { return cell_m / (1u << cells.offset_bits); }
 };
 
-/// Returns a grid over the particles' domain, coarser than usual if it would have too many cells or places.
+/// Returns a grid over the particles' domain, coarser than usual if it would have too many cells or positions.
 Grid gridOf(const core::ParticleView& particles) {
   Grid grid{.cells = {.cells_count = {}, .offset_bits = kOffsetBits}, .cell_m = kCellSpacings * 2 * particles.radius_m};
   const auto fits = [&] {

@@ -140,4 +140,9 @@ std::string quoteText(std::string_view text, std::size_t max_bytes) {
   return out;
 }
 
+std::string firstLine(const std::string& text) {
+  const std::size_t end = text.find('\n');
+  return end == std::string::npos ? text : text.substr(0, end) + " (and more)";
+}
+
 }  // namespace spindrift::core

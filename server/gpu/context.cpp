@@ -212,6 +212,13 @@ void Context::poisonScratch() {
   }
 }
 
+std::vector<std::pair<std::uint32_t, std::string>> Context::lastingBuffers() const {
+  std::vector<std::pair<std::uint32_t, std::string>> out;
+  for (const BufferAccess* const buffer : accesses_->buffers())
+    if (buffer->shader_write > 0 && !buffer->is_scratch) out.emplace_back(buffer->buffer_id, buffer->name);
+  return out;
+}
+
 void Context::retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use) {
   assert(isOwnedHere());
   retired_.push_back({buffer_id, size_bytes, std::move(in_use)});

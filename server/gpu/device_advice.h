@@ -6,7 +6,7 @@
 
 namespace spindrift::gpu {
 
-/// What decides on a machine which devices work, besides their drivers.
+/// Settings of a machine that decide which devices work, besides their drivers.
 struct Machine {
   std::function<const char*(const char* name)> variable;      ///< std::getenv
   std::function<int(const std::string& file)> opening_error;  ///< errno of opening a file for reading and writing, or 0
@@ -20,7 +20,7 @@ std::string fileAdvice(const std::string& file, const Machine& machine);
 /// Returns which variables of the environment steer the drivers here, and that they should be unset; empty if none.
 std::string variableAdvice(const Machine& machine);
 
-/// Returns which hardware there is although EGL lists none, and what to do; empty if there is none.
+/// Returns which hardware there is although EGL lists none, and what to do; empty without such hardware.
 std::string unlistedAdvice(const Machine& machine);
 
 }  // namespace spindrift::gpu

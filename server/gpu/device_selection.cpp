@@ -32,7 +32,7 @@ std::string whyChosen(const DeviceInfo& info, DeviceChoice::Kind kind, int hardw
                              : "software, because no hardware device works";
 }
 
-/// Returns the index of the hardware with this DRM file or UUID; -1 if there is none.
+/// Returns the index of the hardware with this DRM file or UUID; -1 if no hardware has it.
 int indexOf(const std::vector<egl::Candidate>& candidates, const std::string& name) {
   const auto found = std::ranges::find_if(candidates, [&](const egl::Candidate& candidate) {
     return !candidate.is_software &&
@@ -55,7 +55,7 @@ core::Error noSuchDevice(const std::string& asked, const std::vector<egl::Candid
                                           "; use auto or software, see `spindrift info`"};
 }
 
-/// What to do where `auto` ended in software although there is, or may be, hardware; empty if there is none.
+/// What to do where `auto` ended in software although there is, or may be, hardware; empty without such hardware.
 std::string adviceAfter(const DeviceInfo& info, DeviceChoice::Kind kind, int hardware_count, const Machine& machine) {
   if (kind != DeviceChoice::Kind::kAuto || !info.is_software) return "";
   const std::string ending = "; --device software asks for software without this warning";

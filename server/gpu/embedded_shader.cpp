@@ -6,7 +6,7 @@
 namespace spindrift::gpu {
 namespace {
 
-/// Removes an unsigned number from the start of `text`; returns false when there is none.
+/// Removes an unsigned number from the start of `text`; returns false if it begins with no digit.
 bool takeNumber(std::string_view& text, std::uint32_t& value) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc()) return false;

@@ -12,13 +12,10 @@ namespace {
 
 namespace fs = std::filesystem;
 using core::Error;
-using core::ErrorCode;
 
 constexpr auto kLookInterval = std::chrono::milliseconds(300);
 
-Error invalid(std::string message) {
-  return {ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 /// Returns the text after `#NAME` in a line, without surrounding blanks; nullopt if the line is not this directive.
 std::optional<std::string_view> directive(std::string_view line, std::string_view name) {

@@ -19,7 +19,7 @@ class AddressLimits {
 
   explicit AddressLimits(const ServerOptions& options);
 
-  /// Takes a token for one request of this address; returns false if there is none.
+  /// Takes a token for one request of this address; returns false if the bucket is empty.
   bool takeRequest(const std::string& address, Clock::time_point now);
   /// Takes a token for one message of this address; returns the time that the message has to wait.
   Clock::duration reserveMessage(const std::string& address, Clock::time_point now);

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
@@ -15,14 +14,13 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
 
 #include <spindrift/net/client.h>
 
-#include "read_ahead.h"
 #include "tls_context.h"
+#include "transport.h"
 
 namespace spindrift::net {
 namespace {
@@ -32,7 +30,6 @@ namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 
-constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 constexpr std::chrono::seconds kCloseTimeout{2};
 
 using TlsResult = core::Result<std::shared_ptr<TlsContext>>;
@@ -105,7 +102,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
     tcp::resolver resolver(strand_);
     const auto [resolve_error, places] = co_await resolver.async_resolve(url_.host, url_.port, kToken);
     if (resolve_error) co_return url_.host + " is not known: " + resolve_error.message();
-    ReadAhead& stream = ws_.next_layer();
+    Transport& stream = ws_.next_layer();
     stream.expires_after(options_.connect_timeout);
     const auto [connect_error, place] = co_await stream.tcp().async_connect(places, kToken);
     if (connect_error) co_return "no connection to " + url_.host + ":" + url_.port + ": " + connect_error.message();
@@ -136,7 +133,6 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
           std::string(response.body());
     }
     if (error) co_return "the handshake failed: " + error.message();
-    stream.beginMessages();
     co_return std::string();
   }
 
@@ -151,11 +147,6 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
       }
       events_.message({static_cast<const std::uint8_t*>(buffer.data().data()), bytes_count});
       buffer.consume(buffer.size());
-      while (!is_cut_) {
-        const auto message = ws_.next_layer().takeMessage(options_.message_max_bytes);
-        if (!message) break;
-        events_.message(*message);
-      }
     }
   }
 
@@ -193,7 +184,7 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
   }
 
   const asio::any_io_executor strand_;
-  websocket::stream<ReadAhead> ws_;
+  websocket::stream<Transport, false> ws_;
   const TlsResult tls_;
   asio::steady_timer wake_;
   const ClientUrl url_;

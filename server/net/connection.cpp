@@ -1,3 +1,4 @@
+// In one file although it has more than 400 lines: every step of a connection shares its deadlines and limits.
 #include "connection.h"
 
 #include <array>
@@ -7,17 +8,15 @@
 #include <utility>
 #include <vector>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <boost/beast/http.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
-#include "origin.h"
+#include <spindrift/http/origin.h>
 
 namespace spindrift::net {
 namespace {
@@ -25,8 +24,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
-
-constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
 /// Limit of bytes read but not yet parsed: a header and one read. Independent of the parser's own limits.
 constexpr std::size_t kReadBufferMaxBytes = 128 * 1024;
@@ -45,8 +42,8 @@ void tune(asio::ip::tcp::socket& socket) {
   boost::system::error_code ignored;
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::send_buffer_size(kSendBufferBytes), ignored);
-  using UnsentLowWater = asio::detail::socket_option::integer<IPPROTO_TCP, TCP_NOTSENT_LOWAT>;
-  socket.set_option(UnsentLowWater(kUnsentLowWaterBytes), ignored);
+  (void)::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kUnsentLowWaterBytes,
+                     sizeof kUnsentLowWaterBytes);
 }
 
 /// Returns 0.0.0.0 and port 0 for a peer that has left already.
@@ -348,20 +345,21 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
   }
   const Place place(context_, address_);
   UpgradeDecision decision;
+  Refused why = Refused::kFull;
   const std::string max_count = std::to_string(context_.options.max_session_count);
   if (place.is_in_share) {
-    decision = decideUpgrade(request, buffer_.size(), context_.application);
+    decision = decideUpgrade(request, buffer_.size(),
+                             [this](const std::string& room) { return context_.application.acceptSession(room); });
+    why = decision.is_room_refused ? Refused::kRoom : Refused::kHandshake;
   } else if (place.is_free) {
-    decision.why = Refused::kFull;
     decision.refusal = textReply(503, "Your address has " + std::to_string(context_.addresses.sessionMaxCount()) +
                                           " of this server's " + max_count +
                                           " sessions open, the limit of one address: close one, or try again later.");
   } else {
-    decision.why = Refused::kFull;
     decision.refusal = textReply(503, "The server is full: " + max_count + " sessions are open; try again later.");
   }
   if (decision.refusal) {
-    context_.counters.refused(decision.why);
+    context_.counters.refused(why);
     co_await sendLast(std::move(*decision.refusal), false);
     co_return;
   }

@@ -10,7 +10,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 
-#include "http_request.h"
+#include <spindrift/http/request.h>
+
 #include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"

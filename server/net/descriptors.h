@@ -14,7 +14,7 @@ namespace spindrift::net {
 /// limit allows. Fewer than wanted are logged with what to do. At least 1. Call it before connections exist.
 std::size_t limitConnections(std::size_t wanted_count, std::size_t reserved_count);
 
-/// Decides when to log something that may happen thousands of times a second: the first time, then with the number of
+/// Decides when to log something that may happen thousands of times per second: the first time, then with the number of
 /// times once per kInterval. Not thread-safe.
 class RareLine {
  public:

@@ -12,6 +12,7 @@ Outbox::Outcome Outbox::pushAnswer(core::SharedBytes message) {
     close_ = SessionEnd{static_cast<std::uint16_t>(CloseCode::kTryAgainLater),
                         std::to_string(answer_max_count_) + " answers wait to be read: read faster"};
     for (Slot& slot : slots_) slot.frame.reset();
+    tellNeeds();
     return {.wake = takeWake(), .overflow = true};
   }
   control_.push_back({std::move(message), std::nullopt});
@@ -40,9 +41,13 @@ Outbox::Outcome Outbox::pushState(const StateTopic& topic, core::SharedBytes mes
 
 Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  if (close_ || shut_ || stream >= kMaxStreamCount) return {};
-  Slot& slot = slots_[stream];
-  if (!slot.watch) return {};
+  if (close_ || shut_ || stream >= kMaxStreamCount || !slots_[stream].watch) return {};
+  const Outcome out = put(slots_[stream], frame, now);
+  tellNeed(stream);
+  return out;
+}
+
+Outbox::Outcome Outbox::put(Slot& slot, const FrameBytes& frame, Clock::time_point now) {
   const core::Level wanted = levelOf(slot);
   const core::FrameLevels& levels = frame.levels;
   if (!levels.isOf(wanted)) return {};
@@ -79,10 +84,14 @@ bool Outbox::wakeForFrames() {
 
 Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame) {
   const std::lock_guard lock(mutex_);
-  if (close_ || shut_ || stream >= kMaxStreamCount) return {};
-  Slot& slot = slots_[stream];
-  if (!slot.watch || !slot.is_newcomer || !frame.keyframe) return {};
-  if (!frame.levels.isOf(levelOf(slot))) return {};
+  if (close_ || shut_ || stream >= kMaxStreamCount || !slots_[stream].watch) return {};
+  const Outcome out = putNewest(slots_[stream], frame);
+  tellNeed(stream);
+  return out;
+}
+
+Outbox::Outcome Outbox::putNewest(Slot& slot, const FrameBytes& frame) {
+  if (!slot.is_newcomer || !frame.keyframe || !frame.levels.isOf(levelOf(slot))) return {};
   slot.reduced_count = frame.levels.reduced_count;
   slot.frame = frame.keyframe;
   slot.level = frame.levels.level;
@@ -91,16 +100,49 @@ Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame)
   return {.wake = takeWake()};
 }
 
-Outbox::Demand Outbox::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const {
+// What the session needs
+
+void Outbox::enterRoom(std::shared_ptr<core::DemandTable> demand) {
   const std::lock_guard lock(mutex_);
-  if (stream >= kMaxStreamCount || !slots_[stream].watch) return {};
-  const Slot& slot = slots_[stream];
-  const core::Level level = levelOf(slot);
-  if (close_ || shut_) return {.level = level};
-  const bool has_ground = slot.follows && slot.level == core::effectiveLevel(level, reduced_count);
-  return {.level = level,
-          .wants_keyframe = !slot.frame && !has_ground && slot.lost_turn != turn_count_ && slot.gate.isOpen(now),
-          .is_newcomer = slot.is_newcomer};
+  if (demand_) {
+    for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
+      if (std::exchange(told_needs_[stream], std::nullopt)) demand_->set(stream, &slots_[stream], std::nullopt);
+    }
+    demand_->addSessions(-1);
+    for (Slot& slot : slots_) {
+      slot.frame.reset();
+      slot.follows = slot.is_newcomer = false;
+    }
+  }
+  demand_ = std::move(demand);
+  if (!demand_) return;
+  demand_->addSessions(1);
+  tellNeeds();
+}
+
+std::optional<core::DemandTable::Need> Outbox::need(StreamIndex stream) const {
+  const std::lock_guard lock(mutex_);
+  return stream < kMaxStreamCount ? needOf(slots_[stream]) : std::nullopt;
+}
+
+std::optional<core::DemandTable::Need> Outbox::needOf(const Slot& slot) const {
+  if (!slot.watch) return std::nullopt;
+  core::DemandTable::Need out{.level = levelOf(slot), .is_newcomer = slot.is_newcomer};
+  const bool has_ground = slot.follows && slot.level == core::effectiveLevel(out.level, slot.reduced_count);
+  if (!close_ && !slot.frame && !has_ground && slot.lost_turn != turn_count_) out.keyframe_from = slot.gate.opens();
+  return out;
+}
+
+void Outbox::tellNeed(std::size_t stream) {
+  if (!demand_) return;
+  auto need = needOf(slots_[stream]);
+  if (need == told_needs_[stream]) return;
+  demand_->set(stream, &slots_[stream], need);
+  told_needs_[stream] = need;
+}
+
+void Outbox::tellNeeds() {
+  for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) tellNeed(stream);
 }
 
 core::Level Outbox::levelOf(const Slot& slot) const {
@@ -112,10 +154,12 @@ void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   if (stream >= kMaxStreamCount) return;
   Slot& slot = slots_[stream];
   slot = {};  // a new watch, also one to recover from a loss, starts with a keyframe
-  if (!watch) return;
-  slot.watch = watch;
-  slot.is_newcomer = watch->is_first;
-  slot.gate = RateGate(watch->max_rate_hz);
+  if (watch) {
+    slot.watch = watch;
+    slot.is_newcomer = watch->is_first;
+    slot.gate = RateGate(watch->max_rate_hz);
+  }
+  tellNeed(stream);
 }
 
 std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {
@@ -124,7 +168,9 @@ std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {
   for (const Slot& slot : slots_) {
     if (slot.watch && slot.watch->adapts) reduced_count = std::max(reduced_count, slot.reduced_count);
   }
-  return ladder_.review(now, reduced_count);
+  const auto changed = ladder_.review(now, reduced_count);
+  if (changed) tellNeeds();
+  return changed;
 }
 
 core::Level Outbox::level() const {
@@ -132,19 +178,12 @@ core::Level Outbox::level() const {
   return ladder_.level();
 }
 
-void Outbox::clearFrames() {
-  const std::lock_guard lock(mutex_);
-  for (Slot& slot : slots_) {
-    slot.frame.reset();
-    slot.follows = slot.is_newcomer = false;
-  }
-}
-
 bool Outbox::requestClose(CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_) return false;
   close_ = SessionEnd{static_cast<std::uint16_t>(code), std::move(reason)};
   for (Slot& slot : slots_) slot.frame.reset();
+  tellNeeds();
   return true;
 }
 
@@ -155,12 +194,16 @@ void Outbox::shut() {
   answer_count_ = 0;
   whole_state_waits_ = false;
   for (Slot& slot : slots_) slot = {};
+  tellNeeds();
 }
 
 Outbox::Next Outbox::next() {
   const std::lock_guard lock(mutex_);
   writer_sleeps_ = false;
   ++turn_count_;
+  for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
+    if (slots_[stream].lost_turn) tellNeed(stream);
+  }
   if (shut_) return {Kind::kShut, nullptr};
   const auto stream = nextStream();
   if (stream && isFrameBeforeControl()) return takeFrame(*stream);
@@ -208,7 +251,9 @@ std::optional<std::size_t> Outbox::nextStream() const {
 Outbox::Next Outbox::takeFrame(std::size_t stream) {
   turn_ = (stream + 1) % slots_.size();
   control_run_count_ = 0;
-  return {Kind::kFrame, std::exchange(slots_[stream].frame, nullptr)};
+  Next out{Kind::kFrame, std::exchange(slots_[stream].frame, nullptr)};
+  tellNeed(stream);
+  return out;
 }
 
 Outbox::Waiting Outbox::waiting() const {

@@ -6,11 +6,13 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/demand_table.h>
 #include <spindrift/net/server.h>
 
 #include "level_ladder.h"
@@ -25,11 +27,14 @@ namespace spindrift::net {
 class Outbox {
  public:
   explicit Outbox(std::size_t answer_max_count) : answer_max_count_(answer_max_count) {}
+  ~Outbox() { enterRoom(nullptr); }
+  Outbox(const Outbox&) = delete;
+  Outbox& operator=(const Outbox&) = delete;
 
   /// Most control messages in a row while a frame waits.
   static constexpr std::size_t kControlRunMaxCount = 8;
 
-  /// What a producer has to do after a call, and what the call did.
+  /// Result of a call: its effects, and the work that is left to the caller.
   struct Outcome {
     bool wake = false;      ///< the writer sleeps: wake it
     bool dropped = false;   ///< an unsent older frame was replaced
@@ -59,15 +64,13 @@ class Outbox {
   /// Returns whether frames wait and the writer sleeps: wake it.
   bool wakeForFrames();
 
-  /// The frame that the session would take next of a stream that it watches.
-  struct Demand {
-    core::Level level = core::Level::kFull;  ///< that the session watches now
-    /// Only a keyframe can be taken. False for a session that has read nothing since it lost a frame: no keyframe is
-    /// made for a client that cannot take it.
-    bool wants_keyframe = false;
-    bool is_newcomer = false;  ///< offerNewest() would be taken
-  };
-  Demand demand(StreamIndex stream, std::uint32_t reduced_count, Clock::time_point now) const;
+  /// The session is in a room from now on, and `demand` says what it needs of its frames, as long as it is there; null:
+  /// it is in none, and unsent frames are dropped.
+  void enterRoom(std::shared_ptr<core::DemandTable> demand);
+  /// Returns what the session needs of the next frame of a stream; nullopt if it does not watch it. A session that has
+  /// read nothing since it lost a frame needs no keyframe: none is made for a client that cannot take it. is_newcomer:
+  /// offerNewest() would be taken.
+  [[nodiscard]] std::optional<core::DemandTable::Need> need(StreamIndex stream) const;
 
   /// Starts, changes or stops (nullopt) a stream, and drops its unsent frame.
   void setWatch(StreamIndex stream, const std::optional<Watch>& watch);
@@ -77,9 +80,6 @@ class Outbox {
   std::optional<core::Level> reviewLevel(Clock::time_point now);
   /// Highest level for adapting watches, from the last evaluation.
   core::Level level() const;
-
-  /// Drops unsent frames, when the session leaves their room.
-  void clearFrames();
 
   /// Requests a close after the queued control messages; unsent frames are dropped. Returns true for the first request,
   /// which alone counts.
@@ -118,6 +118,12 @@ class Outbox {
   bool takeWake();
   /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
+  Outcome put(Slot& slot, const FrameBytes& frame, Clock::time_point now);
+  Outcome putNewest(Slot& slot, const FrameBytes& frame);
+  [[nodiscard]] std::optional<core::DemandTable::Need> needOf(const Slot& slot) const;
+  /// Tells the room what it needs of the stream, if that has changed; or of all streams.
+  void tellNeed(std::size_t stream);
+  void tellNeeds();
 
   struct Slot {
     std::optional<Watch> watch;  ///< empty = not watched
@@ -148,6 +154,8 @@ class Outbox {
   bool whole_state_waits_ = false;     ///< control_ holds a message with Scope::kWhole
   std::size_t control_run_count_ = 0;  ///< control messages taken since the last frame
   std::array<Slot, kMaxStreamCount> slots_;
+  std::shared_ptr<core::DemandTable> demand_;  ///< of the room; null outside of one
+  std::array<std::optional<core::DemandTable::Need>, kMaxStreamCount> told_needs_;
   LevelLadder ladder_;
   std::size_t turn_ = 0;          ///< the stream that is checked first
   std::uint64_t turn_count_ = 0;  ///< number of times that the writer had finished what it took before

@@ -19,8 +19,11 @@ class RateGate {
   RateGate() = default;
   explicit RateGate(double max_rate_hz) : interval_s_(1.0 / (kRateTolerance * max_rate_hz)) {}
 
-  /// Returns whether pass() would let a frame through.
-  bool isOpen(Clock::time_point now) const { return !started_ || now + seconds(kEarlyRatio * interval_s_) >= due_; }
+  /// Returns the time from which on pass() lets a frame through; in the past if it does now.
+  Clock::time_point opens() const {
+    return started_ ? due_ - seconds(kEarlyRatio * interval_s_) : Clock::time_point::min();
+  }
+  bool isOpen(Clock::time_point now) const { return now >= opens(); }
 
   bool pass(Clock::time_point now) {
     if (!isOpen(now)) return false;

@@ -67,28 +67,13 @@ void RoomHub::offerNewest(const std::string& room, StreamIndex stream, const Fra
   for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerNewest(stream, frame);
 }
 
-core::StreamDemand RoomHub::demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
-                                   std::chrono::steady_clock::duration ahead) const {
-  const std::lock_guard lock(mutex_);
-  core::StreamDemand out;
-  const auto found = rooms_.find(room);
-  if (found == rooms_.end() || stream >= kMaxStreamCount) return out;
-  for (const Watcher& watcher : found->second.watchers[stream]) {
-    const Outbox::Demand one = watcher.link->demand(stream, reduced_count, ahead);
-    core::LevelDemand& of_level = out[indexOf(one.level)];
-    ++of_level.watcher_count;
-    of_level.wants_keyframe = of_level.wants_keyframe || one.wants_keyframe;
-    of_level.has_newcomer = of_level.has_newcomer || one.is_newcomer;
-  }
-  return out;
-}
-
-void RoomHub::join(SessionId session, const std::string& room) {
+void RoomHub::join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found == members_.end() || found->second.room == room) return;
   leaveRoom(session, found->second);
   enterRoom(session, found->second, room);
+  found->second.link->enterRoom(std::move(demand));
 }
 
 void RoomHub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
@@ -119,19 +104,6 @@ void RoomHub::closeAt(SessionId session, std::chrono::steady_clock::time_point w
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found != members_.end()) found->second.link->closeAt(when, code, std::move(reason));
-}
-
-std::size_t RoomHub::sessionCount(const std::string& room) const {
-  const std::lock_guard lock(mutex_);
-  const auto found = rooms_.find(room);
-  return found == rooms_.end() ? 0 : found->second.sessions.size();
-}
-
-std::size_t RoomHub::sessionCount() const {
-  const std::lock_guard lock(mutex_);
-  std::size_t count = 0;
-  for (const auto& [name, room] : rooms_) count += room.sessions.size();
-  return count;
 }
 
 Outbox::Waiting RoomHub::waiting() const {
@@ -169,7 +141,7 @@ void RoomHub::leaveRoom(SessionId session, Member& member) {
   // Remove empty rooms, so that their number stays bounded by the sessions.
   if (left->second.sessions.empty()) rooms_.erase(left);
   member.room.reset();
-  member.link->clearFrames();
+  member.link->enterRoom(nullptr);
 }
 
 }  // namespace spindrift::net

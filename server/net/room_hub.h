@@ -29,11 +29,10 @@ class SessionLink {
   /// Frames that wait are sent from now on.
   virtual void wakeForFrames() = 0;
   virtual void offerNewest(StreamIndex stream, const FrameBytes& frame) = 0;
-  virtual Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count,
-                                std::chrono::steady_clock::duration ahead) const = 0;
   /// Sets the watch of a stream; nullopt stops it.
   virtual void setWatch(StreamIndex stream, const std::optional<Watch>& watch) = 0;
-  virtual void clearFrames() = 0;
+  /// Outbox::enterRoom().
+  virtual void enterRoom(std::shared_ptr<core::DemandTable> demand) = 0;
   virtual Outbox::Waiting waiting() const = 0;
   virtual void close(CloseCode code, std::string reason) = 0;
   virtual void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) = 0;
@@ -60,11 +59,7 @@ class RoomHub final : public Hub {
   void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) override;
   void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
   void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) override;
-  core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
-                            std::chrono::steady_clock::duration ahead = {}) const override;
-  void join(SessionId session, const std::string& room) override;
-  std::size_t sessionCount(const std::string& room) const override;
-  std::size_t sessionCount() const override;
+  void join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) override;
   void watch(SessionId session, StreamIndex stream, const Watch& watch) override;
   void close(SessionId session, CloseCode code, std::string reason) override;
   void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,

@@ -4,7 +4,6 @@
 #include <memory>
 #include <thread>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/executor_work_guard.hpp>
@@ -13,7 +12,6 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/strand.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/net/server.h>
@@ -28,7 +26,6 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 
-constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 /// Out of file descriptors or memory: retrying at once would only spin.
 constexpr std::chrono::milliseconds kAcceptPause{100};
 /// Frames of one moment of the water that come within this time are written together in rooms with many sessions; see
@@ -133,7 +130,7 @@ core::Result<void> ServerImpl::bind(const asio::ip::address& address) {
   }
   if (error == boost::system::errc::address_not_available) {
     return unavailable(where +
-                       " cannot be had: this machine does not have that address; choose another with --address");
+                       " is not available: this machine does not have that address; choose another with --address");
   }
   if (error == boost::system::errc::permission_denied) {
     return unavailable(where + " needs more rights than this user has: choose one above 1023 with --port");

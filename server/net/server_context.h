@@ -7,16 +7,16 @@
 #include <map>
 #include <mutex>
 
-#include <spindrift/net/network_text.h>
+#include <spindrift/http/network_text.h>
+#include <spindrift/http/static_files.h>
+#include <spindrift/http/trusted_networks.h>
 #include <spindrift/net/server.h>
 
 #include "address_limits.h"
 #include "connection_set.h"
 #include "descriptors.h"
 #include "room_hub.h"
-#include "static_files.h"
 #include "tls_credentials.h"
-#include "trusted_networks.h"
 
 namespace spindrift::net {
 
@@ -61,9 +61,6 @@ inline std::map<std::uint16_t, std::uint64_t> Counters::closedByCode() const {
 /// TCP connections beyond the sessions, for page loads, probes and unknown peers. Further ones are closed without a
 /// reply.
 inline constexpr std::size_t kSpareConnectionCount = 512;
-
-/// Name of the subprotocol defined in proto/spindrift/v1.
-inline constexpr const char* kSubprotocol = "spindrift.v1";
 
 struct ServerContext {
   ServerContext(const ServerOptions& chosen, TrustedNetworks trusted, std::unique_ptr<TlsCredentials> tls_credentials,

@@ -3,16 +3,13 @@
 #include <exception>
 #include <utility>
 
-#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/experimental/awaitable_operators.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/websocket.hpp>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/text.h>
-
-#include "http_routes.h"
+#include <spindrift/http/routes.h>
 
 namespace spindrift::net {
 namespace {
@@ -20,8 +17,6 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace websocket = boost::beast::websocket;
-
-constexpr auto kToken = asio::as_tuple(asio::use_awaitable);
 
 /// This many fragments count as one message. A message sent in single bytes takes fewer tokens than a burst has, and a
 /// stream of empty fragments is limited like one of messages.
@@ -75,6 +70,7 @@ asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string ro
     spdlog::debug("{}: the WebSocket handshake failed: {}", peer, accept_error.message());
     co_return;
   }
+  ws_.next_layer().beginFrames([this](std::uint64_t fragment_count) { return takeFragments(fragment_count); });
   // From here on Beast's "handshake" timeout is the one for closing.
   ws_.set_option(websocket::stream_base::timeout{context_.options.close_timeout, context_.options.idle_timeout, true});
 
@@ -108,11 +104,6 @@ void Session::configure(bool echo_subprotocol) {
     for (const auto& [name, value] : securityHeaders()) response.set(name, value);
     if (echo_subprotocol) response.set(beast::http::field::sec_websocket_protocol, kSubprotocol);
   }));
-  // A server does not mask, so an unfragmented message is written straight from the shared buffer; the write buffer is
-  // only used for fragments.
-  ws_.auto_fragment(false);
-  ws_.write_buffer_bytes(64 * 1024);
-  ws_.binary(true);
   ws_.read_message_max(options.read_message_max_bytes);
   // Each ping costs a pong, so pings count as messages. A peer that sends a close frame gets a deadline to disconnect.
   ws_.control_callback([this](websocket::frame_type kind, beast::string_view) {
@@ -126,15 +117,16 @@ void Session::configure(bool echo_subprotocol) {
       close(CloseCode::kPolicy, kTooManyMessages);
     }
   });
-  ws_.next_layer().setFragmentHandler([this](std::uint64_t fragment_count) {
-    untaken_fragment_count_ += fragment_count;
-    for (; untaken_fragment_count_ >= kFragmentsPerMessage; untaken_fragment_count_ -= kFragmentsPerMessage) {
-      if (message_tokens_.take(Clock::now())) continue;
-      close(CloseCode::kPolicy, "too many fragments: send messages in fewer pieces, or slow down");
-      return false;
-    }
-    return true;
-  });
+}
+
+bool Session::takeFragments(std::uint64_t count) {
+  untaken_fragment_count_ += count;
+  for (; untaken_fragment_count_ >= kFragmentsPerMessage; untaken_fragment_count_ -= kFragmentsPerMessage) {
+    if (message_tokens_.take(Clock::now())) continue;
+    close(CloseCode::kPolicy, "too many fragments: send messages in fewer pieces, or slow down");
+    return false;
+  }
+  return true;
 }
 
 asio::awaitable<void> Session::readLoop() {
@@ -228,7 +220,7 @@ void Session::gather(Outbox::Next first) {
     gathered_.messages.push_back(std::move(next.message));
   };
   take(std::move(first));
-  while (gathered_.messages.size() <= MessageStream::kAlongMaxCount && gathered_.bytes_count < kGatheredMaxBytes) {
+  while (gathered_.messages.size() < MessageStream::kMessageMaxCount && gathered_.bytes_count < kGatheredMaxBytes) {
     auto next = outbox_.nextAlong(kGatheredMaxBytes - gathered_.bytes_count);
     if (!next) return;
     take(*std::move(next));
@@ -238,10 +230,7 @@ void Session::gather(Outbox::Next first) {
 asio::awaitable<bool> Session::writeGathered() {
   write_deadline_ = Clock::now() + context_.options.write_stall_timeout;
   if (!watches_writes_) watchWrites();
-  const core::Bytes& first = *gathered_.messages.front();
-  ws_.next_layer().setMessage(first, std::span(gathered_.messages).subspan(1));
-  const auto [error, bytes_count] = co_await ws_.async_write(asio::buffer(first), kToken);
-  ws_.next_layer().clearMessage();
+  const boost::system::error_code error = co_await ws_.next_layer().writeMessages(gathered_.messages);
   write_deadline_.reset();
   if (error) {
     noteEnd(0, error.message());
@@ -311,16 +300,8 @@ void Session::offerNewest(StreamIndex stream, const FrameBytes& frame) {
   if (outbox_.offerNewest(stream, frame).wake) wakeWriter();
 }
 
-Outbox::Demand Session::demand(StreamIndex stream, std::uint32_t reduced_count, Clock::duration ahead) const {
-  return outbox_.demand(stream, reduced_count, Clock::now() + ahead);
-}
-
 void Session::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
   outbox_.setWatch(stream, watch);
-}
-
-void Session::clearFrames() {
-  outbox_.clearFrames();
 }
 
 void Session::close(CloseCode code, std::string reason) {
@@ -343,7 +324,7 @@ void Session::closeAt(Clock::time_point when, CloseCode code, std::string reason
 
 void Session::cut() {
   end_of_delay_.cancel();
-  beast::get_lowest_layer(ws_).close();
+  ws_.next_layer().close();
 }
 
 template <typename Callback>

@@ -38,9 +38,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) override;
   void wakeForFrames() override;
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
-  Outbox::Demand demand(StreamIndex stream, std::uint32_t reduced_count, Clock::duration ahead) const override;
   void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override;
-  void clearFrames() override;
+  void enterRoom(std::shared_ptr<core::DemandTable> demand) override { outbox_.enterRoom(std::move(demand)); }
   Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;
   void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) override;
@@ -57,6 +56,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   };
 
   void configure(bool echo_subprotocol);
+  /// Takes message tokens for fragments; false if there are too few, and the session closes.
+  bool takeFragments(std::uint64_t count);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
   /// Returns once fewer than answer_pause_count answers wait, or the connection is gone. Meanwhile the session reads
@@ -83,7 +84,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   ServerContext& context_;
   const SessionId id_;
-  boost::beast::websocket::stream<MessageStream> ws_;
+  boost::beast::websocket::stream<MessageStream, false> ws_;  ///< without permessage-deflate
   const boost::asio::any_io_executor strand_;
   Outbox outbox_;
   Gathered gathered_;

@@ -30,9 +30,7 @@ std::string opensslReason() {
   return reason != nullptr ? reason : "unknown reason";
 }
 
-core::Error invalid(std::string message) {
-  return {core::ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 core::Result<std::string> readPem(const std::string& option, const std::string& file) {
   constexpr std::size_t kPemMaxBytes = 4u << 20;

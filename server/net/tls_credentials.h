@@ -37,7 +37,7 @@ class TlsCredentials {
  private:
   explicit TlsCredentials(TlsFiles files) : files_(std::move(files)) {}
 
-  /// What tells a changed file: both may be links that are set to another file.
+  /// Tells whether a file has changed. It may be a link that was set to another file.
   struct Stamp {
     std::uint64_t inode = 0;
     std::int64_t size_bytes = -1;

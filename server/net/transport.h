@@ -1,30 +1,47 @@
-// The stream below HTTP and WebSocket: TCP, or TLS over TCP. One class for both, so that connections and sessions have
-// one code path. A plain stream costs one test of a pointer per operation; operations of TLS go through TlsLayer, with
-// one allocation each.
+// The stream below HTTP and WebSocket: TCP, or TLS over TCP. Beast reads and writes through functions without
+// templates: what lies below them is compiled once and not for each of Beast's operations, for one allocation per
+// operation.
 #pragma once
 
+#include <chrono>
+#include <concepts>
 #include <functional>
 #include <memory>
+#include <span>
+#include <type_traits>
 #include <utility>
 
+#include <boost/asio/as_tuple.hpp>
 #include <boost/asio/async_result.hpp>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/role.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
-#include <boost/beast/websocket/teardown.hpp>
 #include <boost/container/static_vector.hpp>
 
 #include "tls_layer.h"
 
 namespace spindrift::net {
 
+/// Completion token: co_await returns a tuple that begins with the error code, and throws nothing.
+inline constexpr auto kToken = boost::asio::as_tuple(boost::asio::use_awaitable);
+
 /// Models AsyncStream of Beast. Used on its executor, a strand. Movable; a moved-from stream can only be destroyed.
 class Transport {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
+  /// Called on the executor, never before the function that took it returns.
+  using Handler = TlsLayer::Handler;
+  /// Most buffers of one write; asio passes no more to the kernel, either.
+  static constexpr std::size_t kPartMaxCount = 64;
+  using Parts = boost::container::static_vector<boost::asio::const_buffer, kPartMaxCount>;
 
   template <typename Socket>
   explicit Transport(Socket&& socket_or_executor) requires(!std::is_base_of_v<Transport, std::remove_cvref_t<Socket>>)
       : state_(std::make_shared<State>(std::forward<Socket>(socket_or_executor))) {}
+  Transport(const Transport&) = default;
+  Transport(Transport&&) = default;
+  virtual ~Transport() = default;
 
   executor_type get_executor() { return state_->tcp.get_executor(); }
   boost::beast::tcp_stream& tcp() { return state_->tcp; }
@@ -36,47 +53,63 @@ class Transport {
   void close() { state_->tcp.close(); }
 
   [[nodiscard]] bool isTls() const { return state_->tls != nullptr; }
-  /// From here on everything but tcp() goes through the layer; call handshake() next.
+  /// From here on everything but tcp() goes through the layer; call async_handshake() next.
   void useTls(std::unique_ptr<TlsLayer> layer) { state_->tls = std::move(layer); }
   /// Null without TLS.
   [[nodiscard]] TlsLayer* tls() const { return state_->tls.get(); }
+
+  /// Reads at least one byte. The bytes of `into` stay valid until the handler is called.
+  virtual void read(boost::asio::mutable_buffer into, Handler handler);
+  /// Writes the beginning of `parts`, which has at least one and none that is empty; reports how much. The bytes stay
+  /// valid until then, the array of parts only during the call.
+  virtual void write(std::span<const boost::asio::const_buffer> parts, Handler handler);
+  /// Ends the connection after the close frames: the shutdown of TLS, or that of TCP.
+  void tearDown(boost::beast::role_type role, Handler handler);
 
   /// TLS only. `received`: bytes that were read from tcp() before.
   template <typename Token>
   auto async_handshake(boost::asio::const_buffer received, Token&& token) {
     return boost::asio::async_initiate<Token, Signature>(
-        [state = state_, received](auto handler) {
-          state->tls->handshake(received, shared(state, std::move(handler)));
-        },
-        token);
+        [this, received](auto handler) { tls()->handshake(received, shared(std::move(handler))); }, token);
   }
 
   /// TLS only: see TlsLayer::shutdown().
   template <typename Token>
   auto async_shutdown(Token&& token) {
     return boost::asio::async_initiate<Token, Signature>(
-        [state = state_](auto handler) { state->tls->shutdown(shared(state, std::move(handler))); }, token);
+        [this](auto handler) { tls()->shutdown(shared(std::move(handler))); }, token);
   }
 
   template <typename Buffers, typename Token>
   auto async_read_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, Signature>(
-        [](auto handler, const std::shared_ptr<State>& state, const Buffers& into) {
-          if (!state->tls) return state->tcp.async_read_some(into, std::move(handler));
-          state->tls->read(firstOf<boost::asio::mutable_buffer, 1>(into)[0], shared(state, std::move(handler)));
+        [this](auto handler, const Buffers& into) {
+          read(firstOf<boost::container::static_vector<boost::asio::mutable_buffer, 1>>(into)[0],
+               shared(std::move(handler)));
         },
-        token, state_, buffers);
+        token, buffers);
   }
 
   template <typename Buffers, typename Token>
   auto async_write_some(const Buffers& buffers, Token&& token) {
     return boost::asio::async_initiate<Token, Signature>(
-        [](auto handler, const std::shared_ptr<State>& state, const Buffers& from) {
-          if (!state->tls) return state->tcp.async_write_some(from, std::move(handler));
-          const auto parts = firstOf<boost::asio::const_buffer, kTlsPartMaxCount>(from);
-          state->tls->write({parts.data(), parts.size()}, shared(state, std::move(handler)));
+        [this](auto handler, const Buffers& from) {
+          const auto parts = firstOf<Parts>(from);
+          write({parts.data(), parts.size()}, shared(std::move(handler)));
         },
-        token, state_, buffers);
+        token, buffers);
+  }
+
+  /// Wraps a handler that can only be moved into one that can be copied. It keeps the state, because Beast may drop a
+  /// stream whose operations have not ended.
+  template <typename Handling>
+  Handler shared(Handling handler) {
+    struct Kept {
+      std::shared_ptr<State> state;
+      Handling handler;
+    };
+    return [kept = std::make_shared<Kept>(Kept{state_, std::move(handler)})](
+               const boost::system::error_code& error, std::size_t bytes_count) { kept->handler(error, bytes_count); };
   }
 
  private:
@@ -89,23 +122,13 @@ class Transport {
     std::unique_ptr<TlsLayer> tls;  ///< destroyed before `tcp`, which it uses
   };
 
-  /// Wraps a handler that can only be moved into one that can be copied. It keeps the state, because Beast may drop a
-  /// stream whose operations have not ended.
-  template <typename Handler>
-  static TlsLayer::Handler shared(std::shared_ptr<State> state, Handler handler) {
-    return [state = std::move(state), kept = std::make_shared<Handler>(std::move(handler))](
-               const boost::system::error_code& error, std::size_t bytes_count) { (*kept)(error, bytes_count); };
-  }
-
-  static constexpr std::size_t kTlsPartMaxCount = 16;
-
-  /// The first buffers that are not empty, at most `kMaxCount`; one empty buffer if there are none.
-  template <typename Buffer, std::size_t kMaxCount, typename Buffers>
-  static boost::container::static_vector<Buffer, kMaxCount> firstOf(const Buffers& buffers) {
-    boost::container::static_vector<Buffer, kMaxCount> out;
+  /// The first buffers that are not empty, as many as fit; one empty buffer if all are empty.
+  template <typename Vector, typename Buffers>
+  static Vector firstOf(const Buffers& buffers) {
+    Vector out;
     for (auto at = boost::asio::buffer_sequence_begin(buffers);
-         at != boost::asio::buffer_sequence_end(buffers) && out.size() < kMaxCount; ++at) {
-      const Buffer part = *at;
+         at != boost::asio::buffer_sequence_end(buffers) && out.size() < out.capacity(); ++at) {
+      const typename Vector::value_type part = *at;
       if (part.size() > 0) out.push_back(part);
     }
     if (out.empty()) out.emplace_back();
@@ -121,16 +144,11 @@ inline void beast_close_socket(Transport& stream) {
 }
 
 /// Beast ends a connection with these functions after the close frames, found by the type of the stream.
-template <typename Handler>
-void async_teardown(boost::beast::role_type role, Transport& stream, Handler&& handler) {
-  if (!stream.isTls()) {
-    return boost::beast::websocket::async_teardown(role, stream.socket(), std::forward<Handler>(handler));
-  }
-  stream.async_shutdown([kept = std::forward<Handler>(handler)](const boost::system::error_code& error,
-                                                                std::size_t) mutable { kept(error); });
+template <std::derived_from<Transport> Stream, typename Handler>
+void async_teardown(boost::beast::role_type role, Stream& stream, Handler&& handler) {
+  stream.tearDown(role, stream.shared([kept = std::forward<Handler>(handler)](const boost::system::error_code& error,
+                                                                              std::size_t) mutable { kept(error); }));
 }
-inline void teardown(boost::beast::role_type role, Transport& stream, boost::system::error_code& error) {
-  boost::beast::websocket::teardown(role, stream.socket(), error);
-}
+void teardown(boost::beast::role_type role, Transport& stream, boost::system::error_code& error);
 
 }  // namespace spindrift::net

@@ -13,13 +13,14 @@ EncoderThread::~EncoderThread() {
   stop();
 }
 
-void EncoderThread::submit(const std::string& room, core::FrameView frame) {
+void EncoderThread::submit(const std::string& room, std::shared_ptr<const core::DemandTable> demand,
+                           core::FrameView frame) {
   {
     const std::lock_guard lock(mutex_);
     if (stopping_) return;
     const auto waiting = std::ranges::find(waiting_, room, &Waiting::room);
     if (waiting == waiting_.end()) {
-      waiting_.push_back({room, std::move(frame)});
+      waiting_.push_back({room, std::move(demand), std::move(frame)});
     } else {
       ++rooms_[room].counts.replaced_count;
       // Keep the diagnostics of the replaced frame if the newer one has none: they are sent once only.
@@ -70,7 +71,7 @@ void EncoderThread::loop() {
     ++known.counts.encoded_count;
     const auto encoder = known.encoder;  // the room may be forgotten while this runs
     lock.unlock();
-    const Costs spent = encode(oldest.room, oldest.frame, *encoder);
+    const Costs spent = encode(oldest, *encoder);
     oldest.frame = {};  // releases the readback slot
     lock.lock();
     for (std::size_t k = 0; k < costs_.size(); ++k) {
@@ -83,8 +84,8 @@ void EncoderThread::loop() {
   }
 }
 
-EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::FrameView& frame,
-                                           codec::FrameEncoder& encoder) {
+EncoderThread::Costs EncoderThread::encode(const Waiting& job, codec::FrameEncoder& encoder) {
+  const core::FrameView& frame = job.frame;
   Costs spent{};
   // All layers are published together, so that they can leave in one write per session.
   struct Ready {
@@ -96,8 +97,8 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
   for (const codec::Stream stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
     const core::LevelSet due = codec::levelsTaking(stream.layer, frame.due);
-    const core::StreamDemand demand =
-        core::demandOfFrame(outlet_.demand(room, stream, reduced_count), reduced_count, due);
+    const core::StreamDemand asked = job.demand->of(codec::indexOf(stream), std::chrono::steady_clock::now());
+    const core::StreamDemand demand = core::demandOfFrame(asked, reduced_count, due);
     for (const core::Level level : core::kLevels) {
       const core::LevelDemand& wanted = demand[core::indexOf(level)];
       if (wanted.watcher_count == 0) continue;
@@ -113,7 +114,7 @@ EncoderThread::Costs EncoderThread::encode(const std::string& room, const core::
       ready.push_back({stream, encoded, {.level = level, .reduced_count = reduced_count, .due = due}});
     }
   }
-  for (const Ready& one : ready) outlet_.publish(room, one.stream, one.encoded, one.levels);
+  for (const Ready& one : ready) outlet_.publish(job.room, one.stream, one.encoded, one.levels);
   return spent;
 }
 

@@ -1,21 +1,14 @@
 #include <algorithm>
+#include <set>
+#include <utility>
 
-#include <spdlog/spdlog.h>
-
-#include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room.h>
-#include <spindrift/scene/scene_loader.h>
 
 namespace spindrift::rooms {
 namespace {
 
 using namespace std::chrono_literals;
 
-/// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
-constexpr double kHeavyShare = 0.25;
-constexpr auto kHeavyBurst = 30ms;
-/// A paused room's frame that found no free slot is asked for again.
-constexpr auto kDroppedFrameRetry = 10ms;
 /// While the device works on a frame, look for it this often.
 constexpr auto kReadbackPollInterval = 1ms;
 /// A room that stands still and has commands that cannot be carried out yet (heavy ones wait for their budget).
@@ -26,27 +19,31 @@ constexpr auto kVitalsInterval = 250ms;
 
 }  // namespace
 
-Room::Room(std::string name, const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets,
-           std::unique_ptr<RoomWater> room_water, Diary diary)
+// Opening
+
+Room::Room(std::string name, const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets,
+           std::unique_ptr<water::RoomWater> room_water, history::Diary diary, v1::RoomAccess access)
     : name_(std::move(name)),
-      rules_(rules),
-      builder_(builder),
+      access_(std::move(access)),
       outlets_(outlets),
       water_(std::move(room_water)),
       diary_(std::move(diary)),
-      heavy_budget_(kHeavyShare, kHeavyBurst),
-      chosen_fidelity_(water_->scene().fidelity()),
       roster_(rules.grace, [this] { wake(); }),
       time_(water_->sim().derived().tick_s),
-      boats_(water_->boats()) {
-  recovery_news_.restart(water_->sim().recoveredCount());
+      chosen_fidelity_(water_->scene().fidelity()),
+      reports_({*this, *water_, time_, roster_, outlets}),
+      frames_({*this, *water_, time_, tick_meter_, *demand_, outlets}),
+      change_({name_, rules, builder, *water_, diary_, time_, tick_cost_, load_, chosen_fidelity_}),
+      actions_({*water_, diary_, time_, roster_, frames_.schedule(), tick_cost_, reports_.news()}),
+      desk_({*water_, actions_, change_, tick_cost_, diary_}),
+      keeping_({name_, access_, *water_, time_, roster_, chosen_fidelity_, diary_, builder, rules.disk_patience}) {
   tick_cost_.restart(water_->warmTick_ms(), water_->work());
-  publishSnapshot();
   publishVitals({});
 }
 
-core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
-                                                 WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
+core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<water::Water> water,
+                                                 const RoomRules& rules, water::WaterBuilder& builder,
+                                                 RoomOutlets& outlets, history::RoomPlace place,
                                                  v1::RoomAccess access) {
   auto room = begin(std::move(name), std::move(water), rules, builder, outlets, std::move(place), std::move(access));
   if (!room) return room;
@@ -55,36 +52,45 @@ core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_p
   return room;
 }
 
-core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_ptr<Water> water, const RoomRules& rules,
-                                                WaterBuilder& builder, RoomOutlets& outlets, RoomPlace place,
-                                                v1::RoomAccess access) {
-  auto room_water = std::make_unique<RoomWater>(std::move(water));
-  auto diary = Diary::create(name, *room_water, rules.record_folder, rules.hash_interval_ticks, place.kept.has_value());
+core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_ptr<water::Water> water,
+                                                const RoomRules& rules, water::WaterBuilder& builder,
+                                                RoomOutlets& outlets, history::RoomPlace place, v1::RoomAccess access) {
+  auto room_water = std::make_unique<water::RoomWater>(std::move(water));
+  auto diary =
+      history::Diary::create(name, *room_water, rules.record_folder, rules.hash_interval_ticks, place.kept.has_value());
   if (!diary) return diary.error();
   auto room = std::shared_ptr<Room>(
-      new Room(std::move(name), rules, builder, outlets, std::move(room_water), *std::move(diary)));
-  room->access_ = std::move(access);
-  if (!place.keeper) return room;
-  room->restoration_ = std::make_unique<Restoration>();
-  room->restoration_->keeper = std::move(place.keeper);
-  if (place.kept) {
-    auto repetition = room->beginRepetition(*std::move(place.kept));
-    if (!repetition) return repetition.error();
-    room->restoration_->repetition.emplace(*std::move(repetition));
-  }
+      new Room(std::move(name), rules, builder, outlets, std::move(room_water), *std::move(diary), std::move(access)));
+  if (auto begun = room->keeping_.begin(std::move(place)); !begun) return begun.error();
   return room;
 }
 
-std::shared_ptr<const RoomSnapshot> Room::snapshot() const {
-  const std::lock_guard lock(snapshot_mutex_);
-  return snapshot_;
+core::Result<bool> Room::restoreUntil(TimePoint deadline) {
+  const auto done = keeping_.restoreUntil(deadline);
+  if (!done || !*done) return done;
+  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+  reports_.begin();
+  publishVitals({});
+  return true;
 }
 
-void Room::publishSnapshot() {
-  auto fresh = std::make_shared<const RoomSnapshot>(RoomSnapshot{
-      water_->scene(), water_->sceneVersion(), time_.isPaused(), time_.speed(), boats_, water_->sim().gauges()});
-  const std::lock_guard lock(snapshot_mutex_);
-  snapshot_ = std::move(fresh);
+core::Result<void> Room::saveUntil(TimePoint deadline) {
+  if (change_.isLost()) return {};
+  water_->bind();
+  return keeping_.saveUntil(deadline);
+}
+
+void Room::releaseDevice() {
+  water_.reset();
+  if (diary_.keeper()) diary_.keeper()->finish();
+}
+
+// Any thread
+
+std::optional<wire::CommandRejection> Room::admit(Command command) {
+  auto refused = desk_.admit(std::move(command), *reports_.snapshot());
+  if (!refused) wake();
+  return refused;
 }
 
 bool Room::askForSnapshot() {
@@ -94,95 +100,59 @@ bool Room::askForSnapshot() {
   return true;
 }
 
-std::optional<StateKeeper::Status> Room::keptStatus() const {
+std::optional<history::StateKeeper::Status> Room::keptStatus() const {
   if (!diary_.keeper()) return std::nullopt;
   return diary_.keeper()->status();
-}
-
-std::shared_ptr<const RoomVitals> Room::vitals() const {
-  const std::lock_guard lock(snapshot_mutex_);
-  return vitals_;
-}
-
-void Room::publishVitals(TimePoint now) {
-  next_vitals_ = now + kVitalsInterval;
-  auto fresh = std::make_shared<RoomVitals>();
-  fresh->tick = tick();
-  fresh->time_s = water_->sim().time_s();
-  fresh->asleep = time_.isAsleep();
-  fresh->lost = is_lost_;
-  fresh->waiting_command_count = static_cast<std::uint32_t>(commands_.size());
-  fresh->dropped_frame_count = dropped_frames_;
-  fresh->tick_times = tick_meter_.times();
-  fresh->diagnostics = diagnostics();
-  const std::lock_guard lock(snapshot_mutex_);
-  vitals_ = std::move(fresh);
-}
-
-void Room::publishLoss() {
-  auto fresh = std::make_shared<RoomVitals>(*vitals());
-  fresh->lost = true;
-  const std::lock_guard lock(snapshot_mutex_);
-  vitals_ = std::move(fresh);
-}
-
-// One tick
-
-void Room::start(TimePoint now) {
-  time_.start(now);
-}
-
-Room::TimePoint Room::due() const {
-  const auto is_ready = [](const auto& work) { return work.wait_for(0s) == std::future_status::ready; };
-  if (change_ ? is_ready(change_->prepared) : build_ && is_ready(build_->water)) return ran_;
-  const bool is_stopped = is_lost_ || change_;
-  const bool stands_still = is_stopped || !time_.runs();
-  TimePoint next = stands_still ? ran_ + kStandingInterval : time_.due();
-  const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
-  if (!is_lost_ && water_->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
-  if (!stands_still) return next;
-  if (is_woken_ || (time_.stepsToCome() > 0 && !is_stopped)) return ran_;
-  if (commands_.size() > 0 || put_off_) no_later_than(ran_ + kWaitingCommandInterval);
-  if (is_lost_ && !build_) no_later_than(next_rebuild_);
-  if (has_people_news_) no_later_than(next_people_news_);
-  if (time_.isPaused() && !is_stopped && outlets_.sessionCount(*this) > 0) no_later_than(frames_.idleDue());
-  return next;
 }
 
 void Room::wake() {
   if (!is_woken_.exchange(true) && on_wake_) on_wake_();
 }
 
-void Room::run(TimePoint now, double thread_load) {
-  thread_load_ = thread_load;
+// One round
+
+Room::TimePoint Room::due() const {
+  const bool stands_still = change_.stopsTime() || !time_.runs();
+  TimePoint next = stands_still ? ran_ + kStandingInterval : time_.due();
+  const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
+  if (const auto change = change_.due(ran_)) no_later_than(*change);
+  if (!change_.isLost() && water_->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
+  if (!stands_still) return next;
+  if (is_woken_ || (time_.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
+  if (desk_.hasWork()) no_later_than(ran_ + kWaitingCommandInterval);
+  if (const auto people = reports_.due()) no_later_than(*people);
+  if (!change_.stopsTime() && time_.isPaused() && demand_->sessionCount() > 0)
+    no_later_than(frames_.schedule().idleDue());
+  return next;
+}
+
+void Room::run(TimePoint now, const ServerLoad& load) {
   is_woken_ = false;
+  ++round_count_;
   ran_ = now;
+  load_ = load;
   water_->bind();
   water_->reloadChangedShaders();
-  session_count_ = outlets_.sessionCount();
-  adoptWater(now);
-  if (isLost(now)) {
-    announce();
-    return;
-  }
+  if (const auto built = change_.takeBuilt(now)) waterChanged(*built, now);
+  if (change_.watchDevice(now)) return standStill();
   time_.beginRound(now);
-  handOverFrames();
+  frames_.handOver();
   const bool may_sleep = water_->scene().unwatched() == v1::UNWATCHED_SLEEP;
-  if (time_.watchOver(!may_sleep || outlets_.sessionCount(*this) > 0, now)) publishVitals(now);
+  if (time_.watchOver(!may_sleep || demand_->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
-  finishChange();
-  if (!time_.runs() || now >= time_.due()) applyCommands(now);
+  desk_.finishRelayout();
+  if (!time_.runs() || now >= time_.due()) desk_.carryOut(now);
   announce();
-  if (change_) {
+  if (change_.stopsTime()) {
     // The state stands still until the particles are laid out.
   } else if (time_.isPaused()) {
     advancePaused(now);
   } else if (time_.runs() && now >= time_.due()) {
     step(now);
   }
-  announceRecovery(now);
-  keepState(now);
-  handOverFrames();
+  if (reports_.tellRecovery(now)) actions_.boatsChanged();
+  if (!change_.stopsTime()) keeping_.keep(now);
+  frames_.handOver();
   if (now >= next_vitals_) publishVitals(now);
 }
 
@@ -191,25 +161,17 @@ void Room::step(TimePoint now) {
   const TimePoint end = timedStep();
   time_.ticked(now, end);
   restartIfOver();
-  const auto levels = frames_.afterTick({.time_s = water_->sim().time_s(),
-                                         .scheduled = scheduled,
-                                         .end = end,
-                                         .speed = time_.speed(),
-                                         .frame_rate_hz = water_->scene().stream().frame_rate_hz()});
-  if (levels) requestFrame(end, *levels);
+  frames_.afterTick(scheduled, end);
   time_.warnIfSlow(name_, end);
-  adaptFidelity(end);
+  change_.adapt(end);
 }
 
 void Room::advancePaused(TimePoint now) {
   if (time_.stepsToCome() > 0) {
-    const TimePoint end = timedStep();
-    if (time_.stepped()) frames_.setIdleDue(end);  // what was asked for is there to see at once
-    now = end;
+    now = timedStep();
+    if (time_.stepped()) frames_.schedule().setIdleDue(now);  // what was asked for is there to see at once
   }
-  if (now < frames_.idleDue()) return;
-  frames_.idleFrame(now);
-  requestFrame(now, core::LevelSet::all());
+  frames_.whilePaused(now);
 }
 
 Room::TimePoint Room::timedStep() {
@@ -223,88 +185,62 @@ Room::TimePoint Room::timedStep() {
   return end;
 }
 
-// Frames
-
-void Room::requestFrame(TimePoint now, core::LevelSet due) {
-  const v1::Scene& scene = water_->scene();
-  const WatchedLayers watched = outlets_.watched(*this, water_->sim().reducedCounts(), due);
-  wants_diagnostics_ = wants_diagnostics_ || watched.diagnostics;
-  sim::FrameRequest request{.bodies = scene.has_boats() && watched.bodies,
-                            .asked_s = core::monotonic_s(now),
-                            .state_id = water_->stateId(),
-                            .due = due};
-  for (std::size_t k = 0; k < core::kLevelCount; ++k) {
-    const sim::LayerRequest& layers = watched.levels[k];
-    request.levels[k] = {.surface = scene.has_wave() && layers.surface,
-                         .particles = scene.has_particles() && layers.particles,
-                         .foam = scene.foam().surface() && layers.foam};
-  }
-  if (request.isEmpty() || water_->sim().requestFrame(request)) return;
-  ++dropped_frames_;
-  frames_.setIdleDue(now + kDroppedFrameRetry);
+void Room::restartIfOver() {
+  const double after_s = water_->scene().restart_after_s();
+  if (after_s <= 0 || water_->sim().time_s() < after_s) return;
+  Command again;
+  again.message.mutable_reset();
+  (void)actions_.reset(again);  // refused while the disk is full: tried again at the next tick
 }
 
-void Room::handOverFrames() {
-  for (core::FrameView& frame : water_->sim().takeFrames()) {
-    frame.tick = water_->tickOf(frame.tick);
-    if (wants_diagnostics_) frame.diagnostics = diagnostics();
-    wants_diagnostics_ = false;
-    outlets_.frameReady(*this, std::move(frame));
+void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
+  using Water = WaterChange::Built::Water;
+  if (built.water != Water::kSame) {
+    frames_.restart();
+    tick_meter_.restart();
+    // The boats of a new scene have no owner yet, whatever their ids.
+    roster_.keepOnly(built.water == Water::kContinues ? water_->boatIds() : std::set<std::uint32_t>{});
+    publishVitals(now);
+    reports_.sceneChanged();
   }
-  if (wants_diagnostics_ && water_->sim().framesInFlight() == 0) {
-    wants_diagnostics_ = false;
-    core::FrameView frame;
-    frame.tick = tick();
-    frame.time_s = water_->sim().time_s();
-    frame.state_id = water_->stateId();
-    frame.diagnostics = diagnostics();
-    outlets_.frameReady(*this, std::move(frame));
-  }
+  reports_.news().recovered = built.recovered;
+  reports_.news().fidelity = built.fidelity;
+  if (built.answers_command) desk_.sceneChanged(built.outcome);
 }
 
-std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water) {
-  std::vector<core::DiagnosticsView::GaugeNow> out;
-  if (!water.gauges()) return out;
-  const std::vector<sim::GaugeHistory::Now> now = water.gauges()->now();
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    out.push_back({.name = water.scene().gauges[k].name,
-                   .elevation_m = now[k].reading.elevation_m,
-                   .velocity_x_mps = now[k].reading.velocity_x_mps,
-                   .velocity_z_mps = now[k].reading.velocity_z_mps,
-                   .highest_m = now[k].highest_m,
-                   .lowest_m = now[k].lowest_m});
+void Room::standStill() {
+  if (auto vitals = *this->vitals(); !vitals.lost) {
+    vitals.lost = true;  // the rest as it was: the device does not answer
+    vitals_.publish(std::move(vitals));
   }
-  return out;
+  desk_.rejectAll(wire::rejection(v1::REJECT_REASON_BUSY, "",
+                                  "the device failed and the room's water is being built anew: try again"));
+  announce();
 }
 
-core::DiagnosticsView Room::diagnostics() {
-  sim::WaterSim& water = water_->sim();
-  const TickMeter::Means& means = tick_meter_.takeMeans(water);
-  const sim::Health& h = water.health();
-  const sim::Derived& d = water.derived();
-  core::DiagnosticsView out;
-  out.step_ms = means.step_ms;
-  out.real_time_factor = time_.realTimeFactor();
-  out.substeps_count = d.substeps_count;
-  out.particle_count = water.particleCount();
-  out.max_particle_speed_mps = h.max_speed_mps;
-  out.max_elevation_m = h.max_elevation_m;
-  out.kinetic_energy_j = h.kinetic_energy_j;
-  out.potential_energy_j = h.potential_energy_j;
-  out.wave_energy_j = h.wave_energy_j;
-  out.mean_density_ratio = h.mean_density_ratio;
-  out.max_density_ratio = h.max_density_ratio;
-  out.nonfinite_count = water.nonfiniteCount();
-  out.escaped_count = water.escapedCount();
-  out.recovered_count = water.recoveredCount();
-  out.boat_count = water.boatCount();
-  out.volume_error_units = h.volume_error_units;
-  out.emitted_m3 = h.emitted_m3;
-  out.absorbed_m3 = h.absorbed_m3;
-  out.breaking_ratio = h.breaking_ratio;
-  out.passes = means.passes;
-  out.gauges = gaugesNow(water);
-  return out;
+void Room::settlePeople(TimePoint now) {
+  const Roster::Turn turn = roster_.settle(now);
+  for (const std::uint32_t boat_id : turn.boats_to_stop) actions_.stopBoat(boat_id);
+  reports_.tellPeople(turn.is_news, now);
+}
+
+void Room::announce() {
+  reports_.tell();
+  diary_.people(tick(), roster_.version(), [this] { return roster_.kept(); });
+  desk_.sendAnswers(outlets_);
+}
+
+void Room::publishVitals(TimePoint now) {
+  next_vitals_ = now + kVitalsInterval;
+  vitals_.publish({.tick = tick(),
+                   .time_s = water_->sim().time_s(),
+                   .asleep = time_.isAsleep(),
+                   .lost = change_.isLost(),
+                   .waiting_command_count = static_cast<std::uint32_t>(desk_.waitingCount()),
+                   .dropped_frame_count = frames_.droppedCount(),
+                   .tick_times = tick_meter_.times(),
+                   .diagnostics = frames_.diagnostics(),
+                   .fidelity_levels = water_->levelCosts().predict(tick_cost_)});
 }
 
 }  // namespace spindrift::rooms

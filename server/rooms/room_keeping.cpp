@@ -1,19 +1,17 @@
-// The state of a room on disk: what it writes while it runs, and how it continues from there after a restart.
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
 #include <fmt/chrono.h>
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/version.h>
-#include <spindrift/rooms/room.h>
+#include <spindrift/rooms/room_keeping.h>
 
 namespace spindrift::rooms {
 namespace {
 
-using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
 
 std::int64_t nowUnix_ms() {
   return std::chrono::duration_cast<std::chrono::milliseconds>(std::chrono::system_clock::now().time_since_epoch())
@@ -22,46 +20,31 @@ std::int64_t nowUnix_ms() {
 
 }  // namespace
 
-// While it runs
+// While the room runs
 
-void Room::flushKept() {
-  // A refusal promises nothing, and does not wait for the disk.
-  if (std::ranges::all_of(answers_, [](const Answer& one) { return one.rejected.has_value(); })) return;
-  const auto flushed = diary_.flush();
-  if (flushed) return;
-  for (Answer& answer : answers_) {
-    if (answer.rejected) continue;
-    answer.rejected =
-        rejection(v1::REJECT_REASON_BUSY, "",
-                  "it was carried out, but the server cannot keep it on disk: " + flushed.error().message);
-  }
-}
-
-void Room::keepState(TimePoint now) {
-  if (is_lost_ || change_) return;
-  if (diary_.wantsSnapshot(now, water_->stateId()))
+void RoomKeeping::keep(TimePoint now) {
+  if (parts_.diary.wantsSnapshot(now, parts_.water.stateId()))
     (void)save();
   else
-    diary_.progress(now, tick(), water_->stateId());
+    parts_.diary.progress(now, parts_.water.tick(), parts_.water.stateId());
 }
 
-core::Result<void> Room::save() {
-  const auto begin = std::chrono::steady_clock::now();
+core::Result<void> RoomKeeping::save() {
+  const auto begin = Clock::now();
   auto state = stateNow();
   if (!state) return core::Error{core::ErrorCode::kUnavailable, "the device does not answer"};
-  const double copy_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  diary_.save(*std::move(state), water_->stateId(), begin, copy_s);
+  const double copy_s = std::chrono::duration<double>(Clock::now() - begin).count();
+  parts_.diary.save(*std::move(state), parts_.water.stateId(), begin, copy_s);
   return {};
 }
 
-core::Result<void> Room::saveUntil(TimePoint deadline) {
-  StateKeeper* const keeper = diary_.keeper();
-  if (!keeper || is_lost_) return {};
-  water_->bind();
+core::Result<void> RoomKeeping::saveUntil(TimePoint deadline) {
+  history::StateKeeper* const keeper = parts_.diary.keeper();
+  if (!keeper) return {};
   const core::Error late{core::ErrorCode::kUnavailable, "the disk took too long"};
   // One that is being written is older. Without time for another the log says how far the room has come.
-  if (!keeper->outcome(deadline) || std::chrono::steady_clock::now() >= deadline) {
-    diary_.progressNow(tick(), water_->stateId());
+  if (!keeper->outcome(deadline) || Clock::now() >= deadline) {
+    parts_.diary.progressNow(parts_.water.tick(), parts_.water.stateId());
     return late;
   }
   if (auto begun = save(); !begun) return begun;
@@ -69,113 +52,88 @@ core::Result<void> Room::saveUntil(TimePoint deadline) {
   return saved ? *saved : late;
 }
 
-std::optional<v1::KeptState> Room::stateNow() {
+std::optional<v1::KeptState> RoomKeeping::stateNow() {
   v1::KeptState out;
   out.set_server(std::string(core::nameAndVersion()));
-  out.set_device(water_->device().name);
-  out.set_gl_version(water_->device().gl_version);
-  out.set_room(name_);
+  out.set_device(parts_.water.device().name);
+  out.set_gl_version(parts_.water.device().gl_version);
+  out.set_room(parts_.room);
   out.set_saved_at_ms(nowUnix_ms());
-  water_->save(out);
-  if (water_->failure()) return std::nullopt;  // a lost device reads as zeros
-  out.set_paused(time_.isPaused());
-  out.set_speed(time_.speed());
-  out.set_pending_tick_count(time_.stepsToCome());
-  out.set_chosen_fidelity(chosen_fidelity_);
-  *out.mutable_people() = roster_.kept();
-  *out.mutable_access() = access_;
+  parts_.water.save(out);
+  if (parts_.water.failure()) return std::nullopt;  // a lost device reads as zeros
+  out.set_paused(parts_.time.isPaused());
+  out.set_speed(parts_.time.speed());
+  out.set_pending_tick_count(parts_.time.stepsToCome());
+  out.set_chosen_fidelity(parts_.chosen_fidelity);
+  *out.mutable_people() = parts_.roster.kept();
+  *out.mutable_access() = parts_.access;
   return out;
 }
 
 // After a restart
 
-core::Result<bool> Room::restoreUntil(TimePoint deadline) {
+core::Result<void> RoomKeeping::begin(history::RoomPlace place) {
+  if (!place.keeper) return {};
+  restoration_.emplace(Restoration{.keeper = std::move(place.keeper), .room = std::nullopt});
+  if (!place.kept) return {};
+  auto room = history::RestoredRoom::begin(*std::move(place.kept), {parts_.water, parts_.builder});
+  if (!room) return room.error();
+  restoration_->room.emplace(*std::move(room));
+  return {};
+}
+
+core::Result<bool> RoomKeeping::restoreUntil(TimePoint deadline) {
   if (!restoration_) return true;
-  water_->bind();
-  if (auto& repetition = restoration_->repetition) {
-    const auto done = repeatUntil(*repetition, deadline);
+  parts_.water.bind();
+  if (auto& room = restoration_->room) {
+    const auto done = room->continueUntil(deadline);
     if (!done || !*done) return done;
-    restorePeople(repetition->kept());
+    parts_.diary.setRecovered(parts_.water.sim().recoveredCount());
+    const history::RepeatedRoom rest = room->room();
+    parts_.time.restore(parts_.water.sim().derived().tick_s, rest.speed, rest.is_paused, rest.pending_tick_count);
+    parts_.chosen_fidelity = rest.chosen_fidelity;
+    restorePeople(room->kept());
   }
-  diary_.keepIn(std::move(restoration_->keeper));
-  if (!restoration_->repetition) diary_.keeper()->openGap("its first snapshot is not on the disk yet");
+  parts_.diary.keepIn(std::move(restoration_->keeper));
+  if (!restoration_->room) parts_.diary.keeper()->openGap("its first snapshot is not on the disk yet");
   restoration_.reset();
-  first_snapshot_until_ = std::chrono::steady_clock::now() + rules_.disk_patience;
+  first_snapshot_until_ = Clock::now() + parts_.disk_patience;
   if (auto begun = save(); !begun) return cannotBeWritten(begun.error());
   return true;
 }
 
-core::Result<bool> Room::isOnDisk(TimePoint deadline) {
-  StateKeeper* const keeper = diary_.keeper();
+core::Result<bool> RoomKeeping::isOnDisk(TimePoint deadline) {
+  history::StateKeeper* const keeper = parts_.diary.keeper();
   if (!keeper) return true;
   const auto outcome = keeper->outcome(std::min(deadline, first_snapshot_until_));
   if (outcome && !*outcome) return cannotBeWritten(outcome->error());
   if (outcome) return true;
-  if (std::chrono::steady_clock::now() < first_snapshot_until_) return false;
+  if (Clock::now() < first_snapshot_until_) return false;
   spdlog::warn("room {}: its first snapshot is not on the disk after {}: the disk is slow; the room opens without it{}",
-               name_, rules_.disk_patience,
+               parts_.room, parts_.disk_patience,
                keeper->gap() ? " and refuses commands until it is there" : ", on what was there before");
   return true;
 }
 
-core::Error Room::cannotBeWritten(const core::Error& why) const {
+core::Error RoomKeeping::cannotBeWritten(const core::Error& why) const {
   // Not a fault of what was kept, whatever the reason.
-  return {core::ErrorCode::kUnavailable, "room " + name_ + ": its state cannot be written: " + why.message};
+  return {core::ErrorCode::kUnavailable, "room " + parts_.room + ": its state cannot be written: " + why.message};
 }
 
-void Room::restorePeople(const KeptRoom& kept) {
+void RoomKeeping::restorePeople(const history::KeptRoom& kept) {
   const v1::KeptState& state = *kept.state;
   v1::RoomPeople people = state.people();
-  for (const v1::StateRecord& record : kept.records) {
+  for (const v1::Record& record : kept.records) {
     if (record.has_people()) people = record.people();
   }
-  roster_.restore(people, std::chrono::steady_clock::now());
-  access_ = state.access();
-  boatsChanged();
-  boats_ = water_->boats();
-  publishSnapshot();
-  publishVitals({});
+  parts_.roster.restore(people, Clock::now());
+  parts_.roster.keepOnly(parts_.water.boatIds());
+  parts_.access = state.access();
   const auto when = std::chrono::system_clock::time_point(std::chrono::milliseconds(state.saved_at_ms()));
+  const std::uint64_t tick = parts_.water.tick();
   spdlog::info("room {}: continues at tick {} of scene {}, {} ticks and {} records after its snapshot of {:%F %T} UTC",
-               name_, tick(), water_->scene().name(), tick() - state.tick(), kept.records.size(),
+               parts_.room, tick, parts_.water.scene().name(), tick - state.tick(), kept.records.size(),
                fmt::gmtime(std::chrono::system_clock::to_time_t(when)));
-}
-
-core::Result<Repetition> Room::beginRepetition(KeptRoom kept) {
-  return Repetition::begin(std::move(kept), {*water_, time_, chosen_fidelity_, builder_});
-}
-
-core::Result<bool> Room::repeatUntil(Repetition& repetition, TimePoint deadline) {
-  const auto done = repetition.continueUntil(deadline);
-  if (!done || !*done) return done;
-  tick_cost_.restart(water_->warmTick_ms(), water_->work());
-  recovery_news_.restart(water_->sim().recoveredCount());
-  diary_.setRecovered(water_->sim().recoveredCount());
-  return true;
-}
-
-bool Room::restoreAfterLoss(std::unique_ptr<Water>& water) {
-  auto kept = diary_.keeper() ? diary_.keeper()->newest() : std::nullopt;
-  if (!kept) return false;
-  const std::uint64_t lost_tick = tick();
-  builder_.dispose(water_->replaceWater(std::move(water)));
-  auto repetition = beginRepetition(*std::move(kept));
-  const auto done = repetition ? repeatUntil(*repetition, TimePoint::max()) : core::Result<bool>(repetition.error());
-  if (!done) {
-    spdlog::error("room {}: its state cannot be restored: {}", name_, done.error().message);
-    water_->sim().reset();
-    is_lost_ = false;
-    restartScene(false);
-    return true;
-  }
-  water_->goOnAfter(lost_tick);
-  is_lost_ = false;
-  diary_.recovered(tick());
-  restartScene(true);
-  boatsChanged();
-  // Ticks have passed since the snapshot, and the log does not say so.
-  diary_.keeper()->openGap("the room continued after its device failed, and no snapshot says so yet");
-  return true;
 }
 
 }  // namespace spindrift::rooms

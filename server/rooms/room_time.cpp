@@ -27,18 +27,18 @@ void RoomTime::start(TimePoint now) {
 }
 
 void RoomTime::restart(double tick_s, bool keeps_steps, TimePoint now) {
-  restore(tick_s, clock_.speed(), is_paused_);
+  restore(tick_s, clock_.speed(), is_paused_, keeps_steps ? steps_to_come_ : 0);
   start(now);
   is_asleep_ = false;
-  if (!keeps_steps) steps_to_come_ = 0;
   slow_since_ = {};
 }
 
-void RoomTime::restore(double tick_s, double speed, bool is_paused) {
+void RoomTime::restore(double tick_s, double speed, bool is_paused, std::uint32_t steps_to_come) {
   tick_s_ = tick_s;
   clock_ = RealTimeClock(tick_s);
   if (speed > 0) clock_.setSpeed(speed);
   is_paused_ = is_paused;
+  steps_to_come_ = steps_to_come;
 }
 
 double RoomTime::meanRealTimeFactor(TimePoint now) const {

@@ -50,7 +50,8 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
   auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
   self->rules_ = std::move(rules);
   self->max_room_count_ = max_room_count;
-  self->builder_ = std::make_unique<WaterBuilder>(device, [raw = self.get()] { raw->wake(); });
+  self->builder_ =
+      std::make_unique<water::WaterBuilder>(device, self->rules_.scenes, [raw = self.get()] { raw->wake(); });
   self->opener_ = std::make_unique<RoomOpener>(self->rules_, *self->builder_, outlets);
   std::promise<core::Result<void>> built;
   auto outcome = built.get_future();
@@ -322,8 +323,10 @@ void SimulationThread::loop() {
     auto due = Clock::now() + std::chrono::milliseconds(100);
     if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
+    ServerLoad load{.thread_share = busy.value()};
+    for (const auto& room : rooms_) load.session_count += room->demand()->sessionCount();
     for (const auto& room : rooms_) {
-      if (const auto now = Clock::now(); room->due() <= now) room->run(now, busy.value());
+      if (const auto now = Clock::now(); room->due() <= now) room->run(now, load);
     }
     for (const auto& room : rooms_) due = std::min(due, room->due());
     lock.lock();

@@ -14,9 +14,7 @@ namespace {
 
 constexpr std::size_t kGaugeNameMaxBytes = 32;
 
-std::string metres(double value) {
-  return core::formatQuantity(value, "m");
-}
+using core::metres;
 
 std::string indexed(const char* list, int index) {
   return std::string(list) + "[" + std::to_string(index) + "]";

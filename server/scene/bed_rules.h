@@ -11,7 +11,7 @@ namespace spindrift::scene {
 /// Counts, names, and shapes that are missing.
 void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues);
 
-/// Sizes and places, in a scene with a wave.
+/// Sizes and positions, in a scene with a wave.
 void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues);
 
 }  // namespace spindrift::scene

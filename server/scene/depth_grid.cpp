@@ -21,7 +21,6 @@ constexpr int kGridSideMinCount = 2;
 constexpr int kGridSideMaxCount = static_cast<int>(kImageSideMaxCount);
 constexpr double kDepthMax_m = 100.0;
 constexpr double kLandMax_m = 9000.0;
-constexpr std::size_t kPathEchoMaxBytes = 200;
 
 void setPoints(v1::DepthGrid& grid, std::size_t columns, std::size_t rows, const std::vector<float>& depths_m) {
   for (std::size_t row = 0; row < rows; ++row)
@@ -48,7 +47,7 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
     if (row.size() != columns) {
       return addRange(issues, path,
                       std::to_string(row.size()) + " numbers, and the first row has " + std::to_string(columns) +
-                          "; give every row as many");
+                          "; give every row the same number");
     }
     for (const float depth_m : row) {
       if (!(depth_m >= -kLandMax_m && depth_m <= kDepthMax_m)) {
@@ -65,7 +64,7 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
 
 void readImage(v1::DepthGrid& grid, const std::optional<fs::path>& folder, std::vector<FieldIssue>& issues) {
   constexpr const char* kPath = "bed.grid.png";
-  const std::string shown = "\"" + core::quoteText(grid.png(), kPathEchoMaxBytes) + "\" ";
+  const std::string shown = "\"" + core::quoteText(grid.png(), kNameEchoMaxBytes) + "\" ";
   const auto file = fileInFolder(folder, grid.png(), "rows");
   if (!file) return addRange(issues, kPath, shown + file.error().message);
   const auto image = readGrayPng(*file);

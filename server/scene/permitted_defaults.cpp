@@ -12,7 +12,7 @@ namespace {
 
 /// Limits may follow from another field that was left out: that of a boat's beam from its length.
 constexpr int kPassCount = 2;
-/// Places that are tried for a boat.
+/// Positions that are tried for a boat.
 constexpr int kPlaceMaxCount = 400;
 
 /// `issues_of` returns the violations by the message; their paths end with the names of its fields.
@@ -30,7 +30,7 @@ void complete(Message& message, const IssuesOf& issues_of) {
   }
 }
 
-/// Moves the boat to the first permitted place on a spiral from the middle outward; leaves it where none is found.
+/// Moves the boat to the first permitted position on a spiral from the middle outward; leaves it where none is found.
 void findPlace(v1::Boat& boat, const v1::Scene& scene) {
   const WaterExtents water = waterExtentsOf(scene);
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));  // fills the water evenly

@@ -27,8 +27,8 @@ using google::protobuf::TextFormat;
 
 /// Maximum number of errors in a report; bounds the report for hostile input.
 constexpr std::size_t kMaxReportedErrorCount = 100;
-/// One more than reported shows that there are more. Bounded, because finding the place of an error reads the text from
-/// its start.
+/// One more than reported shows that there are more. Bounded, because finding the location of an error reads the text
+/// from its start.
 constexpr std::size_t kMaxKeptErrorCount = kMaxReportedErrorCount + 1;
 /// Maximum nesting of braces; a scene needs four.
 constexpr int kMaxNestingDepth = 32;
@@ -70,8 +70,8 @@ std::size_t offsetOf(std::string_view text, Location wanted) {
   return offset;
 }
 
-/// Returns the true place of an error. Some errors are found only when the parser is already behind the quoted word,
-/// possibly some lines later. The true place is the last occurrence of the word before that.
+/// Returns the true location of an error. Some errors are found only when the parser is already behind the quoted word,
+/// possibly some lines later. The true location is the last occurrence of the word before that.
 Location placeOf(std::string_view text, Location reported, std::string_view message) {
   for (const std::string_view phrase :
        {std::string_view("Unknown enumeration value of \""), std::string_view("has no field named \""),
@@ -164,7 +164,7 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
   }
 }
 
-/// Returns the place of a path ("events[1].effect.splash") in the text; if the field was left out, that of its
+/// Returns the location of a path ("events[1].effect.splash") in the text; if the field was left out, that of its
 /// innermost part.
 Location locate(const TextFormat::ParseInfoTree& root, std::string_view path) {
   Location best;

@@ -15,15 +15,11 @@ namespace {
 
 /// Maximum depression or crest over the depth; beyond it the bed would fall dry or the wave equation become invalid.
 constexpr double kMaxEffectDepthRatio = 0.9;
-/// Allows for rounding of "shift + scale * side / 2" where a patch ends exactly at the edge.
-constexpr double kEdgeToleranceRatio = 1e-9;
 constexpr std::size_t kNameMaxBytes = 64;
 constexpr std::size_t kTitleMaxBytes = 200;
 constexpr std::size_t kDescriptionMaxBytes = 4000;
 
-std::string metres(double value) {
-  return core::formatQuantity(value, "m");
-}
+using core::metres;
 
 void checkHeight(double value_m, double depth_m, const std::string& path, std::vector<FieldIssue>& issues) {
   const double max_m = kMaxEffectDepthRatio * depth_m;
@@ -144,9 +140,7 @@ void checkEventNumbers(const v1::TimedEvent& event, const v1::Scene& scene, cons
                  core::formatQuantity(tick_s, "s") + "; choose 0 (once) or at least a tick");
   }
   if (event.effect().effect_case() == v1::Effect::EFFECT_NOT_SET) return;
-  const core::Effect effect = event.effect().has_splash() ? core::Effect(toCore(event.effect().splash()))
-                                                          : core::Effect(toCore(event.effect().breaking_wave()));
-  for (FieldIssue& issue : checkEffect(effect, scene)) {
+  for (FieldIssue& issue : checkEffect(toCore(event.effect()), scene)) {
     issue.path = prefix + "effect." + issue.path;
     issues.push_back(std::move(issue));
   }

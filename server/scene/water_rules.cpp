@@ -19,12 +19,8 @@ constexpr double kMaxBoatSideRatio = 0.25;
 constexpr double kMaxBoatWidthRatio = 0.5;
 /// Draught over the water's depth of a boat whose height follows from the water.
 constexpr double kFittingDraughtRatio = 0.6;
-/// Allows for rounding of positions exactly on an edge.
-constexpr double kEdgeToleranceRatio = 1e-9;
 
-std::string metres(double value) {
-  return core::formatQuantity(value, "m");
-}
+using core::metres;
 
 std::string indexed(const char* list, int index) {
   return std::string(list) + "[" + std::to_string(index) + "]";
@@ -167,7 +163,7 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     for (int k = 0; k < i; ++k) {
       if (scene.beaches(k).side() != beach.side()) continue;
       addRange(issues, prefix + "side",
-               v1::Side_Name(beach.side()) + " has " + indexed("beaches", k) + " already; one a side");
+               v1::Side_Name(beach.side()) + " has " + indexed("beaches", k) + " already; one per side");
     }
     const core::WaveCells cells = waveCellsOf(wave);
     const bool along_x = beach.side() != v1::SIDE_PLUS_Z && beach.side() != v1::SIDE_MINUS_Z;
@@ -285,7 +281,7 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
     if (!hits) continue;
     addRange(issues, prefix + "x_m",
              metres(boat.x_m) + ", z " + metres(boat.z_m) + " lies in " + indexed("obstacles", i) +
-                 "; choose a place in open water");
+                 "; choose a position in open water");
   }
   return issues;
 }

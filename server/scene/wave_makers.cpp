@@ -24,12 +24,9 @@ constexpr double kMaxHeightRatio = 0.78;
 constexpr double kMaxSignificantRatio = 0.4;
 constexpr double kSeriesMaxTime_s = 86400.0;
 constexpr std::size_t kSeriesFileMaxBytes = 1024 * 1024;
-constexpr std::size_t kPathEchoMaxBytes = 200;
 constexpr std::size_t kLineEchoMaxBytes = 60;
 
-std::string metres(double value) {
-  return core::formatQuantity(value, "m");
-}
+using core::metres;
 
 std::string makerPath(int index) {
   return "wave_makers[" + std::to_string(index) + "]";
@@ -56,7 +53,7 @@ void checkSide(const v1::Scene& scene, int index, std::vector<FieldIssue>& issue
   }
   for (int k = 0; k < index; ++k) {
     if (scene.wave_makers(k).side() != side) continue;
-    addRange(issues, path, v1::Side_Name(side) + " has " + makerPath(k) + " already; one a side");
+    addRange(issues, path, v1::Side_Name(side) + " has " + makerPath(k) + " already; one per side");
   }
 }
 
@@ -67,7 +64,7 @@ void checkSeries(const v1::ElevationSeries& series, double depth_m, const std::s
   if (count != series.elevation_m_size()) {
     return addRange(issues, path + ".elevation_m",
                     std::to_string(series.elevation_m_size()) + " elevations at " + std::to_string(count) +
-                        " times; give as many of both");
+                        " times; give the same number of both");
   }
   if (count < 2 || count > kSceneSeriesRowMaxCount) {
     return addRange(issues, path + ".time_s",
@@ -121,7 +118,7 @@ bool readRow(std::string_view line, double& time_s, double& elevation_m) {
 
 void readFile(v1::ElevationSeries& series, const std::optional<fs::path>& folder, const std::string& path,
               std::vector<FieldIssue>& issues) {
-  const std::string shown = "\"" + core::quoteText(series.file(), kPathEchoMaxBytes) + "\" ";
+  const std::string shown = "\"" + core::quoteText(series.file(), kNameEchoMaxBytes) + "\" ";
   const auto file = fileInFolder(folder, series.file(), "time_s and elevation_m");
   if (!file) return addRange(issues, path, shown + file.error().message);
   const auto text = core::readText(*file, kSeriesFileMaxBytes, "a text file", "give fewer rows");
@@ -190,32 +187,6 @@ void checkMakerNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) 
     checkSide(scene, i, issues);
     checkWaves(scene.wave_makers(i), scene.wave().depth_m(), makerPath(i), issues);
   }
-}
-
-core::WaveMaker toCore(const v1::WaveMaker& in) {
-  core::WaveMaker out;
-  out.side = toCore(in.side());
-  out.begin_s = in.begin_s();
-  out.duration_s = in.duration_s();
-  if (in.has_irregular()) {
-    const v1::IrregularWaves& waves = in.irregular();
-    out.waves = core::IrregularWaves{.significant_height_m = waves.significant_height_m(),
-                                     .peak_period_s = waves.peak_period_s(),
-                                     .peak_enhancement_ratio = waves.peak_enhancement_ratio(),
-                                     .waves_count = waves.waves_count(),
-                                     .seed = waves.seed()};
-  } else if (in.has_solitary()) {
-    out.waves = core::SolitaryWave{.height_m = in.solitary().height_m()};
-  } else if (in.has_series()) {
-    out.waves =
-        core::ElevationSeries{.time_s = {in.series().time_s().begin(), in.series().time_s().end()},
-                              .elevation_m = {in.series().elevation_m().begin(), in.series().elevation_m().end()}};
-  } else {
-    v1::RegularWaves waves = in.regular();
-    fillMessageDefaults(waves);
-    out.waves = core::RegularWaves{.height_m = waves.height_m(), .period_s = waves.period_s()};
-  }
-  return out;
 }
 
 }  // namespace spindrift::scene

@@ -1,11 +1,10 @@
-// The wave-makers of a scene: their rules, their series of elevations, and their form in core.
+// The wave-makers of a scene: their rules, and their series of elevations.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <vector>
 
-#include <spindrift/core/scene.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/v1/scene.pb.h>
 
@@ -21,8 +20,5 @@ void checkMakerStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues
 /// Sides, heights over the depth, and series, in a scene with a wave. Rules that need the waves' lengths are those of
 /// sim::derive().
 void checkMakerNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues);
-
-/// Precondition: defaults are filled in.
-core::WaveMaker toCore(const v1::WaveMaker& maker);
 
 }  // namespace spindrift::scene

@@ -78,7 +78,7 @@ class ScriptClient {
   [[nodiscard]] std::uint64_t malformedCount() const { return malformed_count_; }
 
  private:
-  /// Where and when to connect again, after a Draining message.
+  /// Address and times of the next connection, after a Draining message.
   struct Move {
     net::ClientUrl url;
     Clock::time_point next;      ///< of the next attempt

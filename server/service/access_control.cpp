@@ -72,7 +72,7 @@ bool AccessControl::takeCommand(const std::string& person) {
 
 std::string AccessControl::busy() const {
   return fmt::format(
-      "more than {:g} commands a second after a burst of {:g} by one person, over all sessions and rooms: slow down",
+      "more than {:g} commands per second after a burst of {:g} by one person, over all sessions and rooms: slow down",
       people_.commandsPerSecond(), people_.burstCount());
 }
 

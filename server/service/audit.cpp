@@ -6,7 +6,7 @@
 namespace spindrift::service {
 namespace {
 
-/// Lines that anybody can cause: with 300 bytes each at most 26 MB a day.
+/// Lines that anybody can cause: with 300 bytes each at most 26 MB per day.
 constexpr double kRareLinesPerSecond = 1.0;
 constexpr double kRareBurstCount = 60.0;
 

@@ -7,7 +7,7 @@
 namespace spindrift::service {
 
 v1::Draining beginDrain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to) {
-  /// A server that is started again can take this many clients a second: handshake, greeting and keyframes.
+  /// A server that is started again can take this many clients per second: handshake, greeting and keyframes.
   constexpr double kReturnsPerS = 200.0;
   constexpr double kRestart_s = 1.0;  // shortest time in which a server comes back
   const double closes_in_s = std::chrono::duration<double>(closes_in).count();

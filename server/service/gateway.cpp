@@ -26,11 +26,6 @@ void Gateway::join(const ClusterHooks& cluster) {
   rest_.join(cluster);
 }
 
-void Gateway::serverStarts(net::Hub& served) {
-  sessions_.serve(served);
-  rest_.serverStarts(served);
-}
-
 std::shared_ptr<Venue> Gateway::find(const std::string& room) {
   if (auto here = simulation().find(room)) return std::make_shared<LocalRoom>(std::move(here), simulation(), sessions_);
   return cluster_.cluster ? cluster_.cluster->find(room) : nullptr;
@@ -100,55 +95,7 @@ void Gateway::closed(const rooms::Room& room) {
 }
 
 void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
-  encoder_->submit(room.name(), std::move(frame));
-}
-
-rooms::WatchedLayers Gateway::watched(const rooms::Room& room, const core::ReducedCounts& counts,
-                                      core::LevelSet due) const {
-  rooms::WatchedLayers out;
-  for (const codec::Stream& stream : codec::allStreams()) {
-    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, counts);
-    const auto of_levels = core::demandOfFrame(demand(room.name(), stream, reduced_count), reduced_count,
-                                               codec::levelsTaking(stream.layer, due));
-    const auto is_watched = [](const core::LevelDemand& level) { return level.watcher_count > 0; };
-    const auto note = [&](bool sim::LayerRequest::*layer) {
-      for (std::size_t k = 0; k < core::kLevelCount; ++k) out.levels[k].*layer |= is_watched(of_levels[k]);
-    };
-    switch (stream.layer) {
-      case v1::LAYER_SURFACE:
-        note(&sim::LayerRequest::surface);
-        break;
-      case v1::LAYER_PARTICLES:
-        note(&sim::LayerRequest::particles);
-        break;
-      case v1::LAYER_FOAM:
-        note(&sim::LayerRequest::foam);
-        break;
-      case v1::LAYER_BODIES:
-        out.bodies |= is_watched(of_levels[core::indexOf(core::Level::kFull)]);
-        break;
-      case v1::LAYER_DIAGNOSTICS:
-        out.diagnostics |= is_watched(of_levels[core::indexOf(core::Level::kFull)]);
-        break;
-      default:
-        break;
-    }
-  }
-  return out;
-}
-
-std::size_t Gateway::sessionCount(const rooms::Room& room) const {
-  return hub().sessionCount(room.name()) + (cluster_.audience ? cluster_.audience->sessionCount(room.name()) : 0);
-}
-
-std::size_t Gateway::sessionCount() const {
-  return hub().sessionCount() + (cluster_.audience ? cluster_.audience->sessionCount("") : 0);
-}
-
-core::StreamDemand Gateway::demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const {
-  core::StreamDemand out = demandOf(hub(), room, stream, reduced_count);
-  if (cluster_.audience) cluster_.audience->addDemand(room, stream, reduced_count, out);
-  return out;
+  encoder_->submit(room.name(), room.demand(), std::move(frame));
 }
 
 void Gateway::publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,

@@ -18,7 +18,7 @@ constexpr std::size_t kKeptMaxCount = 64;
 }  // namespace
 
 v1::Ground groundOf(const core::Scene& scene) {
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   const auto [count_x, count_z] = water.count;
   std::vector<double> rise_m;
   rise_m.reserve(water.count.total());

@@ -6,6 +6,7 @@ namespace spindrift::service {
 
 std::shared_ptr<const VenueView> LocalRoom::view() const {
   return std::make_shared<const VenueView>(VenueView{.room = room_->snapshot(),
+                                                     .levels = room_->vitals()->fidelity_levels,
                                                      .device = rooms_.deviceLine(),
                                                      .scenes = rooms_.rules().scenes.names(),
                                                      .room_access = room_->access(),

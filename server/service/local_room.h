@@ -20,10 +20,11 @@ class LocalRoom final : public Venue {
   [[nodiscard]] const std::string& name() const override { return room_->name(); }
   [[nodiscard]] std::shared_ptr<const VenueView> view() const override;
   [[nodiscard]] v1::People people() const override { return room_->roster().people(); }
+  [[nodiscard]] std::shared_ptr<core::DemandTable> demand() const override { return room_->demand(); }
   [[nodiscard]] bool isOpen() const override { return rooms_.find(room_->name()) == room_; }
   void arrive(const rooms::Arrival& arrival, Arrived arrived) override { arrived(room_->roster().arrive(arrival)); }
   void leave(core::SessionId session) override { room_->roster().leave(session, rooms::Roster::Clock::now()); }
-  void watchesChanged() override { room_->wake(); }  // rooms ask the hub before each frame
+  void watchesChanged() override { room_->wake(); }
   void command(const rooms::Command& command) override;
 
  private:

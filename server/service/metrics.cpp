@@ -69,7 +69,7 @@ void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
 
 /// Of the rooms that are kept on disk.
 void writeKept(Page& page, const std::vector<std::shared_ptr<rooms::Room>>& rooms) {
-  using Status = rooms::StateKeeper::Status;
+  using Status = history::StateKeeper::Status;
   std::vector<std::pair<std::string, Status>> kept;
   for (const auto& room : rooms) {
     if (auto status = room->keptStatus()) kept.emplace_back(metricLabel("room", room->name()), *status);
@@ -110,11 +110,11 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return scene::rankOf(r.snapshot->scene.fidelity()); });
   each("room_asleep", "gauge", "1 while nobody is connected and the scene sleeps then.",
        [](Sample r) { return r.vitals->asleep ? 1 : 0; });
-  each("room_lost", "gauge", "1 while the device has failed and the water is built anew.",
+  each("room_lost", "gauge", "1 while the device has failed and the water is built again.",
        [](Sample r) { return r.vitals->lost ? 1 : 0; });
   each("room_step_seconds", "gauge", "Time of a tick on the simulation thread, mean of the last quarter second.",
        [](Sample r) { return r.vitals->diagnostics.step_ms / 1e3; });
-  each("room_substeps", "gauge", "Substeps a tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
+  each("room_substeps", "gauge", "Substeps per tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
   each("room_particles", "gauge", "Particles now.", [](Sample r) { return r.vitals->diagnostics.particle_count; });
   each("room_boats", "gauge", "Boats on the water.", [](Sample r) { return r.vitals->diagnostics.boat_count; });
   each("room_sessions", "gauge", "Sessions in the room.", [](Sample r) { return r.session_count; });
@@ -277,12 +277,12 @@ std::string metric(const char* name, const char* type, const char* help, double 
   return page.take();
 }
 
-std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
+std::string metricsText(const rooms::SimulationThread& rooms, const CommandCounters& commands,
                         const AccessControl& access, const MetricsSources& sources) {
   const rooms::EncoderThread* const encoder = sources.encoder;
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {
-    samples.push_back({metricLabel("room", room->name()), hub.sessionCount(room->name()),
+    samples.push_back({metricLabel("room", room->name()), room->demand()->sessionCount(),
                        room->roster().people().people_size(), room->snapshot(), room->vitals(),
                        encoder ? encoder->frameCounts(room->name()) : rooms::EncoderThread::FrameCounts{}});
   }

@@ -5,6 +5,7 @@
 
 #include <spindrift/codec/gauge_message.h>
 #include <spindrift/core/room_name.h>
+#include <spindrift/core/text.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/rest_api.h>
@@ -116,14 +117,14 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
       return respond(text(503, "the simulation has stood still for " + std::to_string(since_s) + " s\n"));
     for (const auto& room : rooms_->rooms()) {
       if (room->vitals()->lost)
-        return respond(text(503, "room " + room->name() + ": the device failed, its water is being built anew\n"));
+        return respond(text(503, "room " + room->name() + ": the device failed, its water is being built again\n"));
     }
     return respond(text(200, "ready\n"));
   }
   if (request.path == "/metrics") {
     return respond(HttpReply{.status = 200,
                              .content_type = "text/plain; version=0.0.4; charset=utf-8",
-                             .body = metricsText(*rooms_, *hub_, counters_, access_, sources_) +
+                             .body = metricsText(*rooms_, counters_, access_, sources_) +
                                      (cluster_.metrics ? cluster_.metrics() : std::string())});
   }
   if (!request.path.starts_with(kRoot)) return respond(std::nullopt);
@@ -189,11 +190,11 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
   const auto fidelity =
       wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
   auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
-  if (!scene) return respond(problem(500, "scene: " + rooms::firstLine(scene.error().message)));
+  if (!scene) return respond(problem(500, "scene: " + core::firstLine(scene.error().message)));
   const auto done = [this, wanted = *wanted, who = call.details(wanted->name()), role = call.grant.role,
                      shown = std::move(tokens->shown),
                      respond = std::move(respond)](const core::Result<void>& opened) mutable {
-    const std::string error = opened ? "" : rooms::firstLine(opened.error().message);
+    const std::string error = opened ? "" : core::firstLine(opened.error().message);
     access_.audit().request("room_opened", who, role, wire::toJson(wanted), error);
     if (!opened) return respond(problem(statusOf(opened.error()), error));
     v1::RoomInfo out;
@@ -380,8 +381,7 @@ void RestApi::fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const {
   out.set_tick(vitals->tick);
   out.set_time_s(vitals->time_s);
   out.set_real_time_factor(vitals->diagnostics.real_time_factor);
-  const std::size_t remote_count = cluster_.audience ? cluster_.audience->sessionCount(room.name()) : 0;
-  out.set_session_count(static_cast<std::uint32_t>(hub_->sessionCount(room.name()) + remote_count));
+  out.set_session_count(static_cast<std::uint32_t>(room.demand()->sessionCount()));
   out.set_boat_count(static_cast<std::uint32_t>(snapshot->boats.boats_size()));
   out.set_fidelity(snapshot->scene.fidelity());
 }

@@ -44,15 +44,23 @@ void Sessions::opened(net::SessionId session, const std::shared_ptr<Venue>& venu
   spdlog::info("session {} from {} joins room {}", session, peer, venue->name());
   greet(session, *venue);
   hub().closeAt(session, now + rules_.hello_patience, net::CloseCode::kPolicy,
-                "no hello came in time: send ClientMessage.hello first");
+                "Hello did not arrive in time: send ClientMessage.hello first");
   // The room may have closed meanwhile, and dismiss() may have run before this session was in its list.
   if (!venue->isOpen()) refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
 void Sessions::greet(net::SessionId session, const Venue& venue) {
+  const std::lock_guard in_order(greeting_mutex_);
   const auto view = venue.view();
   if (!view) return;
   const rooms::RoomSnapshot& room = *view->room;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto known = sessions_.find(session);
+    if (known == sessions_.end()) return;
+    const auto before = std::exchange(known->second.greeted, view);
+    if (before && before->room == view->room) return;
+  }
   wire::GreetingFacts facts;
   facts.server = core::nameAndVersion();
   facts.device = view->device;
@@ -71,9 +79,8 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   facts.speed = room.speed;
   facts.boats = room.boats;
   facts.scenes = view->scenes;
+  facts.levels = view->levels;
   hub().sendState(session, topic::kGreeting, wire::greeting(facts, room.scene));
-  const std::lock_guard lock(mutex_);
-  if (const auto known = sessions_.find(session); known != sessions_.end()) known->second.greeted = view;
 }
 
 void Sessions::roomChanged(const Venue& venue) {
@@ -195,7 +202,7 @@ void Sessions::hello(net::SessionId session, const State& state, const wire::Hel
       return refuse(session, net::CloseCode::kPolicy, *why);
   }
   if (state.stage != Stage::kNew)
-    return refuse(session, net::CloseCode::kPolicy, "hello was said before: once is enough");
+    return refuse(session, net::CloseCode::kPolicy, "Hello was sent before: send it once");
   const auto now = std::chrono::system_clock::now();
   const std::string& room = state.venue->name();
   const auto grant = access_.resolve(hello.token, {{room, view ? view->room_access : v1::RoomAccess{}}}, now);
@@ -239,14 +246,12 @@ void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::R
   if (!admission) return refuse(session, net::CloseCode::kTryAgainLater, admission.error().message);
   if (admission->displaced) displace(*admission->displaced);
   std::shared_ptr<Venue> venue;
-  std::shared_ptr<const VenueView> greeted;
   {
     const std::lock_guard lock(mutex_);
     const auto it = sessions_.find(session);
     if (it == sessions_.end()) return;  // it ended meanwhile; closed() has told the room
     State& kept = it->second;
     venue = kept.venue;
-    greeted = kept.greeted;
     kept.wire_minor = hello.minor;
     kept.role = role;
   }
@@ -255,13 +260,13 @@ void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::R
   welcome(session, *admission, role, *venue);
   // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
   // greeting.
-  hub().join(session, venue->name());
+  hub().join(session, venue->name(), venue->demand());
   venue->watchesChanged();
-  if (const auto now_there = venue->view(); now_there && (!greeted || now_there->room != greeted->room)) {
-    if (auto why = wire::checkWater(hello.minor, now_there->room->scene))
+  if (const auto view = venue->view()) {
+    if (auto why = wire::checkWater(hello.minor, view->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);
-    greet(session, *venue);
   }
+  greet(session, *venue);
   hub().sendState(session, topic::kPeople, wire::people(venue->people()));
   handleWaiting(session);
 }
@@ -340,15 +345,15 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
     return commandRejected(command, {.command_id = command.id(),
                                      .reason = v1::REJECT_REASON_NO_HELLO,
                                      .field = "",
-                                     .message = "say hello before the first command"});
+                                     .message = "a command before Hello: send ClientMessage.hello first"});
   }
   if (!takeCommand(session)) {
-    return commandRejected(command,
-                           {.command_id = command.id(),
-                            .reason = v1::REJECT_REASON_BUSY,
-                            .field = "",
-                            .message = fmt::format("more than {:g} commands a second after a burst of {:g}: slow down",
-                                                   rules_.commands_per_s, rules_.command_burst_count)});
+    return commandRejected(
+        command, {.command_id = command.id(),
+                  .reason = v1::REJECT_REASON_BUSY,
+                  .field = "",
+                  .message = fmt::format("more than {:g} commands per second after a burst of {:g}: slow down",
+                                         rules_.commands_per_s, rules_.command_burst_count)});
   }
   if (!access_.takeCommand(state.person)) {
     return commandRejected(

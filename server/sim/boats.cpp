@@ -42,8 +42,7 @@ State startingState(const core::Boat& boat, std::uint32_t boat_id) {
 }
 
 Error unknownBoat(std::uint32_t boat_id) {
-  return {ErrorCode::kInvalidInput,
-          fmt::format("boat_id: {} is not on the water; the boat list tells who is", boat_id)};
+  return {ErrorCode::kInvalidInput, fmt::format("boat_id: {} is not on the water; see the boat list", boat_id)};
 }
 
 }  // namespace
@@ -77,7 +76,7 @@ void Boats::reset(const core::Scene& scene) {
   for (State& state : states) state[6] = kNobody;
   std::ranges::fill(places_, Place{});
   std::uint32_t boat_id = first_id_;
-  // create() has checked that there are enough places.
+  // create() has checked that there are enough slots.
   for (std::size_t at = 0; at < scene.boats->boats.size(); ++at) {
     places_[at] = {boat_id++, scene.boats->boats[at]};
     states[at] = startingState(places_[at].boat, places_[at].boat_id);
@@ -108,7 +107,7 @@ core::Result<std::uint32_t> Boats::spawn(const core::Boat& boat) {
   if (next_id_ > kBoatIdMax) {
     return Error{
         ErrorCode::kUnavailable,
-        fmt::format("boats: {} were launched in this room, the most there can be; open another room", kBoatIdMax)};
+        fmt::format("boats: the limit of {} boats launched in a room is reached; open another room", kBoatIdMax)};
   }
   if (auto launched = launch(boat, next_id_); !launched) return launched.error();
   return next_id_++;
@@ -118,7 +117,7 @@ core::Result<void> Boats::launch(const core::Boat& boat, std::uint32_t boat_id) 
   const auto free = std::ranges::find(places_, 0u, &Place::boat_id);
   if (free == places_.end()) {
     return Error{ErrorCode::kUnavailable,
-                 fmt::format("boats: all {} places are taken; remove a boat first", places_.size())};
+                 fmt::format("boats: the limit of {} boats is reached; remove a boat first", places_.size())};
   }
   *free = {boat_id, boat};
   state_.upload(startingState(boat, free->boat_id), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));

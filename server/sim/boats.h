@@ -9,14 +9,13 @@
 
 #include <shared/boats.h>
 
-#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim/boat_record.h>
-#include <spindrift/sim/carried_state.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_state/carried_state.h>
 
 #include "wave.h"
 
@@ -34,12 +33,14 @@ class Boats {
   void numberFrom(std::uint32_t first_id);
   /// Returns a number above every id in use or used before.
   [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
-  /// Everything but the device's state, and its replacement; that of state() is copied apart.
+  /// Its state on the device, which recovery mends.
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &state_, .carried = true}); }
+  /// Everything but the device's state, and its replacement.
   [[nodiscard]] CarriedBoats carried() const { return {places_, first_id_, next_id_}; }
   void takeOver(const CarriedBoats& carried);
-  /// Returns whether takeOver() may be called: as many places as here.
+  /// Returns whether takeOver() may be called: as many slots as here.
   [[nodiscard]] bool fits(const CarriedBoats& carried) const { return carried.places.size() == places_.size(); }
-  /// Returns the new boat's id. kUnavailable when all places or all ids are taken.
+  /// Returns the new boat's id. kUnavailable when all slots or all ids are taken.
   core::Result<std::uint32_t> spawn(const core::Boat& boat);
   /// kInvalidInput for an unknown boat.
   core::Result<void> control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
@@ -58,7 +59,6 @@ class Boats {
 
   [[nodiscard]] std::vector<BoatRecord> records() const;
   [[nodiscard]] std::uint32_t count() const;
-  [[nodiscard]] gpu::TexelBuffer& state() { return state_; }
 
  private:
   Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m);

@@ -21,6 +21,7 @@ class Breakers {
                                                         const gpu::Defines& defines);
 
   void clear();
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &now_, .checkpoint = true, .carried = true}); }
   /// Call it after Wave::sampleSurface(). `pool` receives the list of emitting cells; null except in two-way scenes.
   void update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick);
 

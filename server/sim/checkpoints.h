@@ -23,7 +23,7 @@ class Checkpoints {
   void save(std::uint64_t tick);
   /// Reports that the state at `tick` was good: confirms the copies made up to it.
   void confirm(std::uint64_t tick);
-  /// Restores the last good copy and returns the factor for its flow (see scaleFlow()); nullopt when there is none. A
+  /// Restores the last good copy and returns the factor for its flow (see scaleFlow()); nullopt without a good copy. A
   /// copy is restored once: if the water needs another recovery before a later copy is confirmed, this one led to the
   /// fault (parameters may have changed since it was made), and it is dropped.
   std::optional<double> restore();

@@ -28,8 +28,8 @@ struct Partial {
 };
 static_assert(sizeof(Partial) == 48);
 /// Slots for the ticks in flight, for the tick that is measured now, and for results that poll() has not yet returned.
-constexpr std::size_t kSlotCount = 8;
-static_assert(kSlotCount > TicksInFlight::kMaxCount + 1);
+constexpr std::size_t kReadingSlotCount = 8;
+static_assert(kReadingSlotCount > TicksInFlight::kMaxCount + 1);
 /// Of water without particles.
 constexpr double kWaterDensity_kgpm3 = 1000.0;
 
@@ -107,7 +107,7 @@ core::Result<void> Diagnostics::resize(const Derived& derived) {
          gpu::ReadbackRing::create(ctx_, "diagnostics",
                                    (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) +
                                        (gauges_ ? gauges_->readings().sizeBytes() : 0),
-                                   kSlotCount));
+                                   kReadingSlotCount));
   if (create.error()) return *create.error();
   particle_sums_ = std::move(sums);
   ring_ = std::move(ring);

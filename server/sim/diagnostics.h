@@ -45,7 +45,7 @@ class Diagnostics {
   std::vector<Health> poll();
 
  private:
-  /// What the sums of a tick in flight mean.
+  /// Values that turn the sums of a tick in flight into SI units.
   struct Scale {
     std::uint64_t tick = 0;
     double gravity_mps2 = 0.0;
@@ -57,7 +57,7 @@ class Diagnostics {
   };
 
   explicit Diagnostics(gpu::Context& ctx) : ctx_(ctx) {}
-  /// Where the words of the pool, and then the readings of the gauges, begin in a slot.
+  // Offsets in a slot [bytes]: words of the pool, and behind them readings of the gauges.
   [[nodiscard]] std::size_t poolOffset() const;
   [[nodiscard]] std::size_t gaugeOffset() const;
 

@@ -9,7 +9,7 @@
 #include <shared/dispersion_uniforms.h>
 #include <shared/groups.h>
 
-#include <spindrift/sim_setup/half.h>
+#include <spindrift/core/half.h>
 
 #include "create_all.h"
 
@@ -33,7 +33,8 @@ std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four
   for (std::size_t i = 0; i < out.size(); ++i) {
     const Four& a = first[i];
     const Four& b = second[i];
-    out[i] = {packHalves(a[0], a[1]), packHalves(a[2], a[3]), packHalves(b[0], b[1]), packHalves(b[2], b[3])};
+    out[i] = {core::packHalves(a[0], a[1]), core::packHalves(a[2], a[3]), core::packHalves(b[0], b[1]),
+              core::packHalves(b[2], b[3])};
   }
   return out;
 }
@@ -53,7 +54,7 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   // One work group takes fewer dispatches for the bottom, but has only one core.
   const std::size_t bottom = bottomOf(dispersionGrids(layout));
   bool is_narrow[2] = {false, false};
-  auto out = std::unique_ptr<DispersedSlope>(new DispersedSlope(ctx));
+  auto out = std::unique_ptr<DispersedSlope>(new DispersedSlope(ctx, keeps_last_step));
   Creation create;
   for (std::size_t k = 0; k <= bottom; ++k) {
     const std::size_t cells = dispersion.levels[k].stiffness.size();
@@ -87,7 +88,8 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
   create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
   create(out->dispersed_, TexelBuffer::create(ctx, "dispersed slope", layout.counts().total(),
-                                              keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F));
+                                              keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F,
+                                              keeps_last_step ? gpu::BufferContent::kZero : kScratch));
   for (std::size_t finest = 0; finest < 2; ++finest) {
     gpu::Defines of_grid = defines;
     of_grid.emplace_back("FINEST", std::to_string(finest));
@@ -108,6 +110,12 @@ core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Contex
   }
   out->upload(dispersion);
   return out;
+}
+
+void DispersedSlope::declareState(StateBuffers& out) {
+  if (keeps_last_step_) out.push_back({.buffer = &dispersed_, .checkpoint = true});
+  for (Grid& grid : grids_)
+    if (grid.right) out.push_back({.buffer = &grid.right, .lasts = false});  // overwritten, except cells that stay 0
 }
 
 void DispersedSlope::upload(const WaveLayout& layout, const Basin& basin) {

@@ -8,6 +8,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/dispersion.h>
 
 namespace spindrift::sim {
@@ -25,8 +26,9 @@ class DispersedSlope {
   /// scene has one, PRESSURE_HEAD, nx x nz [units]; with a nonlinear bulk SURFACE_RISE, nx x nz x 2 [units per cell].
   void compute();
   /// nx x nz x 2: F grad(eta) at the faces that a cell owns [m * units per cell]. If it keeps the last step, nx x nz x
-  /// 4: the same of the last step behind; then the next steps depend on it.
+  /// 4: the same of the last step behind, which a nonlinear bulk takes into the next one (wave/dispersed_share.glsl).
   [[nodiscard]] gpu::TexelBuffer& texels() { return dispersed_; }
+  void declareState(StateBuffers& out);
 
  private:
   struct Grid {
@@ -42,7 +44,7 @@ class DispersedSlope {
     gpu::Program solve;
   };
 
-  explicit DispersedSlope(gpu::Context& ctx) : ctx_(ctx) {}
+  DispersedSlope(gpu::Context& ctx, bool keeps_last_step) : ctx_(ctx), keeps_last_step_(keeps_last_step) {}
   void upload(const Dispersion& dispersion);
   void bindTables(std::size_t level);
   void descend(std::size_t level);
@@ -51,6 +53,7 @@ class DispersedSlope {
   void dispatch(gpu::Program& pass, std::size_t level);
 
   gpu::Context& ctx_;
+  bool keeps_last_step_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom
   Bottom bottom_;
   gpu::TexelBuffer dispersed_;

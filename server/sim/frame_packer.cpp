@@ -14,7 +14,7 @@
 namespace spindrift::sim {
 namespace {
 
-constexpr std::size_t kSlotCount = 4;  ///< one being filled, one in flight, one at the encoder, one spare
+constexpr std::size_t kFrameSlotCount = 4;  ///< one being filled, one in flight, one at the encoder, one spare
 /// Number of packed particles, number of live particles.
 constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
@@ -70,7 +70,7 @@ core::Result<void> FramePacker::resize(const Derived& derived) {
   Creation create;
   create(packed, gpu::Buffer::create(ctx_, "packed frame", words * 4, gpu::BufferUse::kDeviceOnly,
                                      gpu::BufferContent::kScratch));
-  create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kSlotCount));
+  create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kFrameSlotCount));
   if (create.error()) return *create.error();
   packed.declareDisjointWrites();  // each layer and level writes its own part
   packed_ = std::move(packed);

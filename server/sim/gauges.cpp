@@ -12,7 +12,7 @@ namespace spindrift::sim {
 namespace {
 
 static_assert(MAX_GAUGES == core::kMaxGauges);
-using Words = std::array<float, 4>;
+using Reading = std::array<float, 4>;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ core::Result<std::unique_ptr<Gauges>> Gauges::create(gpu::Context& ctx, const co
   }
   Creation create;
   create(out->places_, gpu::Buffer::create(ctx, "gauges", sizeof uniforms, gpu::BufferUse::kUpdatable));
-  create(out->readings_, gpu::Buffer::create(ctx, "gauge readings", out->count_ * sizeof(Words),
+  create(out->readings_, gpu::Buffer::create(ctx, "gauge readings", out->count_ * sizeof(Reading),
                                              gpu::BufferUse::kDeviceOnly, gpu::BufferContent::kScratch));
   create(out->program_, gpu::Program::create(ctx, "diagnostics/gauges.comp", defines));
   if (create.error()) return *create.error();
@@ -44,9 +44,9 @@ void Gauges::measure() {
 }
 
 std::vector<GaugeReading> Gauges::parse(std::span<const std::byte> bytes) {
-  std::vector<GaugeReading> out(bytes.size() / sizeof(Words));
+  std::vector<GaugeReading> out(bytes.size() / sizeof(Reading));
   for (std::size_t k = 0; k < out.size(); ++k) {
-    Words words;
+    Reading words;
     std::memcpy(words.data(), bytes.data() + k * sizeof words, sizeof words);
     out[k] = {.elevation_m = words[0], .velocity_x_mps = words[1], .velocity_z_mps = words[2]};
   }

@@ -24,6 +24,7 @@ class LandedWater {
   /// Mixes what has landed in this tick with the water, and begins again at nothing.
   void mix(Wave& wave);
   void clear() { landed_.clear(); }
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &landed_, .lasts = false}); }
 
  private:
   LandedWater(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()) {}

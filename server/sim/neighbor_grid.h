@@ -32,6 +32,7 @@ class NeighborGrid {
   /// Two words, see grid/candidates.glsl: number of particles, summed over the substeps since creation, with more
   /// neighbour candidates than the search limit, modulo 2^32. build() binds it for the passes that count.
   [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &crowded_, .lasts = false}); }
 
  private:
   explicit NeighborGrid(gpu::Context& ctx) : ctx_(ctx) {}

@@ -31,4 +31,10 @@ void ParticleBuffers::setDensity(double density_kgpm3) {
   acceleration.clear(std::bit_cast<std::uint32_t>(static_cast<float>(density_kgpm3)));
 }
 
+void ParticleBuffers::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &position, .checkpoint = true, .carried = true, .per_particle = true});
+  out.push_back({.buffer = &velocity, .checkpoint = true, .carried = true, .per_particle = true});
+  out.push_back({.buffer = &acceleration, .per_particle = true});  // its density, for a frame before the next tick
+}
+
 }  // namespace spindrift::sim

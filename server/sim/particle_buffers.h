@@ -5,6 +5,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
@@ -19,6 +20,7 @@ struct ParticleBuffers {
 
   /// Gives every particle the same density; accelerations are recomputed before they are read.
   void setDensity(double density_kgpm3);
+  void declareState(StateBuffers& out);
 
   static core::Result<ParticleBuffers> create(gpu::Context& ctx, std::size_t count, bool stores_foam_source);
 };

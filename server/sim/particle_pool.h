@@ -22,6 +22,7 @@ class ParticlePool {
                                                             const gpu::Defines& defines);
 
   void clear() { words_.clear(); }
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &words_, .checkpoint = true, .carried = true}); }
   /// Plans the dispatches of a substep: emission from the cells that Breakers::update() counted, passes over the live
   /// particles.
   void plan();

@@ -8,8 +8,8 @@ namespace spindrift::sim {
 
 PatchFollower::PatchFollower(gpu::Context& ctx, const core::Scene& scene)
     : ctx_(ctx),
-      length_m_(scene.wave->cells().length_m),
-      width_m_(scene.wave->cells().width_m),
+      length_m_(core::waveCellsOf(*scene.wave).length_m),
+      width_m_(core::waveCellsOf(*scene.wave).width_m),
       x_m_(scene.particles->patch_shift_x_m),
       z_m_(scene.particles->patch_shift_z_m) {}
 

@@ -19,7 +19,7 @@ class PatchFollower {
   static core::Result<std::unique_ptr<PatchFollower>> create(gpu::Context& ctx, const core::Scene& scene,
                                                              const gpu::Defines& defines);
 
-  /// Sets the place of the next event; the next move() moves the patch there.
+  /// Sets the position of the next event; the next move() moves the patch there.
   void goTo(double x_m, double z_m);
   [[nodiscard]] double x_m() const { return x_m_; }
   [[nodiscard]] double z_m() const { return z_m_; }

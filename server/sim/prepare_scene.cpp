@@ -1,7 +1,7 @@
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim_setup/scene_parts.h>
+#include <spindrift/sim_state/relay_particles.h>
 
-#include "relay_particles.h"
 #include "shader_defines.h"
 
 namespace spindrift::sim {

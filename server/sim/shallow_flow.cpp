@@ -33,6 +33,11 @@ core::Result<std::unique_ptr<ShallowFlow>> ShallowFlow::create(gpu::Context& ctx
   return out;
 }
 
+void ShallowFlow::declareState(StateBuffers& out) {
+  // Each step overwrites it, then it takes the place of the caller's flow, and its name.
+  out.push_back({.buffer = &next_flow_, .lasts = false});
+}
+
 const gpu::TexelBuffer& ShallowFlow::findRise() {
   rise_.bindStorage(SURFACE_RISE);
   slope_.dispatch(count_.x, count_.z);

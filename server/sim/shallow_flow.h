@@ -8,6 +8,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
@@ -25,6 +26,7 @@ class ShallowFlow {
   /// BED, BASIN, PRESSURE_HEAD, DISPERSED, BREAKING and INCIDENT_SEA for lookups, as far as the scene has them, and
   /// TRANSFER and LIMIT_ARGS as storage. `sea`: a sea comes in.
   void advance(gpu::TexelBuffer& flow, bool sea);
+  void declareState(StateBuffers& out);
 
  private:
   ShallowFlow(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()) {}

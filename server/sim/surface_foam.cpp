@@ -28,6 +28,11 @@ void SurfaceFoam::clear() {
   if (has_landings_) landed_.clear();
 }
 
+void SurfaceFoam::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &now_, .checkpoint = true, .carried = true});
+  if (has_landings_) out.push_back({.buffer = &landed_});
+}
+
 void SurfaceFoam::advance(const Wave& wave, Breakers& breakers, const Boats* boats) {
   before_.copyFrom(now_, 0, now_.sizeBytes());
   wave.bindSurface();

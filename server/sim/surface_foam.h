@@ -21,6 +21,7 @@ class SurfaceFoam {
                                                            const WaveLayout& layout, const gpu::Defines& defines);
 
   void clear();
+  void declareState(StateBuffers& out);
   /// `boats` may be null.
   void advance(const Wave& wave, Breakers& breakers, const Boats* boats);
   /// Counts of absorbed particles per sample; null except in two-way scenes.

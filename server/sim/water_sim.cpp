@@ -3,8 +3,8 @@
 #include <shared/bindings.h>
 
 #include "create_all.h"
+#include "settled_positions.h"
 #include "shader_defines.h"
-#include "starting_state.h"
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
@@ -224,23 +224,29 @@ core::Result<void> WaterSim::build() {
 
 WaterSim::Parts::Parts(gpu::Context& ctx) : ticks_in_flight(ctx) {}
 
-std::vector<gpu::Buffer*> WaterSim::Parts::checkpointBuffers() {
-  std::vector<gpu::Buffer*> state;
-  if (wave) {
-    state = {&wave->elevation(), &wave->flow()};
-    if (auto* outflow = wave->outflow()) state.push_back(outflow);
-    if (auto* elevation_x = wave->elevationX()) state.push_back(elevation_x);
-    if (auto* slope = wave->lastSlope()) state.push_back(slope);
-  }
-  if (particles) state.insert(state.end(), {&particles->position, &particles->velocity});
-  if (pool) state.push_back(&pool->words());
-  if (breakers) state.push_back(&breakers->state());
-  if (foam) state.push_back(&foam->field());
-  return state;
+StateBuffers WaterSim::Parts::stateBuffers() {
+  StateBuffers out;
+  const auto add = [&](auto& part) {
+    if (part) part->declareState(out);
+  };
+  add(wave);
+  add(particles);
+  add(pool);
+  add(breakers);
+  add(foam);
+  add(wind_sea);
+  add(boats);
+  add(landed_water);
+  add(grid);
+  out.push_back({.buffer = &uniforms});  // the pass that moves the patch of particles changes them
+  return out;
 }
 
 core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
-  auto made = Checkpoints::create(ctx, checkpointBuffers());
+  std::vector<gpu::Buffer*> buffers;
+  for (const StateBuffer& each : stateBuffers())
+    if (each.checkpoint) buffers.push_back(each.buffer);
+  auto made = Checkpoints::create(ctx, std::move(buffers));
   if (!made) return made.error();
   checkpoints = *std::move(made);
   return {};

@@ -68,7 +68,7 @@ std::uint32_t WaterSim::particleCount() const {
 void WaterSim::startEvents() {
   if (scene_.storm) {
     for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s)) {
-      // Effects of clients have priority: a drop without a free place is dropped.
+      // Effects of clients have priority: a drop without a free slot is dropped.
       (void)parts_->effects.start(effect, time_s(),
                                   std::holds_alternative<core::Splash>(effect) ? kSpareSplashes : kSpareCrests);
     }

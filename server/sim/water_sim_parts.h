@@ -78,10 +78,12 @@ struct WaterSim::Parts {
     return {derived.particles->count, derived.particles->cell_count, pool.get()};
   }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
-  /// What the watchdog restores; boats and the pressure of the last tick continue as they are.
-  std::vector<gpu::Buffer*> checkpointBuffers();
-  /// All whose content continues from one tick to the next.
-  std::vector<gpu::Buffer*> lastingBuffers();
+  /// Returns the buffers that the parts declare.
+  StateBuffers stateBuffers();
+  /// Returns the state that lasts outside these buffers.
+  [[nodiscard]] HostState hostState() const;
+  /// Number of live particles. Waits in two-way scenes.
+  [[nodiscard]] std::size_t liveCount(const Derived& derived) const;
   core::Result<void> makeCheckpoints(gpu::Context& ctx);
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
   /// Call it after resize() failed; `derived` is that of the old size.

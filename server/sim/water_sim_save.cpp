@@ -1,8 +1,10 @@
 // WaterSim: its whole state as plain values, and a simulation of the same scene that continues from there bit for bit.
 #include <algorithm>
 #include <cstring>
+#include <span>
 
 #include <fmt/format.h>
+#include <shared/pool.h>
 
 #include "water_sim_parts.h"
 
@@ -21,15 +23,27 @@ std::vector<std::uint32_t> layoutWords(const Derived& derived) {
 
 }  // namespace
 
-std::vector<gpu::Buffer*> WaterSim::Parts::lastingBuffers() {
-  std::vector<gpu::Buffer*> out = checkpointBuffers();
-  out.push_back(&uniforms);  // the pass that moves the patch of particles changes them
-  if (particles) out.push_back(&particles->acceleration);
-  if (wave && wave->pressureHead()) out.push_back(&wave->pressureHead());
-  if (wind_sea) out.push_back(&wind_sea->incident());
-  if (boats) out.push_back(&boats->state());
-  if (foam && foam->landed()) out.push_back(foam->landed());
+StateBuffers WaterSim::stateBuffers() {
+  return parts_->stateBuffers();
+}
+
+HostState WaterSim::Parts::hostState() const {
+  HostState out{.effects = effects};
+  if (boats) out.boats = boats->carried();
+  if (wind_sea) out.sea = wind_sea->carried();
+  if (follower) {
+    out.patch_x_m = follower->x_m();
+    out.patch_z_m = follower->z_m();
+  }
   return out;
+}
+
+std::size_t WaterSim::Parts::liveCount(const Derived& derived) const {
+  if (!derived.particles) return 0;
+  if (!pool) return derived.particles->count;
+  std::uint32_t live_count = 0;
+  pool->words().download(std::span(&live_count, 1), POOL_LIVE * sizeof live_count);
+  return std::min(live_count, derived.particles->count);
 }
 
 SavedState WaterSim::savedState() {
@@ -38,20 +52,18 @@ SavedState WaterSim::savedState() {
   if (is_careful_) out.careful_ticks = careful_until_tick_ > tick_ ? careful_until_tick_ - tick_ : 0;
   out.particles = derived_.particles;
   out.layout = layoutWords(derived_);
-  for (const gpu::Buffer* buffer : parts_->lastingBuffers())
+  const std::size_t live_count = parts_->liveCount(derived_);
+  for (const StateBuffer& each : parts_->stateBuffers()) {
+    if (!each.lasts) continue;
     out.buffers.push_back(
-        {buffer->name(), buffer->downloadVector<std::uint32_t>(buffer->sizeBytes() / sizeof(std::uint32_t))});
-  out.effects = parts_->effects;
-  if (parts_->boats) out.boats = parts_->boats->carried();
-  if (parts_->wind_sea) {
-    out.sea = parts_->wind_sea->carried();
-    out.sea_step_count = parts_->wind_sea->stepCount();
+        {each.buffer->name(), each.buffer->downloadVector<std::uint32_t>(each.wordCount(live_count))});
   }
-  if (parts_->follower) {
-    out.patch_x_m = parts_->follower->x_m();
-    out.patch_z_m = parts_->follower->z_m();
-  }
+  out.host = parts_->hostState();
   return out;
+}
+
+std::uint64_t WaterSim::stateHash() {
+  return hashOf(savedState());
 }
 
 core::Result<void> WaterSim::restore(const SavedState& saved) {
@@ -77,36 +89,48 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
     parts_->particles->setDensity(scene_.particles->rest_density_kgpm3);
   }
   setCareful(saved.careful_ticks.has_value());
-  const std::vector<gpu::Buffer*> buffers = parts_->lastingBuffers();
+  StateBuffers buffers = parts_->stateBuffers();
+  std::erase_if(buffers, [](const StateBuffer& each) { return !each.lasts; });
   if (saved.layout != layoutWords(derived_)) {
     setCareful(false);
     return differs("its sizes or steps differ");
   }
   if (saved.buffers.size() != buffers.size())
     return differs(fmt::format("it has {} buffers, here are {}", saved.buffers.size(), buffers.size()));
-  for (std::size_t k = 0; k < buffers.size(); ++k) {
-    const SavedBuffer& from = saved.buffers[k];
-    if (from.name != buffers[k]->name() || from.words.size() * sizeof(std::uint32_t) != buffers[k]->sizeBytes())
-      return differs(fmt::format("its buffer {} has {} words, here it has {}", from.name, from.words.size(),
-                                 buffers[k]->sizeBytes() / sizeof(std::uint32_t)));
+  std::vector<const SavedBuffer*> sources;
+  for (const StateBuffer& each : buffers) {
+    const auto from = std::ranges::find(saved.buffers, each.buffer->name(), &SavedBuffer::name);
+    if (from == saved.buffers.end()) return differs(fmt::format("it has no buffer {}", each.buffer->name()));
+    const std::size_t word_count = each.buffer->sizeBytes() / sizeof(std::uint32_t);
+    const bool fits =
+        parts_->pool && each.per_particle ? from->words.size() <= word_count : from->words.size() == word_count;
+    if (!fits)
+      return differs(
+          fmt::format("its buffer {} has {} words, here it has {}", from->name, from->words.size(), word_count));
+    sources.push_back(&*from);
   }
-  if (parts_->boats && !parts_->boats->fits(saved.boats)) return differs("it has another number of places for boats");
-  for (std::size_t k = 0; k < buffers.size(); ++k) buffers[k]->upload(saved.buffers[k].words);
-  parts_->effects = saved.effects;
-  if (parts_->boats) {
-    parts_->boats->takeOver(saved.boats);
-    first_boat_id_ = saved.boats.first_id;
-  }
-  if (parts_->wind_sea) parts_->wind_sea->resume(saved.sea, saved.sea_step_count);
-  if (parts_->follower) parts_->follower->goTo(saved.patch_x_m, saved.patch_z_m);
-  start_tick_ = tick_ - saved.run_tick;  // modulo 2^64
+  if (parts_->boats && !parts_->boats->fits(saved.host.boats)) return differs("it has another limit of boats");
+  for (std::size_t k = 0; k < buffers.size(); ++k) buffers[k].buffer->upload(sources[k]->words);
+  continueWith(saved.host, saved.run_tick);
+  if (parts_->wind_sea) parts_->wind_sea->resumeSteps(saved.host.sea);
   careful_until_tick_ = tick_ + saved.careful_ticks.value_or(0);
+  return {};
+}
+
+void WaterSim::continueWith(const HostState& host, std::uint64_t run_tick) {
+  parts_->effects = host.effects;
+  if (parts_->boats) {
+    parts_->boats->takeOver(host.boats);
+    first_boat_id_ = host.boats.first_id;
+  }
+  if (parts_->wind_sea) parts_->wind_sea->takeOver(host.sea);
+  if (parts_->follower) parts_->follower->goTo(host.patch_x_m, host.patch_z_m);
+  start_tick_ = tick_ - run_tick;  // modulo 2^64
   ledger_units_.reset();
   abandoned_until_tick_ = tick_;  // health in flight belongs to the start
   parts_->checkpoints->forget();
   parts_->checkpoints->save(tick_);  // confirmed by the health of the next ticks
   ++revision_;
-  return {};
 }
 
 }  // namespace spindrift::sim

@@ -2,7 +2,8 @@
 
 #include <shared/bindings.h>
 
-#include "starting_state.h"
+#include <spindrift/sim_state/starting_positions.h>
+
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {

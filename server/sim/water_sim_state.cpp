@@ -1,10 +1,10 @@
 // WaterSim: health, frames, and copies of the state.
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <ranges>
+#include <string_view>
 
 #include <shared/fixed_point.h>
-#include <shared/pool.h>
 #include <spdlog/spdlog.h>
 
 #include "water_sim_parts.h"
@@ -151,63 +151,38 @@ std::vector<double> WaterSim::copyElevation() {
 
 StateCopy WaterSim::copyState() {
   StateCopy out;
+  const std::size_t live_count = parts_->liveCount(derived_);
+  StateCopy::forEachArray(out, [&](std::string_view name, auto& words) {
+    using Word = std::ranges::range_value_t<decltype(words)>;
+    if (const auto from = carriedBuffer(name)) words = from->buffer->downloadVector<Word>(from->wordCount(live_count));
+  });
   if (parts_->particles) {
-    std::size_t count = derived_.particles->count;
-    if (parts_->pool) {
-      out.pool = parts_->pool->words().downloadVector<std::uint32_t>(POOL_WORDS);
-      count = out.pool[POOL_LIVE];
-    }
-    const std::size_t n = count * 4;
-    out.position = parts_->particles->position.downloadVector<float>(n);
-    out.velocity = parts_->particles->velocity.downloadVector<float>(n);
-    const auto acceleration = parts_->particles->acceleration.downloadVector<float>(n);
-    for (std::size_t i = 3; i < n; i += 4) out.density_kgpm3.push_back(acceleration[i]);
+    const auto acceleration = parts_->particles->acceleration.downloadVector<float>(4 * live_count);
+    for (std::size_t i = 3; i < acceleration.size(); i += 4) out.density_kgpm3.push_back(acceleration[i]);
   }
-  if (parts_->boats) out.boats = parts_->boats->state().downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
-  if (parts_->wave) {
-    const std::size_t n = derived_.wave->counts().total();
-    out.elevation_m = copyElevation();
-    out.flow_m2ps = parts_->wave->flow().downloadVector<float>(n * parts_->wave->flowComponents());
-    if (auto* elevation_x = parts_->wave->elevationX())
-      out.elevation_x_units = elevation_x->downloadVector<std::int32_t>(n);
-  }
+  if (parts_->wave) out.elevation_m = copyElevation();
   return out;
 }
 
 void WaterSim::setState(const StateCopy& state) {
   abandoned_until_tick_ = tick_;  // health in flight belongs to the state before
   ledger_units_.reset();
-  if (parts_->particles) {
-    parts_->particles->position.upload(state.position);
-    parts_->particles->velocity.upload(state.velocity);
-  }
-  if (parts_->pool && !state.pool.empty()) parts_->pool->words().upload(state.pool);
-  if (parts_->boats) parts_->boats->state().upload(state.boats);
-  if (parts_->wave) {
-    std::vector<std::int32_t> units;
-    for (const double eta_m : state.elevation_m)
-      units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
-    parts_->wave->elevation().upload(units);
-    parts_->wave->flow().upload(state.flow_m2ps);
-    parts_->wave->forgetLastStep();
-    if (auto* elevation_x = parts_->wave->elevationX()) elevation_x->upload(state.elevation_x_units);
-  }
+  StateCopy::forEachArray(state, [&](std::string_view name, const auto& words) {
+    if (const auto to = carriedBuffer(name)) to->buffer->upload(words);
+  });
+  if (!parts_->wave) return;
+  std::vector<std::int32_t> units;
+  units.reserve(state.elevation_m.size());
+  for (const double eta_m : state.elevation_m)
+    units.push_back(static_cast<std::int32_t>(std::lround(eta_m * double{ELEVATION_UNITS_PER_M})));
+  parts_->wave->elevation().upload(units);
+  parts_->wave->forgetLastStep();
 }
 
-std::uint64_t WaterSim::stateHash() {
-  const StateCopy state = copyState();
-  std::uint64_t hash = 0xcbf29ce484222325ull;
-  const auto add = [&](std::span<const std::byte> bytes) {
-    for (const std::byte b : bytes) hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
-  };
-  add(std::as_bytes(std::span(state.position)));
-  add(std::as_bytes(std::span(state.velocity)));
-  add(std::as_bytes(std::span(state.elevation_m)));
-  add(std::as_bytes(std::span(state.flow_m2ps)));
-  add(std::as_bytes(std::span(state.boats)));
-  add(std::as_bytes(std::span(state.pool)));
-  add(std::as_bytes(std::span(state.elevation_x_units)));
-  return hash;
+std::optional<StateBuffer> WaterSim::carriedBuffer(std::string_view name) {
+  for (const StateBuffer& each : parts_->stateBuffers())
+    if (each.carried && each.buffer->name() == name) return each;
+  return std::nullopt;
 }
 
 }  // namespace spindrift::sim

@@ -30,8 +30,10 @@ core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::
   create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
   create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, wide_flow ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
   create(wave->transfer_,
-         TexelBuffer::create(ctx, "transfer", cells, nine ? TexelFormat::kRGBA32I : TexelFormat::kRG32I));
-  create(wave->given_share_, TexelBuffer::create(ctx, "given share", cells, TexelFormat::kR32F));
+         TexelBuffer::create(ctx, "transfer", cells, nine ? TexelFormat::kRGBA32I : TexelFormat::kRG32I,
+                             gpu::BufferContent::kScratch));
+  create(wave->given_share_,
+         TexelBuffer::create(ctx, "given share", cells, TexelFormat::kR32F, gpu::BufferContent::kScratch));
   create(wave->limit_args_, gpu::Buffer::create(ctx, "limit arguments", 3 * sizeof(std::uint32_t)));
   if (wave->is_varied_) {
     create(wave->basin_, TexelBuffer::create(ctx, "basin", cells, TexelFormat::kRGBA32F));
@@ -96,12 +98,19 @@ void Wave::clear() {
   clearPressure();
 }
 
-gpu::TexelBuffer* Wave::lastSlope() {
-  return shallow_flow_ && dispersed_slope_ ? &dispersed_slope_->texels() : nullptr;
+void Wave::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &elevation_, .checkpoint = true, .carried = true});
+  out.push_back({.buffer = &flow_, .checkpoint = true, .carried = true});
+  if (has_outflow_) out.push_back({.buffer = &outflow_, .checkpoint = true});  // setOutflow() carries its sum over
+  if (has_matched_layer_) out.push_back({.buffer = &elevation_x_, .checkpoint = true, .carried = true});
+  if (dispersed_slope_) dispersed_slope_->declareState(out);
+  if (has_head_) out.push_back({.buffer = &pressure_head_});
+  out.push_back({.buffer = &limit_args_, .lasts = false});  // the same words after each step
+  if (shallow_flow_) shallow_flow_->declareState(out);
 }
 
 void Wave::forgetLastStep() {
-  if (auto* slope = lastSlope()) slope->clear();
+  if (shallow_flow_ && dispersed_slope_) dispersed_slope_->texels().clear();
 }
 
 void Wave::bindEvents() const {

@@ -14,6 +14,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
 
 #include "dispersed_slope.h"
@@ -59,6 +60,8 @@ class Wave {
   /// Slopes, vertical speed and horizontal velocity of the surface, for particles and boats.
   void sampleSurface();
 
+  void declareState(StateBuffers& out);
+
   [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< nx x nz [units]
   /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water
   /// that they moved [m^2/s].
@@ -66,12 +69,6 @@ class Wave {
   [[nodiscard]] gpu::TexelBuffer* outflow() {
     return has_outflow_ ? &outflow_ : nullptr;
   }  ///< nx x nz [units: low 24 bits, the rest]
-  /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
-  /// (wave/continuity.comp); null in scenes without one. 0 outside the layer.
-  [[nodiscard]] gpu::TexelBuffer* elevationX() { return has_matched_layer_ ? &elevation_x_ : nullptr; }
-  /// nx x nz x 4: the dispersed slopes of the last two steps, which a nonlinear bulk with dispersion takes into the
-  /// next one (wave/dispersed_share.glsl); null in other scenes.
-  [[nodiscard]] gpu::TexelBuffer* lastSlope();
   /// null in scenes without.
   [[nodiscard]] WaveMakers* makers() { return makers_.get(); }
   /// Sum of the elevations of water at rest: ground above the still water counts in a nonlinear bulk.
@@ -106,7 +103,10 @@ class Wave {
   bool had_events_ = false;
   bool has_head_ = false;
   bool has_terrain_ = false;
-  gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_, elevation_x_;
+  gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_;
+  /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
+  /// (wave/continuity.comp); only in scenes with one. 0 outside the layer.
+  gpu::TexelBuffer elevation_x_;
   gpu::TexelBuffer transfer_;     ///< nx x nz x 2 (9-point: 4) [units]
   gpu::TexelBuffer given_share_;  ///< nx x nz; written in steps that limit transfers
   gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps

@@ -35,7 +35,7 @@ class WaveMakers {
     IncidentWaves waves;
     gpu::Buffer uniforms;
   };
-  /// What the waves were computed from.
+  /// Values from which the waves were computed.
   struct Inputs {
     double depth_m, gravity_mps2, dt_s;
     bool operator==(const Inputs&) const = default;

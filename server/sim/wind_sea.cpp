@@ -107,7 +107,7 @@ void WindSea::continueIn(const core::Scene& scene, double time_s) {
 }
 
 CarriedSea WindSea::carried() const {
-  return {.shown = shown_, .next = next_, .fade_begin_s = fade_begin_s_};
+  return {.shown = shown_, .next = next_, .fade_begin_s = fade_begin_s_, .step_count = step_count_};
 }
 
 void WindSea::takeOver(const CarriedSea& carried) {

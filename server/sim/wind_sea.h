@@ -13,8 +13,9 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
-#include <spindrift/sim/carried_state.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/sea_state.h>
+#include <spindrift/sim_state/carried_state.h>
 
 namespace spindrift::sim {
 
@@ -34,17 +35,13 @@ class WindSea {
   /// now.
   void continueIn(const core::Scene& scene, double time_s);
 
-  /// What carries on in another simulation of the same water, and its continuation there: call takeOver() after
+  /// Returns the sea for another simulation of the same water, which continues it by takeOver(): call that after
   /// clear() and fadeTo(), with the scene's time continuing.
   [[nodiscard]] CarriedSea carried() const;
   void takeOver(const CarriedSea& carried);
-  /// Continues exactly from there, with the content of incident() and after so many steps.
-  void resume(const CarriedSea& carried, std::uint64_t step_count) {
-    takeOver(carried);
-    step_count_ = step_count;
-  }
-  [[nodiscard]] std::uint64_t stepCount() const { return step_count_; }
-  [[nodiscard]] gpu::TexelBuffer& incident() { return incident_; }
+  /// Call it after takeOver() to continue exactly from there, with the content of the buffers that it declares.
+  void resumeSteps(const CarriedSea& carried) { step_count_ = carried.step_count; }
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &incident_}); }
 
   /// Returns the sea during the step of dt_s that begins at begin_s, nx x nz texels (wave/incident_sea.comp); null
   /// while calm. BASIN and BED must be bound.

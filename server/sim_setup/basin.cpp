@@ -48,7 +48,7 @@ struct Halves {
   double z_m = 0.0;
 };
 
-/// Distance from a place to a side. [m]
+/// Distance from a position to a side. [m]
 double distanceTo(core::Side side, const Halves& half, double x_m, double z_m) {
   switch (side) {
     case core::Side::kMinusX:
@@ -80,7 +80,7 @@ double faceDepth(double a_m, double b_m) {
   return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
 }
 
-/// How far inside the layer of a side a place is: 0 at its edge, 1 at the side, negative outside.
+/// How far inside the layer of a side a position is: 0 at its edge, 1 at the side, negative outside.
 double insideLayer(const core::WaveScene& w, const Halves& half, core::Side side, double x_m, double z_m) {
   return 1 - distanceTo(side, half, x_m, z_m) / w.sponge_width_m;
 }

@@ -21,7 +21,6 @@ namespace {
 
 using core::Boundary;
 using core::Error;
-using core::ErrorCode;
 
 /// Share of a support radius that sound plus water may cross in a step. The usual value is 0.4 of half of it (Monaghan
 /// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift-study --suite
@@ -40,9 +39,7 @@ constexpr std::uint32_t kMaxSubstepsCount = 1000;
 constexpr double kCrowdedRatio = 32.0;
 constexpr double kMinCandidates = 1024.0;
 
-Error invalid(std::string message) {
-  return {ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 /// Largest sound speed c = c0 (rho/rho0)^3 of Tait's equation, at the pressure of water with speed U_max that is
 /// stopped at the bottom of the band: p = rho0 (U_max^2/2 + g band). With the linear equation c = c0.
@@ -267,11 +264,11 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
   }
   if (d.substeps_count > kMaxSubstepsCount) {
     const StepRule& rule = d.rules.front();
-    return invalid(
-        fmt::format("{}: needs {} substeps a tick, at most {} are allowed ({}, at most {:.4g} ms): lower it, use fewer "
-                    "particles or a "
-                    "higher tick rate",
-                    rule.field, d.substeps_count, kMaxSubstepsCount, rule.name, rule.max_dt_s * 1e3));
+    return invalid(fmt::format(
+        "{}: needs {} substeps per tick, at most {} are allowed ({}, at most {:.4g} ms): lower it, use fewer "
+        "particles or a "
+        "higher tick rate",
+        rule.field, d.substeps_count, kMaxSubstepsCount, rule.name, rule.max_dt_s * 1e3));
   }
   if (d.wave) {
     const double max_dt_s = waveMaxStep(scene, *d.wave);
@@ -292,7 +289,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     d.wave->courant = d.wave->speed_mps * d.wave->dt_s / d.wave->cell_m;
     if (d.wave->substeps_count > kMaxSubstepsCount) {
       return invalid(
-          fmt::format("wave.depth_m: {:.4g} m needs {} wave steps a tick, at most {} are allowed: use shallower "
+          fmt::format("wave.depth_m: {:.4g} m needs {} wave steps per tick, at most {} are allowed: use shallower "
                       "water or a coarser wave",
                       scene.wave->depth_m, d.wave->substeps_count, kMaxSubstepsCount));
     }

@@ -4,8 +4,8 @@
 #include <span>
 #include <utility>
 
+#include <spindrift/core/half.h>
 #include <spindrift/sim_setup/dispersion.h>
-#include <spindrift/sim_setup/half.h>
 
 #include "dispersion_flows.h"
 #include "dispersion_grid.h"
@@ -63,7 +63,7 @@ std::array<double, kPoleCount> cAt(double depth_cells) {
 
 template <std::size_t kCount>
 void roundToHalves(std::vector<std::array<double, kCount>>& texels) {
-  for (auto& texel : texels) std::ranges::transform(texel, texel.begin(), roundToHalf);
+  for (auto& texel : texels) std::ranges::transform(texel, texel.begin(), core::roundToHalf);
 }
 
 /// `k`: number of the grid, 0 for the finest, whose cells have `finest_m`.

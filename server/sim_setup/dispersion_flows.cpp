@@ -192,15 +192,15 @@ struct Motion {
 
 /// The open face between two cells, and the sign of a flux from the first to the second; none if they have no such
 /// face.
-struct Between {
+struct FaceBetween {
   std::size_t cell, axis;
   double sign;
 };
-std::optional<Between> faceBetween(const DispersionGrid& grid, std::size_t from, std::size_t to) {
+std::optional<FaceBetween> faceBetween(const DispersionGrid& grid, std::size_t from, std::size_t to) {
   for (int axis = 0; axis < 2; ++axis) {
     const auto a = static_cast<std::size_t>(axis);
-    if (grid.behind(from, axis) == to && grid.open[from][a] > 0.0) return Between{from, a, 1.0};
-    if (grid.behind(to, axis) == from && grid.open[to][a] > 0.0) return Between{to, a, -1.0};
+    if (grid.behind(from, axis) == to && grid.open[from][a] > 0.0) return FaceBetween{from, a, 1.0};
+    if (grid.behind(to, axis) == from && grid.open[to][a] > 0.0) return FaceBetween{to, a, -1.0};
   }
   return {};
 }

@@ -20,7 +20,7 @@ struct DispersionGrid {
   std::vector<std::array<double, 2>> resistance_pm;  ///< mean of 1/d over the open part [1/m]
   std::vector<double> wet;      ///< wet area over that of a cell; above 1 with a strip of a neighbour
   std::vector<double> depth_m;  ///< mean over the wet area; 0 where dry
-  /// How far the water reaches along x and z [cells of this grid]: the rest of the storage is beyond its sides.
+  /// Extent of the water along x and z [cells of this grid]: the rest of the storage is beyond its sides.
   std::array<double, 2> extent;
 
   DispersionGrid(CellCounts counts, std::array<double, 2> extent);

@@ -11,7 +11,7 @@ class Distribution {
  public:
   Distribution(double from, double to, const std::function<double(double)>& density);
   [[nodiscard]] double integral() const { return sums_.back(); }
-  /// Returns the place below which a share of the integral lies. Precondition: the integral is positive.
+  /// Returns the value below which a share of the integral lies. Precondition: the integral is positive.
   [[nodiscard]] double quantile(double share) const;
 
  private:

@@ -121,10 +121,9 @@ core::Result<void> Effects::start(const core::Effect& effect, double time_s, std
   const auto active = static_cast<std::size_t>(
       std::ranges::count_if(active_, [&](const Active& a) { return isSplash(a.effect) == splash; }));
   if (active + spare >= most) {
-    return core::Error{
-        core::ErrorCode::kUnavailable,
-        fmt::format("effects: {} {} are active, the most there can be is {}: try again when one has ended", active,
-                    splash ? "splashes" : "waves", most)};
+    return core::Error{core::ErrorCode::kUnavailable,
+                       fmt::format("effects: the limit of {} active {} is reached: try again when one has ended",
+                                   most - spare, splash ? "splashes" : "waves")};
   }
   active_.push_back({effect, time_s});
   return {};

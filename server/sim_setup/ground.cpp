@@ -17,10 +17,11 @@ using core::ErrorCode;
 /// Share of the depth by which shapes with rounded numbers may miss it: a slope of 0.049875 over 12.03 m and one of
 /// -0.099502 over 6.03 m end 0.8 um below the floor. Such ground counts as wave.depth_m.
 constexpr double kDepthTolerance = 1e-3;
-/// The ground above a place counts as land on the way to shore if it is shallower than this share of the depth there.
+/// The ground above a position counts as land on the way to shore if it is shallower than this share of the depth
+/// there.
 constexpr double kLandShare = 0.01;
 
-/// A place relative to a centre: along a heading, and across it to the right. [m]
+/// A position relative to a centre: along a heading, and across it to the right. [m]
 struct Place {
   double along_m, across_m;
 };
@@ -32,7 +33,7 @@ Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double
   return {dx * std::cos(heading) + dz * std::sin(heading), dz * std::cos(heading) - dx * std::sin(heading)};
 }
 
-/// Distance of a place from a side. [m]
+/// Distance of a position from a side. [m]
 double distanceTo(core::Side side, const core::WaveCells& water, double x_m, double z_m) {
   switch (side) {
     case core::Side::kMinusX:
@@ -112,7 +113,7 @@ double deepestPossible(const core::Scene& scene) {
   if (scene.bed->grid) {
     for (const float depth_m : *scene.bed->grid->depths_m) deepest_m = std::max(deepest_m, double{depth_m});
   }
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   const double reach_m = std::hypot(water.length_m, water.width_m);
   for (const core::BedShape& shape : scene.bed->shapes) {
     deepest_m += std::visit(core::Overloaded{
@@ -146,7 +147,7 @@ double shapedDepth(const core::Scene& scene, double x_m, double z_m) {
   const double floor_m = floorDepth(scene);
   double depth_m = floor_m;
   if (scene.beaches.empty() && !scene.bed) return depth_m;
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   for (const core::Beach& beach : scene.beaches) {
     const double share = std::clamp(distanceTo(beach.side, water, x_m, z_m) / beach.width_m, 0.0, 1.0);
     depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, floor_m, share));
@@ -179,7 +180,7 @@ double bedDepth(const core::Scene& scene, double x_m, double z_m) {
 std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_m) {
   const double here_m = groundDepth(scene, x_m, z_m);
   if (!scene.bed || here_m <= 0) return std::nullopt;
-  const double step_m = 0.5 * scene.wave->cells().cell_m;
+  const double step_m = 0.5 * core::waveCellsOf(*scene.wave).cell_m;
   const double rise_x = (groundDepth(scene, x_m - step_m, z_m) - groundDepth(scene, x_m + step_m, z_m)) / (2 * step_m);
   const double rise_z = (groundDepth(scene, x_m, z_m - step_m) - groundDepth(scene, x_m, z_m + step_m)) / (2 * step_m);
   const double slope = std::hypot(rise_x, rise_z);
@@ -203,7 +204,7 @@ core::Result<void> checkGround(const core::Scene& scene) {
   }
   const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
   if (deepestPossible(scene) <= limit_m) return {};
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   double deepest_m = limit_m, deepest_x_m = 0.0, deepest_z_m = 0.0;
   for (std::uint32_t z = 0; z < water.count.z; ++z) {
     for (std::uint32_t x = 0; x < water.count.x; ++x) {

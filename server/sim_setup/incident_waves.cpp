@@ -6,11 +6,11 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/core/fourier.h>
+#include <spindrift/core/random.h>
 #include <spindrift/sim_setup/effects.h>
-#include <spindrift/sim_setup/fourier.h>
 #include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/incident_waves.h>
-#include <spindrift/sim_setup/random.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
@@ -123,7 +123,7 @@ void answer(IncidentWaves::Table& table, const SideResponse& side, FlowOf flowOf
   while (n < table.values.size()) n *= 2;
   std::vector<Complex> flow(n);
   for (std::size_t k = 0; k < table.values.size(); ++k) flow[k] = table.values[k].elevation_m;
-  transform(flow, Transform::kForward);
+  core::transform(flow, core::Transform::kForward);
   std::vector<Complex> edge = flow;
   for (std::size_t k = 0; k < n; ++k) {
     const bool is_negative = k > n / 2;
@@ -133,8 +133,8 @@ void answer(IncidentWaves::Table& table, const SideResponse& side, FlowOf flowOf
     flow[k] *= flowOf(gain) / static_cast<double>(n);
     edge[k] *= (is_negative ? std::conj(gain.edge) : gain.edge) / static_cast<double>(n);
   }
-  transform(flow, Transform::kInverse);
-  transform(edge, Transform::kInverse);
+  core::transform(flow, core::Transform::kInverse);
+  core::transform(edge, core::Transform::kInverse);
   for (std::size_t k = 0; k < table.values.size(); ++k)
     table.values[k] = {.elevation_m = edge[k].real(), .flow_m2ps = flow[k].real()};
 }
@@ -181,7 +181,7 @@ std::vector<Component> irregularComponents(const core::IrregularWaves& waves, st
   const double peak = 2 * pi / waves.peak_period_s;
   const Distribution energy(kLowestShare, kHighestShare,
                             [&](double ratio) { return jonswap(ratio, waves.peak_enhancement_ratio); });
-  SplitMix64 random((waves.seed != 0 ? waves.seed : scene_seed) * 0x9fb21c651e98df25ull + 2);
+  core::SplitMix64 random((waves.seed != 0 ? waves.seed : scene_seed) * 0x9fb21c651e98df25ull + 2);
   const auto count = static_cast<double>(waves.waves_count);
   std::vector<Component> out;
   for (std::uint32_t n = 0; n < waves.waves_count; ++n) {
@@ -203,9 +203,7 @@ double simpleFlow(double gravity_mps2, double depth_m, double elevation_m) {
   return water_m * 2 * (std::sqrt(gravity_mps2 * water_m) - std::sqrt(gravity_mps2 * depth_m));
 }
 
-core::Error invalid(std::string message) {
-  return {core::ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 core::Result<void> periodFits(const std::string& path, const char* name, double period_s, double height_m,
                               double height_share, const core::Scene& scene, const WaveLayout& layout, double depth_m) {

@@ -7,7 +7,7 @@
 namespace spindrift::sim {
 namespace {
 
-/// The water along a side is judged by so many places, from the side to this share of the way across, where crests
+/// The water along a side is judged by so many positions, from the side to this share of the way across, where crests
 /// start.
 constexpr int kPlacesAlong = 32;
 constexpr int kPlacesAcross = 8;
@@ -24,7 +24,7 @@ struct SideWater {
 };
 
 double meanDepth(const core::Scene& scene, const SideWater& at) {
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   double sum_m = 0.0;
   for (int across = 0; across < kPlacesAcross; ++across) {
     // In half lengths from the centre: 1 at the side.

@@ -14,7 +14,6 @@ namespace {
 
 using core::Boundary;
 using core::Error;
-using core::ErrorCode;
 
 /// Softness of the position-based constraint over its squared gradient inside the lattice: with 0 pairs of particles
 /// jump, 1 halves every correction.
@@ -30,9 +29,7 @@ constexpr double kSplatWidthRatio = 0.75;
 constexpr double kSplatDepthRatio = 0.2;
 constexpr std::uint32_t kMaxSplatReach = 8;
 
-Error invalid(std::string message) {
-  return {ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 core::Result<void> countCells(ParticleLayout& out) {
   std::uint64_t cells = 1;
@@ -66,7 +63,7 @@ std::optional<double> tilingRadius(double wanted_m, double shorter_m, double lon
 core::Result<ParticleLayout> layOutPool(const core::Scene& scene) {
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
-  const core::WaveCells cells = scene.wave->cells();
+  const core::WaveCells cells = core::waveCellsOf(*scene.wave);
   out.count = p.count;
   out.spacing_m = scene.coupling->droplet_spacing_m;
   out.support_radius_m = p.support_ratio * out.spacing_m;
@@ -174,7 +171,7 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;
-  const core::WaveCells water = scene.wave ? scene.wave->cells() : core::WaveCells{};
+  const core::WaveCells water = scene.wave ? core::waveCellsOf(*scene.wave) : core::WaveCells{};
   const double side_x_m = scene.wave ? water.length_m * p.patch_scale : p.box_side_m;
   const double side_z_m = scene.wave            ? water.width_m * p.patch_scale
                           : p.box_width_m > 0.0 ? p.box_width_m

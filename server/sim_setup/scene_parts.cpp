@@ -61,7 +61,7 @@ bool exchangesWater(const core::Scene& scene) {
 
 bool hasMatchedLayer(const core::Scene& scene) {
   if (!scene.wave || !isOpen(scene)) return false;
-  if (scene.wave->absorption != core::Absorption::kByStencil) return scene.wave->absorption == core::Absorption::kPml;
+  if (scene.wave->absorption) return *scene.wave->absorption == core::Absorption::kPml;
   return scene.wave->stencil == core::Stencil::kFivePoint;
 }
 

@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <spindrift/sim_setup/random.h>
+#include <spindrift/core/random.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
@@ -168,7 +168,7 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
   const Distribution spread(-pi / 2, pi / 2,
                             [](double angle) { return std::pow(std::cos(angle / 2), 2 * kSpreadExponent); });
   const Sides sides(wave);
-  SplitMix64 random(scene.seed * 0x9fb21c651e98df25ull + 1);
+  core::SplitMix64 random(scene.seed * 0x9fb21c651e98df25ull + 1);
   const std::vector<int> place = mixedOrder(random.unit());
   for (int n = 0; n < kSeaWaveCount; ++n) {
     PlaneWave each;

@@ -21,7 +21,7 @@ double weight(int offset, int reach) {
   return (chooseThree(k + 3) - 4 * chooseThree(k + 2 - reach)) / std::pow(reach + 1.0, 4);
 }
 
-/// Largest sum of weights on one axis if each block of `block` cells holds one particle, at any place in it.
+/// Largest sum of weights on one axis if each block of `block` cells holds one particle, at any position in it.
 double largestSum(int reach, int block) {
   double largest = 0.0;
   for (int shift = 0; shift < block; ++shift) {

@@ -4,7 +4,7 @@
 
 #include <shared/event_uniforms.h>
 
-#include <spindrift/sim_setup/random.h>
+#include <spindrift/core/random.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/storm.h>
 
@@ -29,7 +29,7 @@ std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayou
   std::vector<core::Effect> out;
   if (!scene.storm || scene.storm->level_ratio <= 0) return out;
   const core::StormScene& storm = *scene.storm;
-  SplitMix64 random(scene.seed * 0x2545f4914f6cdd1dull + tick);
+  core::SplitMix64 random(scene.seed * 0x2545f4914f6cdd1dull + tick);
 
   const double drops = storm.level_ratio * storm.drops_per_m2_s * wave.length_m * wave.width_m * tick_s;
   auto count = static_cast<std::size_t>(drops);

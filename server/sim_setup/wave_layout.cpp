@@ -24,9 +24,7 @@ constexpr double kShallowCourant = 0.45;
 /// Nonlinear water has at most this depth, so that depth and elevation together fit their units.
 constexpr double kShallowMaxDepth_m = 50.0;
 
-core::Error invalid(std::string message) {
-  return {core::ErrorCode::kInvalidInput, std::move(message)};
-}
+using core::invalid;
 
 /// Says which periodic side has a number of cells without grids for the dispersion, and which numbers have some.
 std::string whyNoGrids(const WaveLayout& layout) {
@@ -57,7 +55,7 @@ std::string whyNoGrids(const WaveLayout& layout) {
 
 core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   const core::WaveScene& w = *scene.wave;
-  const core::WaveCells cells = w.cells();
+  const core::WaveCells cells = core::waveCellsOf(w);
   if (!core::widthFits(cells, w.width_m))
     return invalid(
         fmt::format("wave.width_m: {:.6g} m is not a whole number of the cells of {:.6g} m that side_m and "

@@ -38,7 +38,7 @@ std::string_view textOf(core::ByteView bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// A header without its checksum, with place for `extra_bytes` before the room's name.
+/// A header without its checksum, with space for `extra_bytes` before the room's name.
 core::Bytes startOf(std::string_view magic, const FileOwner& owner, std::uint64_t number, std::size_t extra_bytes) {
   core::Bytes out(kStartBytes + extra_bytes);
   std::ranges::copy(magic, out.begin());
@@ -77,7 +77,7 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
   const std::string_view start = textOf(file.first(std::min(file.size(), kMagicBytes)));
   const std::string_view family = magic.substr(0, kMagicBytes - 1);
   if (!start.starts_with(family.substr(0, start.size())))
-    return refuse("it is no " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
+    return refuse("it is not a " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
   if (start.size() == kMagicBytes && start.back() == '1') {
     if (file.size() < old_header_bytes) return refuse("it ends within its header", file.size());
     Start out{.version = Version::kOld, .number = {}, .header_bytes = old_header_bytes, .fault = {}};
@@ -87,7 +87,7 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
   }
   if (start.size() == kMagicBytes && start != magic) {
     if (start.back() < '0' || start.back() > '9')
-      return refuse("it is no " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
+      return refuse("it is not a " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
     return refuse("it was written by " + std::string(start.back() > magic.back() ? "a newer" : "another") +
                       " version of the program, in the format " + std::string(start) + " (this version reads " +
                       std::string(magic) + " and the one before); that version can use it under its old name",

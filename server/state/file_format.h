@@ -43,14 +43,14 @@ struct Fault {
   bool is_torn_end = false;
 };
 
-/// What is in the file of a snapshot.
+/// Content of a snapshot file.
 struct ParsedSnapshot {
   core::ByteView payload;                    ///< views the parsed bytes; empty when there is a fault
   std::optional<std::uint64_t> next_number;  ///< of the first record after it; nullopt in version 1
   std::optional<Fault> fault;
 };
 
-/// What is in the file of a log.
+/// Content of a log file.
 struct ParsedLog {
   std::optional<std::uint64_t> first_number;  ///< of records[0], also without records; nullopt in version 1
   std::vector<core::ByteView> records;        ///< the whole ones up to the fault; they view the parsed bytes

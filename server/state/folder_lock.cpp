@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint64_t kPidMaxBytes = 20;
 
-/// Returns "process 123" from the text of a lock file, "another process" if there is no number in it.
+/// Returns "process 123" from the text of a lock file, "another process" if it has none.
 std::string holderOf(const core::Bytes& text) {
   std::string digits;
   for (const std::uint8_t byte : text) {

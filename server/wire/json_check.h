@@ -16,8 +16,8 @@ inline constexpr std::size_t kJsonMaxDepth = 32;
 
 /// Returns nullopt if `json` is one JSON object (RFC 8259, UTF-8, at most kJsonMaxDepth deep) whose members are fields
 /// of `type` in either spelling, with values of the right kind (object, array, string, number, boolean; numbers may be
-/// quoted). Otherwise returns one line: the place or field, what is wrong, what is expected. Does not check ranges of
-/// numbers and names of enum values.
+/// quoted). Otherwise returns one line: the location or field, what is wrong, what is expected. Does not check ranges
+/// of numbers and names of enum values.
 std::optional<std::string> checkJson(std::string_view json, const google::protobuf::Descriptor& type);
 
 }  // namespace spindrift::wire

@@ -43,6 +43,7 @@ core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene) {
   out.mutable_room_state()->set_speed(facts.speed);
   *out.mutable_boat_list() = facts.boats;
   for (const std::string& name : facts.scenes) out.add_scenes(name);
+  if (facts.levels.levels_size() > 0) *out.mutable_fidelity_levels() = facts.levels;
   return serialize(message);
 }
 

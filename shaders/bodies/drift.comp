@@ -49,7 +49,7 @@ void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mp
         const float overlap_m = 0.5 * (b.hull_m.y + o.hull_m.y) - distance_m;
         if (overlap_m > deepest_m) {
           deepest_m = overlap_m;
-          // Two boats at the same place separate by their order.
+          // Two boats at the same position separate by their order.
           normal = distance_m > 1e-4 ? d / distance_m : vec2(own < other ? 1.0 : -1.0, 0.0);
         }
       }

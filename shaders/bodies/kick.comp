@@ -1,6 +1,6 @@
 // Second half of a tick of every boat: the water's forces, thrust and drag change its velocities. One group per boat.
 // Reads SURFACE, SURFACE_FLOW, TERRAIN, BoatControls. Updates BOATS.
-// Leapfrog: places are those at the end of a tick, velocities those half a tick later. bodies/drift.comp has moved the
+// Leapfrog: positions are those at the end of a tick, velocities those half a tick later. bodies/drift.comp has moved the
 // boat to the time at which SURFACE was sampled; the kick is centred there. Inside the kick, forces act for half a tick
 // before and after the drags, which are solved exactly (Strang 1968).
 // The hull is a distribution of volume over wave cells, the same that presses on the water (bodies/press.comp). With w =
@@ -148,7 +148,7 @@ HullSums shareOf(BoatState b, vec2 half_m, float peak_m) {
 #if WAVE
   across = min(across, waveCounts());
 #endif
-  // Clamped, because a non-finite place becomes an index.
+  // Clamped, because a non-finite position becomes an index.
   const vec2 middle = clamp((b.centre_m.xz + waveHalf_m()) / sim.wave_cell_m, vec2(-1e6), vec2(1e6));
   const ivec2 first = ivec2(floor(middle)) - across / 2;
   const BoatState before = drifted(b, -0.5 * sim.wave_dt_s);
@@ -183,7 +183,7 @@ HullSums totalOf(HullSums share) {
   return share;
 }
 
-/// Accelerations that depend on places only.
+/// Accelerations that depend on positions only.
 struct Forces {
   vec3 along_mps2;  // forward, starboard, up
   vec2 tilt_ps2;

@@ -30,7 +30,7 @@ float crestIntegral(float s_m, float front_m, float back_m) {
   return width_m * tanh(clamp(s_m / width_m, -12.0, 12.0));
 }
 
-/// A crest's integral at the two sides of the domain that it crosses, low and high: the same for all places.
+/// A crest's integral at the two sides of the domain that it crosses, low and high: the same for all positions.
 vec2 crestEnds(EventUniform e) {
   return vec2(crestIntegral(-e.half_side_m - e.offset_m, e.front_m, e.back_m),
               crestIntegral(e.half_side_m - e.offset_m, e.front_m, e.back_m));
@@ -42,11 +42,11 @@ vec2 crestEnds(EventUniform e) {
 #if DISPERSE
 #define RISE_SHARE 0.3  // of that way, from the crest on
 
-/// Place on the way from the crest (0) to the side behind it (1).
+/// Position on the way from the crest (0) to the side behind it (1).
 float behindCrest(EventUniform e, float s) { return clamp((e.offset_m - s) / (e.offset_m + e.half_side_m), 0.0, 1.0); }
 #endif
 
-/// Share of that water that comes from places up to s along the crest's direction.
+/// Share of that water that comes from positions up to s along the crest's direction.
 float takenShare(EventUniform e, float s) {
 #if DISPERSE
   const float u = behindCrest(e, s);

@@ -6,7 +6,7 @@
 #include "wave/wave_cell.glsl"
 
 /// Returns the signed distance, its gradient and the still depth (inside an obstacle: minus its height above the water)
-/// at a place. The distance is extrapolated from the cell's centre along the gradient.
+/// at a position. The distance is extrapolated from the cell's centre along the gradient.
 vec4 terrainAt(vec2 xz) {
   const ivec2 n = waveCounts();
   const vec2 u = (xz + waveHalf_m()) / sim.wave_cell_m;

@@ -1,7 +1,7 @@
 // What the gauges of the scene read after a tick, one invocation per gauge.
 // Reads ELEVATION [cells, units], FLOW, BASIN, BED. Writes PARTIAL_SUM, 4 words per gauge: elevation [m], velocity along
 // x and z [m/s], share of wet cells around the gauge.
-// Equations: bilinear between the centres of the four cells around the place. Dry cells do not count: their weight goes
+// Equations: bilinear between the centres of the four cells around the position. Dry cells do not count: their weight goes
 // to the wet ones. Among dry cells alone the velocity is 0, and the elevation that of the ground where water can come
 // (NONLINEAR), otherwise 0. Velocity of a cell: mean of flow over still depth at its two faces along
 // an axis, 0 at a closed one; with NONLINEAR mean of the velocities in FLOW. Flows belong to half a wave step before the

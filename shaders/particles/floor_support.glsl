@@ -31,7 +31,7 @@ float floorDensity(vec3 x_i) {
 vec3 floorGradient(vec3 x_i) { return vec3(0.0, -2.0 * sim.rest_density_kgpm3 * sim.wall_share * flatFloorReach(x_i) / sim.wall_reach_m, 0.0); }
 
 /// Acceleration by the floor: pressure, -(p_i / rho_i^2) times the gradient, and viscosity against the floor at rest, which
-/// is implicit in the step: below the lowest layer's place it is stiffer than between particles.
+/// is implicit in the step: below the lowest layer's position it is stiffer than between particles.
 /// `pressure_term` = p_i / rho_i^2 [m^5/(kg s^2)].
 vec3 floorAcceleration(vec3 x_i, vec3 v_i, float pressure_term, float rho_i) {
   const float u = flatFloorReach(x_i);

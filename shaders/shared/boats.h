@@ -8,7 +8,7 @@
 //   5  full speed [m/s], aloft [0..1] (0: the water carries the boat, 1: it is in the air), 0, 0
 //   6  mean velocity of the water under the hull as last sampled: x, z, up [m/s]; acceleration ahead by the water's
 //      pressure on the hull [m/s^2]
-// Places are those at the end of the tick, speeds and rates those half a tick later (bodies/kick.comp).
+// Positions are those at the end of the tick, speeds and rates those half a tick later (bodies/kick.comp).
 #ifndef SPINDRIFT_SHARED_BOATS_H
 #define SPINDRIFT_SHARED_BOATS_H
 

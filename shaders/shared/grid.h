@@ -2,7 +2,7 @@
 #ifndef SPINDRIFT_SHARED_GRID_H
 #define SPINDRIFT_SHARED_GRID_H
 
-// Cell of a removed particle: it gets no place in the sorted arrays.
+// Cell of a removed particle: it gets no index in the sorted arrays.
 #define NO_CELL 0xffffffffu
 // Maximum number of particles per cell that grid/reorder.comp sorts into a reproducible order, at quadratic cost.
 // Further ones stay in their order of arrival: so many in a cell are not physical, but they must not stall the device.

@@ -49,7 +49,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float downforce_per_m_s2;
 
   // Coupling: end of the substep minus the end of the tick (0 in the last substep). The surface moves with its own
-  // speed toward its place at the end of the tick.
+  // speed toward its position at the end of the tick.
   float surface_lead_s;
   // Two-way coupling.
   uint pool_capacity_count;

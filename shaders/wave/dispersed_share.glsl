@@ -25,7 +25,7 @@ layout(binding = DISPERSED) uniform samplerBuffer dispersed;
 
 float breakingAt(int i) { return texelFetch(breaking, i).y; }
 
-/// Share of what high waves add to the dispersion at a place [cells] near wave-makers: within two depths water stretches as the
+/// Share of what high waves add to the dispersion at a position [cells] near wave-makers: within two depths water stretches as the
 /// maker lets it in, by the linear dispersion that the maker counts on, and a dynamic head would draw in more.
 float awayFromMakers(vec2 from_minus, ivec2 n) {
 #if MAKERS

@@ -20,7 +20,7 @@ layout(binding = FLOW) uniform samplerBuffer flow;
 layout(std430, binding = SURFACE_RISE) restrict writeonly buffer SurfaceRise { vec2 surface_rise[]; };
 
 /// The share of the water that its dynamic head can be. A solitary wave of 0.3 of the depth has 0.01. With 0.1, steep waves shorter
-/// than the depth drove each other after breakers on a slope, at 20 cells a depth.
+/// than the depth drove each other after breakers on a slope, at 20 cells per depth.
 #define MAX_DYNAMIC_HEAD 0.02
 /// The same bound where a depth has more cells than this: as if it had this many. Waves much shorter than the depth have no such
 /// head, and one of several cells made them grow: to 0.09 of the depth, in water 1,000 cells deep to seven times the sea's height.

@@ -11,7 +11,7 @@
 
 layout(local_size_x = PATCH_GROUP, local_size_y = PATCH_GROUP) in;
 
-/// Turns a place in the square of a splash into its cell. Returns false outside the square and outside the domain.
+/// Turns a position in the square of a splash into its cell. Returns false outside the square and outside the domain.
 bool findCell(EventUniform e, ivec2 n, inout ivec2 cell) {
   const float cell_m = sim.wave_cell_m;
   // Number of cells of the square: as many as the splash needs; along a periodic axis at most the whole domain once.

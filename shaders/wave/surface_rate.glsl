@@ -6,7 +6,7 @@
 
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 
-/// d eta/dt as a mean over 3 x 3 places with weights (1 2 1)^2 / 16. The places are one cell apart, or as far as
+/// d eta/dt as a mean over 3 x 3 positions with weights (1 2 1)^2 / 16. The positions are one cell apart, or as far as
 /// droplets are spread: a front is wider than that, the ripples of single droplets are not.
 float smoothRate(ivec2 cell, ivec2 n) {
   const ivec2 apart = min(ivec2(max(int(sim.splat_width_m / sim.wave_cell_m + 0.5), 1)), n);

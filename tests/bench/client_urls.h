@@ -10,7 +10,7 @@
 
 namespace spindrift::bench {
 
-/// Errors: those of ClientUrl::parse(); kInvalidInput where there is none.
+/// Errors: those of ClientUrl::parse(); kInvalidInput for an empty list.
 inline core::Result<std::vector<net::ClientUrl>> parseUrls(const std::vector<std::string>& texts) {
   std::vector<net::ClientUrl> urls;
   for (const std::string& text : texts) {

@@ -34,7 +34,7 @@ struct CodecRow {
   double encode_ms = 0.0;
   double decode_ms = 0.0;
   double max_error = 0.0;  ///< in quanta; for particles: distance along an axis
-  /// Lower bounds for unordered places, in bits for the items of all frames: as dense as resting water, and with the
+  /// Lower bounds for unordered positions, in bits for the items of all frames: as dense as resting water, and with the
   /// same number anywhere in the box.
   std::optional<double> bound_bits = {};
   double sparse_bits = 0.0;
@@ -157,7 +157,7 @@ class CodecMeter {
     return {};
   }
 
-  /// N log2(places in the box) - log2(N!): the least for any codec that does not know where the water is.
+  /// N log2(positions in the box) - log2(N!): the least for any codec that does not know where the water is.
   static double sparseBits(const core::ParticleView& view, double quantum_m) {
     const double count = view.count;
     double place_bits = 0.0;

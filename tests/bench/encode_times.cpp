@@ -138,7 +138,7 @@ int measure(const std::vector<RecordedFrame>& frames, std::size_t rounds) {
     double sum = 0.0;
     for (std::size_t i = 1; i < frames.size(); ++i) sum += times[layer].least_ms[i];
     const double mean = times[layer].sum_ms / measured / static_cast<double>(rounds);
-    std::printf("%-16s least %.3f ms, mean %.3f ms, %.0f bytes a frame\n", v1::Layer_Name(kLayers[layer]).c_str(),
+    std::printf("%-16s least %.3f ms, mean %.3f ms, %.0f bytes per frame\n", v1::Layer_Name(kLayers[layer]).c_str(),
                 sum / measured, mean, times[layer].bytes / measured / static_cast<double>(rounds));
     least_ms += sum / measured;
     mean_ms += mean;

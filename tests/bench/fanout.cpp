@@ -2,6 +2,7 @@
 #include <cstring>
 #include <ctime>
 #include <fstream>
+#include <memory>
 #include <mutex>
 #include <thread>
 
@@ -55,7 +56,7 @@ class EchoApplication final : public net::Application {
       pthread_getcpuclockid(pthread_self(), &clock);  // the only I/O thread
       io_clock_ = clock;
     });
-    hub_->join(session, kRoom);
+    hub_->join(session, kRoom, demand_);
     hub_->watch(session, 0, {.max_rate_hz = kWatchRate_hz});
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
@@ -72,6 +73,7 @@ class EchoApplication final : public net::Application {
  private:
   static constexpr double kWatchRate_hz = 1000.0;
   net::Hub* hub_ = nullptr;
+  const std::shared_ptr<core::DemandTable> demand_ = std::make_shared<core::DemandTable>();
   std::once_flag clock_once_;
   std::atomic<clockid_t> io_clock_{CLOCK_PROCESS_CPUTIME_ID};
 };

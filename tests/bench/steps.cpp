@@ -136,8 +136,8 @@ void print(std::FILE* out, const StepResult& r) {
 
 core::Result<boost::json::array> measureSteps(gpu::Context& ctx, const core::Scene& scene, double seconds,
                                               std::FILE* out) {
-  fmt::print(out, "{:<18} {:>9} {:>8} {:>9} {:>9} {:>11} {:>6}   ms a tick by pass\n", "case", "particles", "substeps",
-             "tick ms", "substep ms", "us/particle", "rtf");
+  fmt::print(out, "{:<18} {:>9} {:>8} {:>9} {:>9} {:>11} {:>6}   ms per tick by pass\n", "case", "particles",
+             "substeps", "tick ms", "substep ms", "us/particle", "rtf");
   boost::json::array results;
   for (const StepCase& test : stepCases(scene)) {
     auto result = measure(ctx, test, seconds);

@@ -66,7 +66,7 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await page.close();
   });
 
-  it("with a room that does not exist says so, and leads to the rooms that there are", slow, async () => {
+  it("of a missing room links the existing rooms", slow, async () => {
     await open(`${server.url}?quality=minimal&room=nope`);
     await waitFor("a refusal", (stats) => stats.connectionState === "refused: there is no room nope");
     assert.deepEqual(await page.getByTestId("other-rooms").locator("a").allInnerTexts(), ["main", "mound"]);

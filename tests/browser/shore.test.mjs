@@ -22,10 +22,10 @@ const kLeastPairs = 8;
 /** Height of the sand over the still water. */
 const sandM = (xM) => 0.25 * (xM - 2);
 
-/** Places on the sand, in lines up the beach. */
+/** Positions on the sand, in lines up the beach. */
 const kLines = [-1, -0.5, 0, 0.5, 1].map((zM) => Array.from({ length: 24 }, (_, i) => ({ xM: 2.2 + 0.15 * i, zM, yM: sandM(2.2 + 0.15 * i) })));
 
-/** Returns pairs of a place that water has left and a dry place of the same line. */
+/** Returns pairs of a position that water has left and a dry position of the same line. */
 async function pairsOn(page) {
   const lines = await page.evaluate((wanted) => wanted.map((line) => line.map(({ xM, zM }) => window.spindrift.shoreAt(xM, zM))), kLines);
   return kLines.flatMap((line, k) => {

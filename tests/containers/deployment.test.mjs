@@ -107,7 +107,7 @@ describe("the manifests for Kubernetes", () => {
     }
   });
 
-  it("probe paths that the server answers: readiness says whether it takes clients, liveness only whether it answers", () => {
+  it("probe readiness and liveness at paths that the server answers", () => {
     for (const workload of ours) {
       for (const container of containersOf(workload)) {
         assert.equal(container.livenessProbe.httpGet.path, "/healthz");
@@ -173,7 +173,7 @@ describe("docker/compose.yaml", () => {
     }
   });
 
-  it("mounts volumes that there are, and gives each published port to one service of a profile", () => {
+  it("mounts existing volumes and publishes each port once", () => {
     for (const [name, service] of services) {
       for (const volume of service.volumes ?? []) assert.ok(volume.split(":")[0] in compose.volumes, `${name}: ${volume}`);
     }

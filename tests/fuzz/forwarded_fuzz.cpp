@@ -5,10 +5,10 @@
 #include <string_view>
 #include <vector>
 
-#include <spindrift/net/network_text.h>
+#include <spindrift/http/network_text.h>
+#include <spindrift/http/trusted_networks.h>
 
 #include "fuzz.h"
-#include "trusted_networks.h"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spindrift;

@@ -10,30 +10,24 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/http/origin.h>
+#include <spindrift/http/request.h>
+#include <spindrift/http/routes.h>
+#include <spindrift/http/static_files.h>
+#include <spindrift/http/url.h>
+
 #include "fuzz.h"
-#include "http_request.h"
-#include "http_routes.h"
-#include "origin.h"
-#include "static_files.h"
 #include "temporary_folder.h"
-#include "url.h"
 
 namespace spindrift::fuzz {
 namespace {
 
 constexpr std::size_t kBodyMaxBytes = 256;
 
-class Application final : public net::Application {
- public:
-  core::Result<void> acceptSession(const std::string& room) override {
-    if (room.empty() || room == "pool") return {};
-    return core::Error{core::ErrorCode::kInvalidInput, "there is no such room"};
-  }
-  void sessionOpened(net::SessionId, const std::string&, const std::string&) override {}
-  void sessionMessage(net::SessionId, core::ByteView) override {}
-  void sessionClosed(net::SessionId, const net::SessionEnd&) override {}
-  void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
-};
+core::Result<void> acceptRoom(const std::string& room) {
+  if (room.empty() || room == "pool") return {};
+  return core::Error{core::ErrorCode::kInvalidInput, "there is no such room"};
+}
 
 /// A small web root beside a file that must never be served.
 struct Site {
@@ -84,7 +78,7 @@ bool read(net::RequestParser& parser, boost::beast::flat_buffer& buffer, More mo
 
 /// Handles one request from the buffer; false when the connection ends. `more` adds the next piece, false at the end.
 template <typename More>
-bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Application& application) {
+bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site) {
   net::RequestParser parser;
   net::bound(parser, kBodyMaxBytes);
   boost::system::error_code error;
@@ -108,7 +102,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Applicat
   const net::Request& request = parser.get();
   must(request.count(boost::beast::http::field::transfer_encoding) == 0, "only its length divides a request");
   if (boost::beast::websocket::is_upgrade(request)) {
-    const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), application);
+    const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), acceptRoom);
     if (decision.refusal) {
       must(decision.refusal->status >= 400, "a refusal is an error");
       checkReply(*decision.refusal);
@@ -140,7 +134,6 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site, Applicat
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spindrift;
   static fuzz::Site site;
-  static fuzz::Application application;
   spdlog::set_level(spdlog::level::off);
   if (size == 0) return 0;
   const std::size_t piece_bytes = std::size_t{1} + 7 * data[0];
@@ -161,7 +154,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     return true;
   };
   boost::beast::flat_buffer buffer;
-  while (fuzz::serveOne(buffer, more, site, application)) {
+  while (fuzz::serveOne(buffer, more, site)) {
     if (buffer.size() == 0 && at == end) break;
   }
   return 0;

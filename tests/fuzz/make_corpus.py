@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the fuzz targets below corpus/ from messages and requests that are given as text.
+"""Writes the seeds of the fuzz targets below corpus/; long because it holds the text of every message and request.
 
 usage: make_corpus.py [FOLDER]            (needs protoc; corpus/ beside this file if left out)
 

@@ -69,11 +69,19 @@ class ClusterTest : public testing::Test {
   static HttpAnswer post(std::uint16_t port, const std::string& target, const std::string& body) {
     return httpRequest(port, "POST", target, "Content-Type: application/json\r\n", body);
   }
-  /// The value of a metric without labels; -1: there is none.
+  /// The value of a metric without labels; -1 if the page does not have it.
   static double metric(std::uint16_t port, const std::string& name) {
     const std::string page = httpRequest(port, "GET", "/metrics").body;
     const std::size_t at = page.find("\nspindrift_" + name + " ");
     return at == std::string::npos ? -1.0 : std::stod(page.substr(at + name.size() + 12));
+  }
+  /// Returns a subscription to the packed surface at the full rate.
+  static v1::Subscribe packedSurface() {
+    v1::Subscribe out;
+    out.set_layer(v1::LAYER_SURFACE);
+    out.set_max_rate_hz(60.0);
+    out.set_packing(v1::PACKING_PACKED);
+    return out;
   }
   static bool eventually(const std::function<bool()>& holds) {
     const auto deadline = std::chrono::steady_clock::now() + kStartPatience;

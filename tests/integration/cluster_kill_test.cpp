@@ -199,8 +199,8 @@ class ClusterKill : public ClusterTest {
     fs::remove_all(older);
     fs::copy(newest_, older, fs::copy_options::recursive);
     removeNewestSnapshots(older);
-    auto newest_store = rooms::StateStore::open({.folder = newest_});
-    auto older_store = rooms::StateStore::open({.folder = older});
+    auto newest_store = history::StateStore::open({.folder = newest_});
+    auto older_store = history::StateStore::open({.folder = older});
     ASSERT_TRUE(newest_store && older_store);
     const auto facts = ledger_.rooms();
     for (const std::string& room : kRooms) {
@@ -253,7 +253,7 @@ class ClusterKill : public ClusterTest {
   Totals totals_;
 };
 
-TEST_F(ClusterKill, NothingAcknowledgedIsLostAndAnotherServerGoesOnBitForBit) {
+TEST_F(ClusterKill, TakeoverLosesNothingAcknowledged) {
   const std::uint64_t kills = variableOr("SPINDRIFT_CLUSTER_KILLS", kKillCount);
   std::string killed_name = "s1";
   std::string other_name = "s2";

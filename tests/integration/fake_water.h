@@ -89,7 +89,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
     facts.room = room;
     facts.session_id = session;
     hub_->sendAnswer(session, wire::greeting(facts, scene_));
-    hub_->join(session, room);  // afterwards, so that no state message precedes the greeting
+    hub_->join(session, room, demandOf(room));  // afterwards, so that no state message precedes the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {
     const wire::ClientMessage message = wire::parseClientMessage(bytes);
@@ -106,14 +106,11 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
       hub_->sendAnswer(session, wire::pong(ping->client_time_s, 0.0));
     } else if (const auto* command = std::get_if<v1::Command>(&message)) {
       hub_->broadcastState(kRooms[command->command_id() % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
-      if (command->has_reset()) hub_->join(session, kRooms[1]);
+      if (command->has_reset()) hub_->join(session, kRooms[1], demands[1]);
       hub_->sendAnswer(session, wire::ack(command->command_id(), 0));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }
-  core::StreamDemand demand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count) const override {
-    return service::demandOf(*hub_, room, stream, reduced_count);
-  }
   void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override {
     service::publishTo(*hub_, room, stream, frame, levels);
@@ -122,11 +119,17 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
 
   /// The rooms that get frames.
   static inline const std::array<std::string, 2> kRooms{"", "pool"};
+  const std::array<std::shared_ptr<core::DemandTable>, 2> demands{std::make_shared<core::DemandTable>(),
+                                                                  std::make_shared<core::DemandTable>()};
 
   std::atomic<int> opened_count{0};
   std::atomic<int> closed_count{0};
 
  private:
+  [[nodiscard]] std::shared_ptr<core::DemandTable> demandOf(const std::string& room) const {
+    return demands[room == kRooms[1] ? 1 : 0];
+  }
+
   net::Hub* hub_ = nullptr;
   v1::Scene scene_;
 };
@@ -168,7 +171,7 @@ class FakeWater {
   void makeFrames(std::size_t room) {
     std::minstd_rand random(static_cast<unsigned>(room) + 1);
     while (!stopping_) {
-      encoder->submit(FakeGateway::kRooms[room], fakeFrame(++ticks_[room], random));
+      encoder->submit(FakeGateway::kRooms[room], gateway.demands[room], fakeFrame(++ticks_[room], random));
       std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
   }

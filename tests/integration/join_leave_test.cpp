@@ -84,7 +84,7 @@ std::string visit(const FakeWater& water, std::uint16_t port, int person, int tu
   const v1::Level level = person % 3 == 1 ? v1::LEVEL_COARSE : v1::LEVEL_FULL;
   if (auto wrong = readFrames(client, first, level); !wrong.empty()) return wrong;
   if (!client.apply(person % 3 == 0 ? reset() : splash())) return "no answer to a command";
-  // Frames of the previous packing may still be in flight; after the pong there are none.
+  // Frames of the previous packing may still be in flight; none comes after the pong.
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_FOAM, v1::LAYER_PARTICLES}) client.unsubscribe(layer);
   if (!client.barrier()) return "no pong";
   if (turn % 2 == 0) return client.ws().close() ? "" : "no goodbye";

@@ -6,11 +6,10 @@
 #include <iterator>
 
 #include <fmt/format.h>
-#include <shared/pool.h>
 
 #include <spindrift/rooms/room.h>
-#include <spindrift/rooms/water_builder.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/water/water_builder.h>
 
 #include "silent_outlets.h"
 
@@ -21,9 +20,6 @@ namespace fs = std::filesystem;
 
 /// docs/state_files.md: the start, length and checksum of the payload; the name of the room follows, and the payload.
 constexpr std::streamoff kSnapshotHeadBytes = 32 + 8 + 4;
-
-constexpr const char* kPoolName = "pool";
-constexpr const char* kParticleNames[] = {"position", "velocity", "acceleration"};
 
 std::vector<std::uint64_t> numbers(const fs::path& folder, const std::string& extension) {
   std::vector<std::uint64_t> out;
@@ -60,21 +56,9 @@ std::string wordDifferences(const std::string& one, const std::string& other) {
   return count == 0 ? "" : fmt::format("{} of {} words:{}", count, one.size() / 4, first);
 }
 
-/// The words of a buffer that mean something: behind the living particles of a pool there is what earlier ones left.
-std::string wordsOf(const v1::WaterState& water, int number) {
-  const v1::WaterBuffer& buffer = water.buffers(number);
-  const auto pool =
-      std::ranges::find_if(water.buffers(), [](const v1::WaterBuffer& one) { return one.name() == kPoolName; });
-  const bool is_of_particles = std::ranges::count(kParticleNames, buffer.name()) > 0;
-  if (pool == water.buffers().end() || !is_of_particles) return buffer.words();
-  std::uint32_t live_count = 0;
-  std::memcpy(&live_count, &pool->words().at(POOL_LIVE * sizeof(std::uint32_t)), sizeof live_count);
-  return buffer.words().substr(0, std::size_t{live_count} * 4 * sizeof(float));
-}
-
 /// Returns whether the record says what the command did. The id of a reset may be that of an equal one of somebody
 /// else: both were carried out together.
-bool says(const v1::StateRecord& record, const SentCommand& sent) {
+bool says(const v1::Record& record, const SentCommand& sent) {
   if (record.tick() != sent.tick || !record.has_command()) return false;
   if (sent.command.has_reset()) return record.command().has_reset();
   return record.command().SerializeAsString() == sent.command.SerializeAsString();
@@ -84,11 +68,11 @@ bool isScene(const v1::Scene& scene, const v1::ChangeScene& wanted) {
   return scene.name() == wanted.name() && (!wanted.has_fidelity() || scene.fidelity() == wanted.fidelity());
 }
 
-Found findScene(const SentCommand& sent, const rooms::KeptRoom& kept) {
+Found findScene(const SentCommand& sent, const history::KeptRoom& kept) {
   const v1::ChangeScene& wanted = sent.command.change_scene();
   // A change to what the room has already is acknowledged and changes nothing.
   bool is_there = isScene(kept.state->scene(), wanted);
-  for (const v1::StateRecord& record : kept.records) {
+  for (const v1::Record& record : kept.records) {
     if (record.tick() > sent.tick) break;
     if (record.has_scene()) is_there = isScene(record.scene(), wanted);
     if (record.has_continued_scene()) is_there = isScene(record.continued_scene(), wanted);
@@ -96,10 +80,10 @@ Found findScene(const SentCommand& sent, const rooms::KeptRoom& kept) {
   return is_there ? Found::kInLog : Found::kNowhere;
 }
 
-Found findOwner(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all) {
+Found findOwner(const SentCommand& sent, const history::KeptRoom& kept, const std::vector<SentCommand>& all) {
   const std::uint32_t boat_id = sent.command.take_boat().boat_id();
   bool is_owner = owns(kept.state->people(), sent.person_id, boat_id);
-  for (const v1::StateRecord& record : kept.records) {
+  for (const v1::Record& record : kept.records) {
     if (record.tick() > sent.tick) break;
     if (record.has_people()) is_owner = owns(record.people(), sent.person_id, boat_id);
   }
@@ -147,18 +131,18 @@ std::optional<v1::KeptState> readSnapshot(const fs::path& state_folder, const st
   return state;
 }
 
-core::Result<std::optional<v1::KeptState>> restoredRoom(rooms::StateStore& store, const std::string& room,
+core::Result<std::optional<v1::KeptState>> restoredRoom(history::StateStore& store, const std::string& room,
                                                         const gpu::DeviceChoice& device, std::uint64_t least_tick) {
   auto place = store.place(room);
   if (!place) return place.error();
   if (!place->kept) return std::optional<v1::KeptState>();
-  std::vector<v1::StateRecord>& records = place->kept->records;
+  std::vector<v1::Record>& records = place->kept->records;
   if ((records.empty() ? 0 : records.back().tick()) < least_tick) {
-    v1::StateRecord& running = records.emplace_back();
+    v1::Record& running = records.emplace_back();
     running.set_tick(least_tick);
     running.set_running(true);
   }
-  rooms::WaterBuilder builder(device);
+  water::WaterBuilder builder(device);
   const rooms::RoomRules rules;
   SilentOutlets outlets;
   v1::Scene start = place->kept->state->start_scene();
@@ -201,7 +185,7 @@ std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState
   compareBytes("layout", x.layout(), y.layout());
   compare("buffers", x.buffers_size(), y.buffers_size());
   for (int k = 0; k < std::min(x.buffers_size(), y.buffers_size()); ++k)
-    compareBytes("buffer " + x.buffers(k).name(), wordsOf(x, k), wordsOf(y, k));
+    compareBytes("buffer " + x.buffers(k).name(), x.buffers(k).words(), y.buffers(k).words());
   v1::WaterState rest_x = x;
   v1::WaterState rest_y = y;
   for (v1::WaterState* rest : {&rest_x, &rest_y}) {
@@ -213,9 +197,9 @@ std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState
   return out;
 }
 
-Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all) {
+Found find(const SentCommand& sent, const history::KeptRoom& kept, const std::vector<SentCommand>& all) {
   const bool is_recorded =
-      std::ranges::any_of(kept.records, [&](const v1::StateRecord& record) { return says(record, sent); });
+      std::ranges::any_of(kept.records, [&](const v1::Record& record) { return says(record, sent); });
   if (is_recorded) return Found::kInLog;
   if (sent.tick <= kept.state->tick()) return Found::kBeforeSnapshot;
   if (sent.command.has_change_scene()) return findScene(sent, kept);
@@ -224,7 +208,7 @@ Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vect
 }
 
 KeptCommands findAll(std::vector<SentCommand> all, const std::string& room, std::uint64_t opening,
-                     const rooms::KeptRoom& kept) {
+                     const history::KeptRoom& kept) {
   std::erase_if(all, [&](const SentCommand& one) { return one.room != room || one.opening != opening; });
   KeptCommands out;
   for (const SentCommand& sent : all) {

@@ -8,7 +8,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
-#include <spindrift/rooms/state_store.h>
+#include <spindrift/history/state_store.h>
 #include <spindrift/v1/kept_state.pb.h>
 
 #include "kill_load.h"
@@ -20,7 +20,7 @@ void removeNewestSnapshots(const std::filesystem::path& state_folder);
 
 /// Numbers of a room's snapshots, ascending.
 std::vector<std::uint64_t> snapshotNumbers(const std::filesystem::path& state_folder, const std::string& room);
-/// Highest number of a room's snapshots and logs; 0: there are none.
+/// Highest number of a room's snapshots and logs; 0 without files.
 std::uint64_t lastGeneration(const std::filesystem::path& state_folder, const std::string& room);
 /// The content of a snapshot as the program wrote it; nullopt if the file is not there (any more).
 std::optional<v1::KeptState> readSnapshot(const std::filesystem::path& state_folder, const std::string& room,
@@ -28,7 +28,7 @@ std::optional<v1::KeptState> readSnapshot(const std::filesystem::path& state_fol
 
 /// The room as a restarted server has it: its snapshot with the logs carried out, and then run to `least_tick`, because
 /// a newer snapshot may be ahead of the last record. nullopt: nothing usable is there.
-core::Result<std::optional<v1::KeptState>> restoredRoom(rooms::StateStore& store, const std::string& room,
+core::Result<std::optional<v1::KeptState>> restoredRoom(history::StateStore& store, const std::string& room,
                                                         const gpu::DeviceChoice& device, std::uint64_t least_tick = 0);
 
 /// Names what differs, with values; empty if the water, the time and the people are the same bit for bit.
@@ -37,7 +37,7 @@ std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState
 /// How a command is kept.
 enum class Found { kInLog, kBeforeSnapshot, kNowhere };
 /// `all`: every command sent to the room in this round.
-Found find(const SentCommand& sent, const rooms::KeptRoom& kept, const std::vector<SentCommand>& all);
+Found find(const SentCommand& sent, const history::KeptRoom& kept, const std::vector<SentCommand>& all);
 
 /// The acknowledged commands of one room.
 struct KeptCommands {
@@ -48,6 +48,6 @@ struct KeptCommands {
 };
 /// Looks for each command that was acknowledged in this opening of the room. `all`: every command sent in this round.
 KeptCommands findAll(std::vector<SentCommand> all, const std::string& room, std::uint64_t opening,
-                     const rooms::KeptRoom& kept);
+                     const history::KeptRoom& kept);
 
 }  // namespace spindrift::test

@@ -1,8 +1,8 @@
 // The number of particles changed while other parameters were not what they are now: the lattice follows from both.
 #include <gmock/gmock.h>
 
-#include <spindrift/rooms/room_water.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/water/room_water.h>
 
 #include "commands.h"
 
@@ -17,20 +17,20 @@ constexpr const char* kTank = R"(
 
 class KeptLayout : public testing::Test {
  protected:
-  std::unique_ptr<rooms::RoomWater> make() {
+  std::unique_ptr<water::RoomWater> make() {
     auto scene = scene::parseSceneText(kTank, "tank");
     if (!scene) throw std::runtime_error(scene.error().message);
-    auto water = rooms::Water::create({gpu::DeviceChoice::Kind::kSoftware, 0}, *std::move(scene));
+    auto water = water::Water::create({gpu::DeviceChoice::Kind::kSoftware, 0}, *std::move(scene));
     if (!water) return nullptr;
-    return std::make_unique<rooms::RoomWater>(*std::move(water));
+    return std::make_unique<water::RoomWater>(*std::move(water));
   }
-  static void set(rooms::RoomWater& water, const std::string& path, double value) {
+  static void set(water::RoomWater& water, const std::string& path, double value) {
     const auto rejected = water.apply(setParameter(path, value));
     EXPECT_FALSE(rejected) << rejected->message;
   }
 };
 
-TEST_F(KeptLayout, ARoomGoesOnWhateverItsParametersWereWhenItsParticlesWereLaidOut) {
+TEST_F(KeptLayout, RoomResumesWithAnOlderParticleLayout) {
   const auto before = make();
   if (!before) GTEST_SKIP() << "no device";
   set(*before, "gravity_mps2", 8.0);
@@ -59,11 +59,11 @@ TEST_F(KeptLayout, ARoomGoesOnWhateverItsParametersWereWhenItsParticlesWereLaidO
     after->bind();
     act(*after);
   };
-  both([](rooms::RoomWater& water) { water.step(); });
+  both([](water::RoomWater& water) { water.step(); });
   expectTheSame("after a tick");
-  both([](rooms::RoomWater& water) { (void)water.apply(reset()); });
+  both([](water::RoomWater& water) { (void)water.apply(reset()); });
   expectTheSame("after a reset");
-  both([](rooms::RoomWater& water) { set(water, "particles.count", 300); });
+  both([](water::RoomWater& water) { set(water, "particles.count", 300); });
   expectTheSame("after another number of particles");
   before->bind();
 }

@@ -1,5 +1,5 @@
 // A whole server whose rooms are kept on disk: files that are damaged, of other rooms, too many, or on a full disk.
-#include <spindrift/rooms/state_store.h>
+#include <spindrift/history/state_store.h>
 
 #include "full_disk.h"
 #include "server_fixture.h"
@@ -15,14 +15,14 @@ using testing::HasSubstr;
 class KeptServerTest : public ServerTest {
  protected:
   void adjust(service::WaterServerOptions& options) const override {
-    auto store = rooms::StateStore::open({.folder = folder_.path()});
+    auto store = history::StateStore::open({.folder = folder_.path()});
     ASSERT_TRUE(store) << store.error().message;
     options.rules.states = *std::move(store);
     options.max_room_count = max_room_count_;
   }
-  rooms::SceneCatalog scenes() const override {
+  water::SceneCatalog scenes() const override {
     scenes_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
-    return rooms::SceneCatalog(scenes_.path());
+    return water::SceneCatalog(scenes_.path());
   }
   void TearDown() override { stop(); }  // while the folder is there
 
@@ -46,12 +46,12 @@ class KeptServerTest : public ServerTest {
 };
 
 TEST_F(KeptServerTest, KeepsItsFolderForItself) {
-  const auto second = rooms::StateStore::open({.folder = folder_.path()});
+  const auto second = history::StateStore::open({.folder = folder_.path()});
   ASSERT_FALSE(second);
   EXPECT_THAT(second.error().message, HasSubstr("in use by process"));
 }
 
-TEST_F(KeptServerTest, DoesNotStartWhileTheDiskIsFullAndLosesNothingByIt) {
+TEST_F(KeptServerTest, StartOnAFullDiskIsRefusedWithoutLoss) {
   ASSERT_TRUE(client().apply(setSpeed(0.5)));
   stop();
   {
@@ -86,7 +86,7 @@ void writeNewerSnapshot(const std::filesystem::path& folder, const std::string& 
 }
 void keepAsItIs(v1::KeptState&) {}
 
-TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneThatIsNoStateOfARoom) {
+TEST_F(KeptServerTest, SnapshotWithoutARoomStateFallsBackToTheOneBefore) {
   ASSERT_TRUE(client().apply(setSpeed(0.5)));
   stop();
   writeNewerSnapshot(folder_.path(), "main", std::string(100, '\xff'), keepAsItIs);
@@ -95,7 +95,7 @@ TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneThatIsNoStateOfARoom) {
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "aside"));
 }
 
-TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneOfAnotherRoom) {
+TEST_F(KeptServerTest, SnapshotOfAnotherRoomFallsBackToTheOneBefore) {
   ASSERT_TRUE(client().apply(setSpeed(0.5)));
   stop();
   writeNewerSnapshot(folder_.path(), "main", "", [](v1::KeptState& kept) {
@@ -106,7 +106,7 @@ TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneOfAnotherRoom) {
   EXPECT_EQ(client().greeting().room_state().speed(), 0.5);
 }
 
-TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneWithAWrongHash) {
+TEST_F(KeptServerTest, SnapshotWithAWrongHashFallsBackToTheOneBefore) {
   ASSERT_TRUE(client().apply(setSpeed(0.5)));
   stop();
   writeNewerSnapshot(folder_.path(), "main", "",
@@ -120,7 +120,7 @@ TEST_F(KeptServerTest, GoesOnFromTheSnapshotBeforeOneWithAWrongHash) {
   EXPECT_EQ(damaged_count, 1u) << "and it is still there";
 }
 
-TEST_F(KeptServerTest, BeginsARoomAnewWhoseSnapshotsAreAllOfAnotherProgramAndSetsThemAside) {
+TEST_F(KeptServerTest, SnapshotsOfAnotherProgramAreSetAside) {
   ASSERT_TRUE(client().apply(splash()));
   stop();
   const auto room = roomFolder("main");
@@ -144,7 +144,7 @@ TEST_F(KeptServerTest, BeginsARoomAnewWhoseSnapshotsAreAllOfAnotherProgramAndSet
     EXPECT_TRUE(std::filesystem::exists(folder_.path() / "aside" / "main" / snapshot.filename())) << "under its name";
 }
 
-TEST_F(KeptServerTest, DoesNotRunACopyOfARoomsFolderAsASecondRoom) {
+TEST_F(KeptServerTest, CopiedRoomFolderIsRefused) {
   ASSERT_TRUE(client().apply(splash()));
   stop();
   const auto rooms = folder_.path() / "rooms";
@@ -155,7 +155,7 @@ TEST_F(KeptServerTest, DoesNotRunACopyOfARoomsFolderAsASecondRoom) {
   EXPECT_TRUE(std::filesystem::exists(rooms / "quay (copy)")) << "what is not opened stays";
 }
 
-TEST_F(KeptServerTest, ARoomThatIsRefusedOnAFullDiskLeavesNothing) {
+TEST_F(KeptServerTest, RoomRefusedOnAFullDiskLeavesNoFiles) {
   {
     const FullDisk full(kLogsOnly);
     EXPECT_EQ(openRoom("quay"), 503u);
@@ -165,7 +165,7 @@ TEST_F(KeptServerTest, ARoomThatIsRefusedOnAFullDiskLeavesNothing) {
   EXPECT_TRUE(std::filesystem::exists(roomFolder("quay")));
 }
 
-TEST_F(KeptServerTest, DoesNotStartWithMoreKeptRoomsThanItMayHave) {
+TEST_F(KeptServerTest, StartWithTooManyKeptRoomsIsRefused) {
   ASSERT_EQ(openRoom("dock"), 201u);
   ASSERT_EQ(openRoom("quay"), 201u);
   stop();

@@ -136,7 +136,7 @@ TEST_F(KeyValuesTest, IsMadeAnewAfterNatsLostItsData) {
   EXPECT_TRUE(reader.follows("a=1", 1s)) << "its revision is below those of the bucket of before";
 }
 
-TEST_F(KeyValuesTest, NoticesABucketThatWasMadeAnewBehindItsBack) {
+TEST_F(KeyValuesTest, NoticesThatTheBucketWasReplaced) {
   const Reader reader(nats_->port());
   const Reader writer(nats_->port());
   const auto first = writer.set("a", "1", 0);

@@ -114,7 +114,7 @@ std::string text(const boost::json::object& object, const char* member) {
   return found && found->is_string() ? std::string(found->as_string()) : "";
 }
 
-TEST_F(ProgramAccess, AJwtGivesRoleNameAndRoomToSessionsAndRequests) {
+TEST_F(ProgramAccess, JwtGivesRoleNameAndRoom) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string token = jwt("player", R"(,"sub":"ada","name":"Ada","room":"lab")");
   ScriptedClient ada = client(token, "lab", "Somebody else");
@@ -159,7 +159,7 @@ TEST_F(ProgramAccess, TokensUpTo8KiBPassBothWays) {
   stop();
 }
 
-TEST_F(ProgramAccess, AnOperatorOfOneRoomOpensAndClosesThatRoomOnly) {
+TEST_F(ProgramAccess, OperatorOfOneRoomOpensAndClosesOnlyIt) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string token = jwt("operator", R"(,"sub":"bob","room":["race"])");
   EXPECT_EQ(ask("POST", "/api/v1/rooms", token, R"({"name": "other", "scene": "wave_only"})").status, 403U);
@@ -169,7 +169,7 @@ TEST_F(ProgramAccess, AnOperatorOfOneRoomOpensAndClosesThatRoomOnly) {
   stop();
 }
 
-TEST_F(ProgramAccess, TokensOfARoomAreShownOnceAndSurviveARestart) {
+TEST_F(ProgramAccess, RoomTokensAreShownOnceAndSurviveARestart) {
   const std::vector<std::string> state{"--state-dir", path("state")};
   if (!serve(state)) GTEST_SKIP() << "no device";
   const HttpAnswer opened =
@@ -207,7 +207,7 @@ TEST_F(ProgramAccess, TokensOfARoomAreShownOnceAndSurviveARestart) {
   }
 }
 
-TEST_F(ProgramAccess, APersonHasOneBudgetOverAllSessionsAndRooms) {
+TEST_F(ProgramAccess, PersonHasOneBudgetOverAllSessions) {
   if (!serve({"--person-commands-per-s", "1"})) GTEST_SKIP() << "no device";
   const std::string token = jwt("player", R"(,"sub":"ada")");
   ScriptedClient one = client(token, "main");
@@ -233,7 +233,7 @@ TEST_F(ProgramAccess, APersonHasOneBudgetOverAllSessionsAndRooms) {
   stop();
 }
 
-TEST_F(ProgramAccess, TheAuditLogSaysWhatOperatorsDidAndWhoWasRefused) {
+TEST_F(ProgramAccess, AuditLogNamesOperatorsAndRefusals) {
   if (!serve()) GTEST_SKIP() << "no device";
   ScriptedClient chief = client(jwt("operator", R"(,"sub":"ada\"}\n{","name":"A\"da\n{")"));
   const v1::ServerMessage set = chief.ask(setParameter("wave.depth_m", 1.25));
@@ -274,7 +274,7 @@ TEST_F(ProgramAccess, TheAuditLogSaysWhatOperatorsDidAndWhoWasRefused) {
   EXPECT_EQ(text(lines[6], "room"), "race");
 }
 
-TEST_F(ProgramAccess, AFloodOfRefusalsDoesNotFillTheAuditLog) {
+TEST_F(ProgramAccess, FloodOfRefusalsDoesNotFillTheAuditLog) {
   if (!serve()) GTEST_SKIP() << "no device";
   for (int k = 0; k < 200; ++k) EXPECT_EQ(ask("GET", "/api/v1/rooms", "wrong-wrong-wrong-wrong").status, 401U);
   const std::string metrics = ask("GET", "/metrics", "").body;
@@ -283,7 +283,7 @@ TEST_F(ProgramAccess, AFloodOfRefusalsDoesNotFillTheAuditLog) {
   EXPECT_THAT(metrics, Not(HasSubstr("spindrift_audit_left_out_total 0")));
 }
 
-TEST_F(ProgramAccess, AHangUpReadsTokensAndKeysAgainAndOpensTheAuditLogAnew) {
+TEST_F(ProgramAccess, SighupReloadsTokensKeysAndAuditLog) {
   if (!serve()) GTEST_SKIP() << "no device";
   const std::string pause = R"({"set_paused": {"paused": true}})";
   ASSERT_EQ(ask("POST", "/api/v1/rooms/lab/commands", kOperator, pause).status, 200U);
@@ -308,7 +308,7 @@ TEST_F(ProgramAccess, AHangUpReadsTokensAndKeysAgainAndOpensTheAuditLogAnew) {
   EXPECT_FALSE(audit().empty());
 }
 
-TEST_F(ProgramAccess, WhatIsWrongWithAKeyIsSaidAtTheStart) {
+TEST_F(ProgramAccess, InvalidKeyIsReportedAtTheStart) {
   const auto outcomeOf = [&](std::vector<std::string> options) {
     options.insert(options.begin(), {"serve", "--port", "0", "--scene", smallScene()});
     return runProgram(options);

@@ -32,7 +32,7 @@ std::vector<boost::json::object> jsonLines(const std::string& log) {
   return objects;
 }
 
-TEST_F(Config, AServerTakesTheFlagThenTheVariableThenTheFile) {
+TEST_F(Config, FlagReplacesVariableReplacesFile) {
   const std::string small = smallScene();
   std::filesystem::create_directories(folder().path() / "web");
   const std::string file = config(
@@ -89,7 +89,7 @@ TEST_F(Config, AnOutputThatIsFullIsReported) {
   expectOneErrorLine(outcome, 2, {"--print-config", "standard output cannot be written"});
 }
 
-TEST_F(Config, AWrongFileOrVariableEndsTheProgramWithOneLine) {
+TEST_F(Config, InvalidFileOrVariableEndsWithOneLine) {
   const std::string file = config("\nport: 65536\n");
   expectOneErrorLine(runProgram({"serve", "--config", file}), 2, {file + ":2:1: port:", "65536", "65535"});
   expectOneErrorLine(runProgram({"serve", "--config", "/nonexistent"}), 2, {"--config /nonexistent", "check the path"});

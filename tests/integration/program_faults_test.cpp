@@ -76,7 +76,7 @@ class FaultyMachine : public ProgramTest {
   std::uint16_t port_ = 0;
 };
 
-TEST_F(FaultyMachine, WithFewDescriptorsServesThoseItHasKeepsItsStateAndTakesOthersAgain) {
+TEST_F(FaultyMachine, FewDescriptorsLimitConnectionsAndKeepState) {
   startWithDescriptors(128);
   if (IsSkipped() || HasFatalFailure()) return;
   ScriptedClient one(port_);
@@ -112,7 +112,7 @@ TEST_F(FaultyMachine, WithFewDescriptorsServesThoseItHasKeepsItsStateAndTakesOth
   EXPECT_LE(countOf("closed without a reply", log), 3u) << log;
 }
 
-TEST_F(FaultyMachine, WithoutDescriptorsServesThoseItHasSaysSoSeldomAndRecovers) {
+TEST_F(FaultyMachine, NoDescriptorsAreReportedAndRecoveredFrom) {
   start(SPINDRIFT_PROGRAM, arguments());
   if (IsSkipped() || HasFatalFailure()) return;
   ScriptedClient one(port_);
@@ -164,7 +164,7 @@ class SetClock : public FaultyMachine {
   }
 };
 
-TEST_F(SetClock, NeitherStopsTheWaterNorItsStateAndTokensFollowIt) {
+TEST_F(SetClock, MovesTokensOnly) {
   const auto expiry = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now() + 1h);
   folder().write("tokens", fmt::format("operator operator-token-123\nplayer player-token-12345 until={:%FT%TZ}\n",
                                        fmt::gmtime(expiry)));
@@ -210,7 +210,7 @@ TEST_F(SetClock, NeitherStopsTheWaterNorItsStateAndTokensFollowIt) {
   EXPECT_THAT(endAndReadLog(), HasSubstr("room main: continues at tick"));
 }
 
-TEST_F(FaultyMachine, WithABrokenShaderEndsAtTheStartNamingFileLineAndDriver) {
+TEST_F(FaultyMachine, BrokenShaderEndsTheStartWithFileAndLine) {
   std::filesystem::copy(SPINDRIFT_SOURCE_DIR "/shaders", folder().path() / "shaders",
                         std::filesystem::copy_options::recursive);
   folder().write("shaders/wave/continuity.comp", "layout(local_size_x = 8) in;\nvoid main() { not_glsl(); }\n");

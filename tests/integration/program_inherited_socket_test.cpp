@@ -64,7 +64,7 @@ class InheritedSocketOfServe : public ProgramTest {
   }
 };
 
-TEST_F(InheritedSocketOfServe, ClientsThatConnectBeforeTheStartAndBetweenTwoServersAreServed) {
+TEST_F(InheritedSocketOfServe, ServesClientsThatConnectedBeforeTheStart) {
   const LoopbackSocket socket;
   for (int k = 0; k < 2; ++k) {
     RawTcp early = asking(socket.port());
@@ -93,7 +93,7 @@ TEST_F(InheritedSocketOfServe, SocketsForAnotherProcessAreLeftAlone) {
   EXPECT_THAT(*line, Not(HasSubstr(":" + std::to_string(socket.port()) + "/")));
 }
 
-TEST_F(InheritedSocketOfServe, OtherThanOneListeningTcpSocketIsRefusedWithTheReason) {
+TEST_F(InheritedSocketOfServe, AnythingButOneListeningSocketIsRefused) {
   const LoopbackSocket socket;
   expectRefusal(*start(socket.descriptor(), "2"), {"LISTEN_FDS is \"2\"", "exactly 1", "ListenStream"});
   expectRefusal(*start(socket.descriptor(), "one"), {"LISTEN_FDS is \"one\"", "exactly 1"});

@@ -49,7 +49,7 @@ constexpr const char* kSplash = R"(
   steps { surface { x_m: 0 z_m: 0 max_m: -0.02 within_s: 30 } }
 )";
 
-TEST_F(People, AScriptThatHoldsEndsWith0AndOneThatDoesNotWith1) {
+TEST_F(People, ScriptEndsWith0OrWith1) {
   const std::string url = serve();
   if (url.empty()) GTEST_SKIP() << "no device";
   const Outcome good = runProgram({"script", "--url", url, script(kSplash)});
@@ -66,7 +66,7 @@ TEST_F(People, AScriptThatHoldsEndsWith0AndOneThatDoesNotWith1) {
   stop();
 }
 
-TEST_F(People, AScriptWithoutAServerOrWithABadFileIsNamed) {
+TEST_F(People, ScriptWithoutServerOrFileIsReported) {
   expectOneErrorLine(runProgram({"script", "--url", "http://x", script(kSplash)}), 2, {"--url", "ws://"});
   expectOneErrorLine(runProgram({"script", "/nonexistent"}), 2, {"/nonexistent"});
   expectOneErrorLine(runProgram({"script", script("steps { dance {} }")}), 2, {"script.textproto:1:", "dance"});
@@ -75,7 +75,7 @@ TEST_F(People, AScriptWithoutAServerOrWithABadFileIsNamed) {
   EXPECT_THAT(alone.out, HasSubstr("no connection to 127.0.0.1:1"));
 }
 
-TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
+TEST_F(People, TokensAreReadAndNeverPrinted) {
   const std::string tokens = scene("operator chief-chief-chief\nplayer crew-crew-crew-1\n", "tokens");
   const std::string url = serve({"--tokens", tokens, "--guests", "none"});
   if (url.empty()) GTEST_SKIP() << "no device";
@@ -93,7 +93,7 @@ TEST_F(People, TokensComeFromAFileOrTheEnvironmentAndAreNeverPrinted) {
   stop();
 }
 
-TEST_F(People, GuestsOfAServerThatOthersReachArePlayersAndTheLinkMakesAnOperator) {
+TEST_F(People, GuestsArePlayersOfAReachableServer) {
   const auto statusOf = [this](const std::string& action, const std::string& token) {
     const std::string headers = "Content-Type: application/json\r\n";
     return httpRequest(static_cast<std::uint16_t>(std::stoi(port_)), "POST", "/api/v1/rooms/main/commands",

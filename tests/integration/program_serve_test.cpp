@@ -123,7 +123,7 @@ TEST_F(Serve, NamesAnInvalidDevice) {
   expectOneErrorLine(runProgram(arguments({"--device", "fast"})), 2, {"\"fast\"", "auto, software"});
 }
 
-TEST_F(Serve, WithoutAnyDeviceSaysWhatToInstall) {
+TEST_F(Serve, MissingDeviceIsReportedWithARemedy) {
   const Outcome probe = runProgram({"info"}, withoutDevices());
   if (probe.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
   expectOneErrorLine(runProgram(arguments(), withoutDevices()), 3,
@@ -160,7 +160,7 @@ TEST_F(Serve, NamesARoomGivenTwice) {
   expectOneErrorLine(runProgram(arguments({"--room", "main=" + smallScene()})), 2, {"'main' is the one of --scene"});
 }
 
-TEST_F(RunningServe, WithoutTheWebClientSaysWhatToDo) {
+TEST_F(RunningServe, MissingWebClientIsReportedWithARemedy) {
   const HttpAnswer answer = httpRequest(port_, "GET", "/");
   EXPECT_EQ(answer.status, 503u);
   EXPECT_THAT(answer.body, HasSubstr("not built"));
@@ -246,7 +246,7 @@ TEST_F(RunningServe, TellsItsClientsBeforeItEnds) {
   EXPECT_EQ(child_->wait(kStopBound), 0);
 }
 
-TEST_F(RunningServe, EndsInTimeWithAClientThatDoesNotAnswer) {
+TEST_F(RunningServe, EndsInTimeDespiteASilentClient) {
   ScriptedClient deaf(port_);
   deaf.hello();
   deaf.subscribe(v1::LAYER_SURFACE);

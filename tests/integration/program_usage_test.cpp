@@ -16,7 +16,7 @@ class Check : public ProgramTest {};
 class Info : public ProgramTest {};
 class Bundle : public ProgramTest {};
 
-TEST_F(Usage, WithoutACommandIsRefused) {
+TEST_F(Usage, MissingCommandIsRefused) {
   expectOneErrorLine(runProgram({}), 2, {"subcommand is required", "spindrift --help"});
 }
 
@@ -40,7 +40,7 @@ TEST_F(Usage, UnknownCaseOfAStudyIsRefusedWithTheCases) {
   EXPECT_THAT(outcome.err, HasSubstr("dam-break"));
 }
 
-TEST_F(Usage, QuickTradeStudyComparesTheLevelsAndKeepsTheirNumbers) {
+TEST_F(Usage, QuickTradeStudyKeepsNumbersOfTheLevels) {
   const std::filesystem::path charts = folder().path() / "charts";
   const Outcome outcome = runProgram({"--device", "software", "--suite", "trade", "--quick", "--case", "splash",
                                       "--plot", charts.string(), "--json", "-"},
@@ -68,7 +68,7 @@ TEST_F(Usage, PortOutOfRangeIsRefusedWithTheRange) {
   expectOneErrorLine(runProgram({"serve", "--port", "65536"}), 2, {"--port", "65536", "65535"});
 }
 
-TEST_F(Usage, PortThatIsNoNumberIsRefused) {
+TEST_F(Usage, PortThatIsNotANumberIsRefused) {
   expectOneErrorLine(runProgram({"serve", "--port", "http"}), 2, {"--port", "http"});
 }
 
@@ -76,7 +76,7 @@ TEST_F(Usage, UnknownLogLevelIsRefusedWithTheLevels) {
   expectOneErrorLine(runProgram({"--log-level", "loud", "info"}), 2, {"--log-level", "loud", "debug"});
 }
 
-TEST_F(Usage, UnknownSceneOfATradeStudyIsRefusedWithTheScenes) {
+TEST_F(Usage, UnknownSceneOfAStudyIsRefusedWithTheScenes) {
   const Outcome outcome =
       runProgram({"--device", "software", "--suite", "trade", "--quick", "--case", "lagoon"}, {}, SPINDRIFT_STUDY);
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
@@ -119,7 +119,7 @@ TEST_F(Usage, VersionIsOneLine) {
   EXPECT_EQ(outcome.err, "");
 }
 
-TEST_F(Check, WithoutASceneIsRefused) {
+TEST_F(Check, MissingSceneIsRefused) {
   expectOneErrorLine(runProgram({"check"}), 2, {"scene", "required"});
 }
 
@@ -132,17 +132,17 @@ TEST_F(Check, RefusesADirectory) {
   expectOneErrorLine(runProgram({"check", folder().path().string()}), 2, {folder().path().string(), "is a directory"});
 }
 
-TEST_F(Check, ReportsAnUnknownFieldWithFileLineAndColumn) {
+TEST_F(Check, ReportsAnUnknownFieldWithItsLine) {
   const std::string file = scene("wave {\n  depht_m: 1\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:", "depht_m"});
 }
 
-TEST_F(Check, ReportsAValueOutOfRangeWithFileLineColumnAndBound) {
+TEST_F(Check, ReportsAValueOutOfRangeWithItsBound) {
   const std::string file = scene("wave {\n  depth_m: 1000\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2, {file + ":2:3: wave.depth_m: 1000 m", "maximum of 100 m"});
 }
 
-TEST_F(Check, ReportsAnUnstableFixedStepWithTheRuleAndTheRemedy) {
+TEST_F(Check, ReportsAnUnstableStepWithItsRule) {
   const std::string file = scene(
       "fixed_substeps_count: 1\nwave { resolution_count: 32 side_m: 8 depth_m: 1 }\n"
       "particles { count: 512 layers_count: 2 sound_speed_mps: 400 }\n");
@@ -153,14 +153,14 @@ TEST_F(Check, ReportsAnUnstableFixedStepWithTheRuleAndTheRemedy) {
 TEST_F(Check, ContinuesAfterABadSceneAndExitsWith2) {
   const Outcome outcome = runProgram({"check", "/nonexistent/lake.textproto", smallScene()});
   EXPECT_EQ(outcome.exit_code, 2);
-  EXPECT_THAT(outcome.out, HasSubstr("small.textproto: fine"));
+  EXPECT_THAT(outcome.out, HasSubstr("small.textproto: valid"));
 }
 
 TEST_F(Check, PrintsTheDerivedQuantitiesOfASmallScene) {
   const Outcome outcome = runProgram({"check", smallScene()});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_EQ(outcome.err, "");
-  for (const char* word : {"small.textproto: fine", "Courant number", "substeps", "memory"}) {
+  for (const char* word : {"small.textproto: valid", "Courant number", "substeps", "memory"}) {
     EXPECT_THAT(outcome.out, HasSubstr(word));
   }
 }
@@ -188,7 +188,7 @@ TEST_F(Check, PrintsSidesSolverBoatsAndObstacles) {
 TEST_F(Check, PrintsThePositionBasedSolver) {
   const Outcome outcome = runProgram({"check", scene("particles { solver: PRESSURE_SOLVER_POSITION_BASED }\n")});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr("position-based, 4 iterations a substep"));
+  EXPECT_THAT(outcome.out, HasSubstr("position-based, 4 iterations per substep"));
 }
 
 TEST_F(Check, EveryShippedSceneIsFineAtEveryFidelity) {
@@ -205,7 +205,7 @@ TEST_F(Check, EveryShippedSceneIsFineAtEveryFidelity) {
   expectOneErrorLine(runProgram({"check", "--fidelity", "best", smallScene()}), 2, {"--fidelity", "best"});
 }
 
-TEST_F(Check, ReportsARuleBetweenFieldsWithFileLineColumnAndRemedy) {
+TEST_F(Check, ReportsARuleBetweenFieldsWithARemedy) {
   const std::string file = scene("wave {}\nboats {\n  boats { x_m: 50 }\n}\n");
   expectOneErrorLine(runProgram({"check", file}), 2,
                      {file + ":3:11: boats.boats[0].x_m: 50 m", "choose -10.8 to 10.8 m"});
@@ -216,7 +216,7 @@ class ShippedScene : public testing::TestWithParam<std::string> {};
 TEST_P(ShippedScene, IsFine) {
   const Outcome outcome = runProgram({"check", shippedScene(GetParam())});
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_THAT(outcome.out, HasSubstr(": fine"));
+  EXPECT_THAT(outcome.out, HasSubstr(": valid"));
 }
 
 std::vector<std::string> shippedNames() {
@@ -259,7 +259,7 @@ TEST_F(Info, NamesAJsonFileThatCannotBeWritten) {
               HasSubstr("--json: Value '/nonexistent/info.json' cannot be written: there is no folder /nonexistent"));
 }
 
-TEST_F(Info, WithoutADeviceIsStillPrintedAndEndsWithThree) {
+TEST_F(Info, MissingDeviceIsPrintedWithExitCode3) {
   const Outcome outcome = runProgram({"info", "--json", "-"}, withoutDevices());
   if (outcome.exit_code == 0) GTEST_SKIP() << "this libEGL is not libglvnd: its drivers cannot be hidden";
   EXPECT_EQ(outcome.exit_code, 3);
@@ -285,7 +285,7 @@ TEST_F(Bundle, FindsItsScenesBesideItself) {
   folder().write("share/spindrift/scenes/tiny.textproto", "wave { resolution_count: 32 }\n");
   const Outcome found = runProgram({"check", "tiny"}, {}, program.string());
   EXPECT_EQ(found.exit_code, 0) << found.err;
-  EXPECT_THAT(found.out, HasSubstr("tiny.textproto: fine"));
+  EXPECT_THAT(found.out, HasSubstr("tiny.textproto: valid"));
   expectOneErrorLine(runProgram({"check", "huge"}, {}, program.string()), 2,
                      {"scene 'huge'", "neither a file nor a shipped scene", "shipped are: tiny"});
 }

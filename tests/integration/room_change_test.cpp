@@ -24,7 +24,7 @@ class RoomChange : public RoomTest {
   }
 };
 
-TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
+TEST_F(RoomChange, RunsOnItsOwnThreadWhileTicksWait) {
   begin(1, 60000);
   const std::uint64_t tick = room_->tick();
   send(2, reset());
@@ -38,7 +38,7 @@ TEST_F(RoomChange, IsPreparedOnAThreadOfItsOwnWhileTheTicksOfTheRoomWait) {
   EXPECT_TRUE(runUntil([&] { return room_->tick() >= tick + 3; })) << "time continues";
 }
 
-TEST_F(RoomChange, OfSeveralValuesOnlyTheLastIsLaidOut) {
+TEST_F(RoomChange, LaysOutOnlyTheLastOfSeveralValues) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   send(1, count(3000));
   send(2, count(5000));
@@ -80,7 +80,7 @@ class RoomValues : public RoomChange {
   }
 };
 
-TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
+TEST_F(RoomValues, RefusedOnesAreTriedAFewPerRound) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   sendRefusedValues();
   send(kValueCount + 1);
@@ -96,7 +96,7 @@ TEST_F(RoomValues, ThatAreRefusedAreTriedAFewPerRoundAndAnsweredInOrder) {
   EXPECT_GT(room_->tick(), tick + 1) << "ticks continue in between";
 }
 
-TEST_F(RoomValues, ThatWaitAreAnsweredWhenTheRoomCloses) {
+TEST_F(RoomValues, WaitingOnesAreAnsweredWhenTheRoomCloses) {
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 2; }));
   sendRefusedValues();
   send(100, setSpeed(1.0), 2);

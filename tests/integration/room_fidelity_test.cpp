@@ -1,6 +1,6 @@
 // The fidelity of a running room: the same water continues at another level, for a person and where the machine cannot
 // keep up.
-#include <spindrift/rooms/replay.h>
+#include <spindrift/history/replay.h>
 #include <spindrift/scene/fidelity.h>
 
 #include "room_fixture.h"
@@ -21,7 +21,7 @@ class RoomFidelity : public RoomTest {
  protected:
   void SetUp() override {
     folder_.write("pond.textproto", sceneText());
-    rules_.scenes = rooms::SceneCatalog(folder_.path());
+    rules_.scenes = water::SceneCatalog(folder_.path());
     rules_.record_folder = folder_.path() / "logs";
     rules_.hash_interval_ticks = 5;
     RoomTest::SetUp();
@@ -46,7 +46,7 @@ class RoomFidelity : public RoomTest {
   TemporaryFolder folder_;
 };
 
-TEST_F(RoomFidelity, GoesOnAtAnotherLevelAndTellsEverybody) {
+TEST_F(RoomFidelity, WaterContinuesAtAnotherLevel) {
   send(1, splash(0.5));
   ASSERT_TRUE(runTicks(20));
   const double time_s = room_->water().time_s();
@@ -64,6 +64,10 @@ TEST_F(RoomFidelity, GoesOnAtAnotherLevelAndTellsEverybody) {
   ASSERT_TRUE(runTicks(20));
   EXPECT_GT(room_->water().health().max_elevation_m, 0.005) << "the splash's rings are still there";
   EXPECT_EQ(room_->water().health().volume_error_units, 0);
+  const v1::FidelityLevels levels = room_->vitals()->fidelity_levels;
+  ASSERT_EQ(levels.levels_size(), 4);
+  EXPECT_GT(levels.levels(0).cost_ms_per_s(), 0.0);
+  EXPECT_NEAR(levels.levels(1).cost_ms_per_s(), 4.0 * levels.levels(0).cost_ms_per_s(), 1e-6);
 }
 
 TEST_F(RoomFidelity, KeepsBoatsTheirOwnersAndTheParameters) {
@@ -88,14 +92,14 @@ TEST_F(RoomFidelity, KeepsBoatsTheirOwnersAndTheParameters) {
   EXPECT_THAT(outlets_.rejected, testing::IsEmpty());
 }
 
-TEST_F(RoomFidelity, TheLevelThatItHasIsNoChange) {
+TEST_F(RoomFidelity, PresentLevelChangesNothing) {
   send(1, level(v1::FIDELITY_BALANCED));
   ASSERT_TRUE(isAnswered(1));
   EXPECT_THAT(outlets_.applied, ElementsAre(1));
   EXPECT_EQ(outlets_.scene_count, 0);
 }
 
-TEST_F(RoomFidelity, WithoutALevelTheSceneBeginsAtItsStart) {
+TEST_F(RoomFidelity, SceneWithoutALevelStartsFromTheBeginning) {
   ASSERT_TRUE(runTicks(30));
   send(1, changeScene("pond"));
   ASSERT_TRUE(isAnswered(1));
@@ -104,7 +108,7 @@ TEST_F(RoomFidelity, WithoutALevelTheSceneBeginsAtItsStart) {
 }
 
 /// One wave step per tick suits BALANCED; at FINE it breaks the rule for the step.
-TEST_F(RoomFidelity, ALevelThatTheWaterCannotTakeIsRejectedWithNumbersAndTheRoomGoesOn) {
+TEST_F(RoomFidelity, ImpossibleLevelIsRejectedWithNumbers) {
   folder_.write("pond.textproto",
                 "wave { resolution_count: 96 side_m: 14 depth_m: 2 fixed_substeps_count: 1 }\n"
                 "boats { capacity_count: 4 }");
@@ -121,7 +125,7 @@ TEST_F(RoomFidelity, ALevelThatTheWaterCannotTakeIsRejectedWithNumbersAndTheRoom
   EXPECT_GT(room_->water().time_s(), time_s);
 }
 
-TEST_F(RoomFidelity, AFileThatIsOtherWaterNowIsRejectedAndTheRoomGoesOn) {
+TEST_F(RoomFidelity, ChangedSceneFileIsRejected) {
   folder_.write("pond.textproto", "wave { resolution_count: 96 side_m: 10 depth_m: 2 }");
   send(1, level(v1::FIDELITY_DRAFT));
   ASSERT_TRUE(isAnswered(1));
@@ -155,9 +159,9 @@ TEST_F(RoomFidelity, ALogReplaysTheChangeBitForBit) {
   room_.reset();
   std::filesystem::path file;
   for (const auto& entry : std::filesystem::directory_iterator(rules_.record_folder)) file = entry.path();
-  auto log = rooms::CommandLogReader::open(file);
+  auto log = history::CommandLogReader::open(file);
   ASSERT_TRUE(log);
-  const auto outcome = rooms::replayLog(device_, **log);
+  const auto outcome = history::replayLog(device_, **log);
   ASSERT_TRUE(outcome) << outcome.error().message;
   EXPECT_GE(outcome->hash_count, 6u);
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
@@ -175,7 +179,7 @@ class RoomAdapts : public RoomFidelity {
   }
 };
 
-TEST_F(RoomAdapts, FallsByALevelWhereTheMachineCannotKeepUpAndSaysWhy) {
+TEST_F(RoomAdapts, LowersItsLevelOnASlowMachine) {
   send(1, setSpeed(4.0));
   ASSERT_TRUE(runUntil([&] { return !outlets_.fidelity_news.empty(); }));
   EXPECT_EQ(scene().fidelity(), v1::FIDELITY_DRAFT);

@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 
+#include <spindrift/codec/stream.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
@@ -12,13 +13,12 @@ namespace spindrift::test {
 
 using namespace std::chrono_literals;
 
-/// Records the room's outlets; one session watches everything at full detail.
+/// Records the room's outlets.
 struct RecordingOutlets final : rooms::RoomOutlets {
   int scene_count = 0;
   int recovered_count = 0;
   int frame_count = 0;
-  std::vector<core::LevelSet> ready_levels;          ///< of each frame
-  mutable std::vector<core::LevelSet> asked_levels;  ///< with each call of watched()
+  std::vector<core::LevelSet> ready_levels;  ///< of each frame
   std::vector<std::uint64_t> applied;
   std::vector<std::string> rejected;
   std::vector<std::string> fidelity_news;
@@ -44,14 +44,6 @@ struct RecordingOutlets final : rooms::RoomOutlets {
     ++frame_count;
     ready_levels.push_back(frame.due);
   }
-  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&, core::LevelSet due) const override {
-    asked_levels.push_back(due);
-    rooms::WatchedLayers out{.bodies = true, .diagnostics = true};
-    out.levels.back() = {.surface = true, .particles = true, .foam = true};
-    return out;
-  }
-  std::size_t sessionCount(const rooms::Room&) const override { return 1; }
-  std::size_t sessionCount() const override { return 1; }
 };
 
 class RoomTest : public testing::Test {
@@ -60,14 +52,15 @@ class RoomTest : public testing::Test {
     device_.kind = gpu::DeviceChoice::Kind::kSoftware;
     auto scene = scene::parseSceneText(sceneText(), sceneName());
     ASSERT_TRUE(scene);
-    auto water = rooms::Water::create(device_, *std::move(scene));
+    auto water = water::Water::create(device_, *std::move(scene));
     if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
     ASSERT_TRUE(water);
     context_ = &(*water)->context();
-    builder_ = std::make_unique<rooms::WaterBuilder>(device_);
+    builder_ = std::make_unique<water::WaterBuilder>(device_, rules_.scenes);
     auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_, place());
     ASSERT_TRUE(room);
     room_ = *std::move(room);
+    watchEverything();
     room_->start(Clock::now());
   }
   void TearDown() override {
@@ -77,14 +70,21 @@ class RoomTest : public testing::Test {
   virtual std::string sceneText() const { return kStillPool; }
   virtual std::string sceneName() const { return "main"; }
   /// Where the room is kept on disk.
-  virtual rooms::RoomPlace place() { return {}; }
+  virtual history::RoomPlace place() { return {}; }
+
+  /// One session watches everything at full detail.
+  void watchEverything() {
+    room_->demand()->addSessions(1);
+    for (const codec::Stream& stream : codec::allStreams())
+      room_->demand()->set(codec::indexOf(stream), this, core::DemandTable::Need{});
+  }
 
   /// Runs the room until the condition holds; false after kPatience.
   bool runUntil(const std::function<bool()>& holds) {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > deadline) return false;
-      room_->run(Clock::now());
+      room_->run(Clock::now(), {.session_count = 1});
       std::this_thread::sleep_for(1ms);
     }
     return true;
@@ -102,7 +102,7 @@ class RoomTest : public testing::Test {
   gpu::DeviceChoice device_;
   rooms::RoomRules rules_;
   RecordingOutlets outlets_;
-  std::unique_ptr<rooms::WaterBuilder> builder_;
+  std::unique_ptr<water::WaterBuilder> builder_;
   std::shared_ptr<rooms::Room> room_;
   gpu::Context* context_ = nullptr;  ///< of the room's first water
 };

@@ -1,8 +1,9 @@
 // Rooms that are kept on disk: what a crash leaves of them, and what a damaged or full disk does.
-#include <spindrift/rooms/state_store.h>
+#include <spindrift/history/state_store.h>
 
 #include "full_disk.h"
 #include "room_fixture.h"
+#include "silent_outlets.h"
 #include "temporary_folder.h"
 
 namespace spindrift::test {
@@ -30,19 +31,19 @@ class KeptRoomTest : public RoomTest {
   void SetUp() override {
     folder_.write("harbor.textproto", kHarbor);
     folder_.write("box.textproto", kStillPool);
-    rules_.scenes = rooms::SceneCatalog(folder_.path());
+    rules_.scenes = water::SceneCatalog(folder_.path());
     openStore();
     RoomTest::SetUp();
   }
   std::string sceneText() const override { return kHarbor; }
   std::string sceneName() const override { return "harbor"; }
-  rooms::RoomPlace place() override {
+  history::RoomPlace place() override {
     auto place = rules_.states->place("main");
     EXPECT_TRUE(place) << place.error().message;
-    return place ? *std::move(place) : rooms::RoomPlace{};
+    return place ? *std::move(place) : history::RoomPlace{};
   }
   void openStore() {
-    auto store = rooms::StateStore::open({.folder = folder_.path() / "state", .snapshot_interval = interval_});
+    auto store = history::StateStore::open({.folder = folder_.path() / "state", .snapshot_interval = interval_});
     ASSERT_TRUE(store) << store.error().message;
     rules_.states = *std::move(store);
   }
@@ -56,14 +57,14 @@ class KeptRoomTest : public RoomTest {
   }
   /// As a server that starts again.
   void comeBack() {
-    comeBackBy([&](std::unique_ptr<rooms::Water> water, rooms::RoomPlace kept) {
+    comeBackBy([&](std::unique_ptr<water::Water> water, history::RoomPlace kept) {
       return rooms::Room::create("main", std::move(water), rules_, *builder_, outlets_, std::move(kept));
     });
   }
   /// As a server that opens the room while others run. Returns the number of pieces.
   std::size_t comeBackInPieces() {
     std::size_t piece_count = 0;
-    comeBackBy([&](std::unique_ptr<rooms::Water> water, rooms::RoomPlace kept) {
+    comeBackBy([&](std::unique_ptr<water::Water> water, history::RoomPlace kept) {
       auto room = rooms::Room::begin("main", std::move(water), rules_, *builder_, outlets_, std::move(kept), {});
       if (!room) return room;
       while (true) {
@@ -78,11 +79,11 @@ class KeptRoomTest : public RoomTest {
   template <typename Create>
   void comeBackBy(Create create) {
     openStore();
-    rooms::RoomPlace kept = place();
+    history::RoomPlace kept = place();
     ASSERT_TRUE(kept.kept);
     v1::Scene start = kept.kept->state->start_scene();
     scene::fillDefaults(start);
-    auto water = rooms::Water::create(device_, std::move(start));
+    auto water = water::Water::create(device_, std::move(start));
     ASSERT_TRUE(water) << water.error().message;
     context_ = &(*water)->context();
     auto room = create(*std::move(water), std::move(kept));
@@ -114,7 +115,7 @@ class KeptRoomTest : public RoomTest {
   std::chrono::milliseconds interval_{3'600'000};
 };
 
-TEST_F(KeptRoomTest, GoesOnBitForBitFromItsFirstSnapshotAndTheLog) {
+TEST_F(KeptRoomTest, ResumesBitForBitFromTheFirstSnapshotAndTheLog) {
   send(1, splash(0.4, 1.5));
   send(2, spawnBoat(-2, 1));
   ASSERT_TRUE(runTicks(20));
@@ -134,7 +135,7 @@ TEST_F(KeptRoomTest, GoesOnBitForBitFromItsFirstSnapshotAndTheLog) {
   EXPECT_THAT(room_->water().boats(), SizeIs(2));
 }
 
-TEST_F(KeptRoomTest, GoesOnBitForBitFromASnapshotInTheMiddle) {
+TEST_F(KeptRoomTest, ResumesBitForBitFromALaterSnapshot) {
   send(1, splash(0.4, 1.5));
   ASSERT_TRUE(runTicks(25));
   ASSERT_TRUE(room_->askForSnapshot());
@@ -147,7 +148,7 @@ TEST_F(KeptRoomTest, GoesOnBitForBitFromASnapshotInTheMiddle) {
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-TEST_F(KeptRoomTest, OfAReplacedSceneGoesOnInThatSceneAtItsLevel) {
+TEST_F(KeptRoomTest, ResumesInTheReplacedScene) {
   ASSERT_TRUE(runTicks(5));
   send(1, changeScene("box"));
   ASSERT_TRUE(isAnswered(1));
@@ -164,7 +165,7 @@ TEST_F(KeptRoomTest, OfAReplacedSceneGoesOnInThatSceneAtItsLevel) {
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-TEST_F(KeptRoomTest, GoesOnBitForBitWhenItIsBroughtThereInPieces) {
+TEST_F(KeptRoomTest, ResumesBitForBitInPieces) {
   send(1, splash(0.4, 1.5));
   ASSERT_TRUE(runTicks(20));
   send(2, spawnBoat(-2, 1));
@@ -180,7 +181,7 @@ TEST_F(KeptRoomTest, GoesOnBitForBitWhenItIsBroughtThereInPieces) {
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-TEST_F(KeptRoomTest, AtAnotherLevelGoesOnAtThatLevel) {
+TEST_F(KeptRoomTest, ResumesAtItsLevel) {
   send(1, splash(0.4, 1.5));
   ASSERT_TRUE(runTicks(10));
   v1::Command coarser = changeScene("harbor");
@@ -195,7 +196,7 @@ TEST_F(KeptRoomTest, AtAnotherLevelGoesOnAtThatLevel) {
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-TEST_F(KeptRoomTest, IsPausedAsFastAndHasAsManyStepsToGoAsBefore) {
+TEST_F(KeptRoomTest, ResumesWithItsPauseSpeedAndSteps) {
   send(1, setSpeed(0.25));
   send(2, setPaused(true));
   ASSERT_TRUE(isAnswered(2));
@@ -227,7 +228,7 @@ TEST_F(KeptRoomTest, WritesNoSnapshotsWhileItStandsStill) {
   EXPECT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count > before; })) << "but when somebody asks";
 }
 
-TEST_F(KeptRoomTest, GivesPeopleTheirBoatsBackWhenTheyReturnInTime) {
+TEST_F(KeptRoomTest, ReturningPeopleGetTheirBoatsBack) {
   const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer, .name = "Ada"});
   const rooms::Admission guest = room_->roster().arrive({.session = 8, .role = core::Role::kViewer, .name = ""});
   send(1, spawnBoat(-2, 1), 7, captain.person_id);
@@ -257,7 +258,7 @@ TEST_F(KeptRoomTest, ForgetsPeopleWhoDoNotReturnInTime) {
   EXPECT_THAT(room_->roster().people().people(), IsEmpty());
 }
 
-TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
+TEST_F(KeptRoomTest, StopWritesTheLastState) {
   send(1, splash(0.4, 1.5));
   ASSERT_TRUE(runTicks(15));
   const std::uint64_t tick = room_->tick();
@@ -268,7 +269,7 @@ TEST_F(KeptRoomTest, ReachesTheDiskWithAllThatItDidWhenItIsStopped) {
   EXPECT_EQ(room_->stateHash(), expected);
 }
 
-TEST_F(KeptRoomTest, GoesOnWhereItWasWhenTheDeviceFails) {
+TEST_F(KeptRoomTest, ResumesAfterADeviceFailure) {
   const rooms::Admission captain = room_->roster().arrive({.session = 7, .role = core::Role::kPlayer});
   send(1, splash(0.4, 1.5));
   send(2, spawnBoat(-2, 1), 7, captain.person_id);
@@ -296,7 +297,7 @@ TEST_F(KeptRoomTest, GoesOnWhereItWasWhenTheDeviceFails) {
   EXPECT_EQ(hashAt(compared), expected) << "what is on disk continues from there";
 }
 
-TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoomAgain) {
+TEST_F(KeptRoomTest, FullDiskRefusesCommandsUntilThereIsSpace) {
   ASSERT_TRUE(runTicks(3));
   {
     const FullDisk full(1);
@@ -322,7 +323,7 @@ TEST_F(KeptRoomTest, RefusesWhatTheDiskDoesNotTakeAndCarriesItOutWhenThereIsRoom
   EXPECT_EQ(hashAt(compared), expected);
 }
 
-TEST_F(KeptRoomTest, PausedTakesCommandsAgainWhenTheDiskWasFullForAMoment) {
+TEST_F(KeptRoomTest, PausedRoomTakesCommandsAgainAfterAFullDisk) {
   send(1, setPaused(true));
   ASSERT_TRUE(isAnswered(1));
   ASSERT_TRUE(room_->askForSnapshot());
@@ -338,7 +339,7 @@ TEST_F(KeptRoomTest, PausedTakesCommandsAgainWhenTheDiskWasFullForAMoment) {
   EXPECT_THAT(outlets_.applied, ElementsAre(1, 2));
 }
 
-TEST_F(KeptRoomTest, TriesAFailedSnapshotAgainLongBeforeTheNextIsDue) {
+TEST_F(KeptRoomTest, RetriesAFailedSnapshotSoon) {
   ASSERT_TRUE(runTicks(3));
   {
     const FullDisk full(kLogsOnly);
@@ -360,36 +361,22 @@ TEST_F(KeptRoomTest, TriesAFailedSnapshotAgainLongBeforeTheNextIsDue) {
 /// Sleeps when nobody is connected.
 class SleepingRoomTest : public KeptRoomTest {
  protected:
-  struct Deserted final : rooms::RoomOutlets {
-    using Room = rooms::Room;
-    void sceneChanged(const Room&) override {}
-    void timeChanged(const Room&, bool, double) override {}
-    void parameterChanged(const Room&, const std::string&, double) override {}
-    void boatsChanged(const Room&, const v1::BoatList&) override {}
-    void peopleChanged(const Room&, const v1::People&) override {}
-    void wasReset(const Room&) override {}
-    void hasRecovered(const Room&, const std::string&) override {}
-    void fidelityChanged(const Room&, const std::string&) override {}
-    void closed(const Room&) override {}
+  struct Deserted final : SilentOutlets {
     void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override { ++applied_count; }
     void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++rejected_count; }
-    void frameReady(const Room&, core::FrameView) override {}
-    rooms::WatchedLayers watched(const Room&, const core::ReducedCounts&, core::LevelSet) const override { return {}; }
-    std::size_t sessionCount(const Room&) const override { return 0; }
-    std::size_t sessionCount() const override { return 0; }
     int applied_count = 0, rejected_count = 0;
   };
   Deserted deserted_;
 };
 
-TEST_F(SleepingRoomTest, TakesCommandsAgainWhenTheDiskWasFullForAMoment) {
+TEST_F(SleepingRoomTest, TakesCommandsAgainAfterAFullDisk) {
   crash();
   openStore();
   auto kept = rules_.states->place("asleep");
   ASSERT_TRUE(kept);
   auto scene = scene::parseSceneText(std::string(kStillPool) + " unwatched: UNWATCHED_SLEEP", "asleep");
   ASSERT_TRUE(scene);
-  auto water = rooms::Water::create(device_, *std::move(scene));
+  auto water = water::Water::create(device_, *std::move(scene));
   ASSERT_TRUE(water);
   auto room = rooms::Room::create("asleep", *std::move(water), rules_, *builder_, deserted_, *std::move(kept));
   ASSERT_TRUE(room) << room.error().message;

@@ -6,7 +6,7 @@ namespace {
 
 using RoomLoss = RoomTest;
 
-TEST_F(RoomLoss, RunsAgainFromItsSceneOnANewContextAndTellsAllClients) {
+TEST_F(RoomLoss, RestartsTheSceneOnANewContext) {
   send(1);
   ASSERT_TRUE(runUntil([&] { return room_->tick() >= 5 && outlets_.applied.size() == 1; }));
   const std::uint64_t tick_before = room_->tick();

@@ -127,6 +127,12 @@ bool ScriptedClient::barrier() {
       .has_value();
 }
 
+bool ScriptedClient::settle() {
+  if (welcome().person_id() == 0 || !barrier()) return false;
+  std::erase_if(kept_, [](const v1::ServerMessage& message) { return message.has_greeting(); });
+  return true;
+}
+
 bool ScriptedClient::hasReceived(v1::ServerMessage::MessageCase kind) {
   (void)barrier();
   return std::ranges::any_of(kept_, [kind](const auto& message) { return message.message_case() == kind; });

@@ -58,6 +58,9 @@ class ScriptedClient {
   /// Sends a ping and waits for its pong: everything that the server had queued for this client has then arrived. False
   /// if it is gone.
   bool barrier();
+  /// Waits for the answer to hello() and drops the greetings until then: what changed while the client arrived is in a
+  /// second one.
+  bool settle();
   /// barrier(), then returns whether a message of the kind is among those kept.
   bool hasReceived(v1::ServerMessage::MessageCase kind);
   /// Lets the room run until its tick has grown by `ticks_count`; false if it does not.

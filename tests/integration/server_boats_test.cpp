@@ -32,7 +32,7 @@ std::vector<std::uint32_t> nextList(ScriptedClient& client) {
   return idsOf(message->boat_list());
 }
 
-TEST_F(Boats, OfTheSceneAreInTheGreeting) {
+TEST_F(Boats, GreetingListsTheBoatsOfTheScene) {
   const ScriptedClient one = client();
   EXPECT_THAT(one.greeting().layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_BODIES, v1::LAYER_DIAGNOSTICS));
   ASSERT_EQ(one.greeting().boat_list().boats_size(), 1);
@@ -87,7 +87,7 @@ TEST_F(Boats, AreRefusedOutsideTheWaterAndInObstacles) {
   EXPECT_EQ(one.rejected(setParameter("wave.depth_m", 0.2)).reason(), v1::REJECT_REASON_OUT_OF_RANGE);
 }
 
-TEST_F(Boats, AreThoseOfTheStartAfterAResetForAllClients) {
+TEST_F(Boats, ResetRestoresTheBoatsOfTheStart) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(spawnBoat(0, 4)));
@@ -102,7 +102,7 @@ TEST_F(Boats, AreThoseOfTheStartAfterAResetForAllClients) {
   EXPECT_EQ(nextList(two).size(), 1u);
 }
 
-TEST_F(Boats, KeepTheirNumbersOverAResetAndNeverShareThem) {
+TEST_F(Boats, IdsSurviveAResetAndAreNeverReused) {
   ScriptedClient one = client();
   EXPECT_EQ(one.ask(spawnBoat(0, 4)).ack().boat_id(), 2u);
   EXPECT_THAT(nextList(one), ElementsAre(1u, 2u));

@@ -93,7 +93,7 @@ TEST_F(WaveCommands, BeforeHelloAreRejected) {
   EXPECT_TRUE(one.apply(splash())) << "the session continues";
 }
 
-TEST_F(WaveCommands, OutsideOfTheSceneAreRejectedWithFieldValueAndBound) {
+TEST_F(WaveCommands, EffectOutsideTheSceneIsRejectedWithItsBound) {
   ScriptedClient one = client();
   const v1::Reject deep = one.rejected(splash(0.95));
   EXPECT_EQ(deep.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
@@ -118,7 +118,7 @@ TEST_F(WaveCommands, OutsideOfTheSceneAreRejectedWithFieldValueAndBound) {
   EXPECT_THAT(fast.message(), HasSubstr("4"));
 }
 
-TEST_F(WaveCommands, WithoutAnActionAreRejectedAndTheSessionContinues) {
+TEST_F(WaveCommands, CommandWithoutAnActionIsRejected) {
   ScriptedClient one = client();
   EXPECT_EQ(one.rejected(v1::Command{}).reason(), v1::REJECT_REASON_MALFORMED);
   EXPECT_TRUE(one.apply(splash()));
@@ -162,7 +162,7 @@ TEST_F(WaveCommands, PauseHoldsTheTickOfItsAck) {
   FAIL() << "the room does not continue after a pause";
 }
 
-TEST_F(WaveCommands, ResumeBringsFramesAtOnceHoweverLongThePause) {
+TEST_F(WaveCommands, ResumeSendsFramesAtOnce) {
   ScriptedClient one = client();
   constexpr int kTicksPerFrame = 6;
   ASSERT_TRUE(one.apply(setParameter("stream.frame_rate_hz", 60.0 / kTicksPerFrame)));
@@ -192,7 +192,7 @@ TEST_F(WaveCommands, SpeedIsSentToAllClients) {
   EXPECT_EQ(client().greeting().room_state().speed(), 2.5) << "newcomers learn it from the greeting";
 }
 
-TEST_F(WaveCommands, ResetRestoresTheStartForAllClientsAndKeepsParameters) {
+TEST_F(WaveCommands, ResetKeepsParameters) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   two.subscribe(v1::LAYER_SURFACE);

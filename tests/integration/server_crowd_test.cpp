@@ -41,7 +41,7 @@ class Crowd : public ServerTest {
   }
 };
 
-TEST_F(Crowd, AllTwoHundredGetFramesAndEveryCommandIsAnswered) {
+TEST_F(Crowd, TwoHundredClientsGetFramesAndAnswers) {
   auto scene = scene::parseSceneText(rooms()[0].scene, "main");
   ASSERT_TRUE(scene);
   const auto url = net::ClientUrl::parse("ws://127.0.0.1:" + std::to_string(server().port()) + "/ws");

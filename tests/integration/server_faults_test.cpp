@@ -16,14 +16,14 @@ using testing::HasSubstr;
 
 class FaultTest : public ServerTest {
  protected:
-  rooms::SceneCatalog scenes() const override {
+  water::SceneCatalog scenes() const override {
     folder_.write("scenes/pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
     folder_.write("scenes/large.textproto", "wave { resolution_count: 1024 side_m: 64 depth_m: 2 }");
     folder_.write("scenes/positions.textproto",
                   "particles { count: 512 layers_count: 2 headroom_m: 2 solver: PRESSURE_SOLVER_POSITION_BASED }");
     folder_.write("scenes/too_fine.textproto", "wave { resolution_count: 4096 side_m: 64 depth_m: 2 }");
     folder_.write("scenes/too_many.textproto", "particles { count: 2000000 layers_count: 2 headroom_m: 2 }");
-    return rooms::SceneCatalog(folder_.path() / "scenes");
+    return water::SceneCatalog(folder_.path() / "scenes");
   }
 
   HttpAnswer openRoom(const std::string& name, const std::string& scene) {
@@ -44,7 +44,7 @@ class FaultTest : public ServerTest {
   TemporaryFolder folder_;
 };
 
-TEST_F(FaultTest, ScenesThatAreTooBigAreRefusedWithTheBoundByCommandAndRequest) {
+TEST_F(FaultTest, TooLargeScenesAreRefusedWithTheBound) {
   ScriptedClient one = client();
   for (const auto& [scene, field, bound] : {std::tuple("too_fine", "wave.resolution_count: 4096", "1048576"),
                                             std::tuple("too_many", "particles.count: 2000000", "1048576")}) {
@@ -68,7 +68,7 @@ class FullDevice : public FaultTest {
   void TearDown() override { ::unsetenv("SPINDRIFT_GPU_CHECKS"); }
 };
 
-TEST_F(FullDevice, RefusesAnotherSceneWithTheSizesAndTheRoomGoesOn) {
+TEST_F(FullDevice, RefusesAnotherSceneWithTheSizes) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const v1::Reject reject = one.rejected(changeScene("large"));
@@ -80,7 +80,7 @@ TEST_F(FullDevice, RefusesAnotherSceneWithTheSizesAndTheRoomGoesOn) {
   EXPECT_THAT(metrics(), HasSubstr("spindrift_water_failures_total{cause=\"memory\"} 1\n"));
 }
 
-TEST_F(FullDevice, OpensNoRoomThatItCannotHoldAndOneThatItCan) {
+TEST_F(FullDevice, RefusesARoomThatDoesNotFit) {
   ScriptedClient one = client();
   const HttpAnswer refused = openRoom("a", "large");
   EXPECT_EQ(refused.status, 503u) << refused.body;
@@ -106,7 +106,7 @@ class BrokenShader : public FaultTest {
   }
 };
 
-TEST_F(BrokenShader, RefusesAnotherSceneWithFileLineAndDriverAndTheRoomGoesOn) {
+TEST_F(BrokenShader, RefusesAnotherSceneWithFileAndLine) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const v1::Reject reject = one.rejected(changeScene("positions"));
@@ -153,7 +153,7 @@ class HalfOpen : public FaultTest, public testing::WithParamInterface<bool> {
   }
 };
 
-TEST_P(HalfOpen, ClientIsCutOffAfterTheIdleTimeAndItsBoatStopsAndIsFreeAfterTheGrace) {
+TEST_P(HalfOpen, ClientIsCutOffAndItsBoatBecomesFree) {
   ScriptedClient bob = person({.name = "Bob"});
   bob.subscribe(v1::LAYER_BODIES);
   SilentProxy proxy(server().port());

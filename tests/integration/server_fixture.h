@@ -42,7 +42,7 @@ class ServerTest : public testing::Test {
   virtual std::vector<RoomText> rooms() const { return {{"main", kStillPool}}; }
 
   /// The scenes for ChangeScene.
-  virtual rooms::SceneCatalog scenes() const { return {}; }
+  virtual water::SceneCatalog scenes() const { return {}; }
   /// Further changes to the options by a test.
   virtual void adjust(service::WaterServerOptions& /*options*/) const {}
 

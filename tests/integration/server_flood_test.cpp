@@ -79,7 +79,7 @@ class FloodOfCommands : public WaveServerTest {
   }
 };
 
-TEST_F(FloodOfCommands, BelowTheLimitOfMessagesIsAnsweredBusyAndClosesNobody) {
+TEST_F(FloodOfCommands, BelowTheLimitIsAnsweredBusy) {
   constexpr double kTicksPerSecond = 60.0;
   ScriptedClient watcher = client();
   const auto first_tick = watcher.apply(setSpeed(1.0));
@@ -119,7 +119,7 @@ TEST_F(FloodOfCommands, BelowTheLimitOfMessagesIsAnsweredBusyAndClosesNobody) {
   EXPECT_TRUE(watcher.apply(setSpeed(1.0)));
 }
 
-TEST_F(FloodOfCommands, TenTimesTheLimitClosesOnlyThoseThatSendIt) {
+TEST_F(FloodOfCommands, TenTimesTheLimitClosesOnlyTheSenders) {
   ScriptedClient watcher = client();
   watcher.subscribe(v1::LAYER_SURFACE);
   for (const FloodReport& report : floodFromAll(5000.0)) {

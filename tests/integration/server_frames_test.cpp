@@ -32,7 +32,7 @@ TEST_F(Frames, GreetingHasSceneLayersAndParameters) {
   EXPECT_FALSE(paths.contains("wave.resolution_count")) << "needs a restart";
 }
 
-TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValuesWithGrowingTicks) {
+TEST_F(Frames, SurfaceAndParticlesDecodeToFiniteValues) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   one.subscribe(v1::LAYER_PARTICLES);
@@ -113,7 +113,7 @@ TEST_F(WaveFrames, AreEncodedOnceForThreeClients) {
   EXPECT_LE(encoded_count, *end - *begin + 2);
 }
 
-TEST_F(WaveFrames, OfOneTickAreTheSameBytesForEveryClient) {
+TEST_F(WaveFrames, BytesOfATickAreEqualForEveryClient) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(splash()));
@@ -145,7 +145,7 @@ TEST_F(Frames, AreNotEncodedWithoutSubscriptions) {
   EXPECT_EQ(server().networkStats().sent_frame_count, 0u);
 }
 
-TEST_F(Frames, OfALayerWithoutSubscriptionAreNotSent) {
+TEST_F(Frames, UnsubscribedLayerIsNotSent) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   for (int i = 0; i < 10; ++i) {
@@ -184,7 +184,7 @@ TEST_F(WaveFrames, ContinueForOthersWhenAClientVanishes) {
   for (int i = 0; i < 10; ++i) ASSERT_TRUE(stays.nextFrame(v1::LAYER_SURFACE));
 }
 
-TEST_F(WaveFrames, OfALayerThatTheRoomLacksNeverCome) {
+TEST_F(WaveFrames, LayerThatTheRoomLacksIsNeverSent) {
   ScriptedClient one = client();
   EXPECT_THAT(one.greeting().layers(), ElementsAre(v1::LAYER_SURFACE, v1::LAYER_DIAGNOSTICS));
   one.subscribe(v1::LAYER_PARTICLES);

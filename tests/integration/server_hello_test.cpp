@@ -11,7 +11,7 @@ class HelloDeadline : public WaveServerTest {
   void adjust(service::WaterServerOptions& options) const override { options.hello_patience = std::chrono::seconds(1); }
 };
 
-TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedDespiteItsPings) {
+TEST_F(HelloDeadline, SessionWithoutHelloIsClosedDespitePings) {
   ScriptedClient silent(server().port());
   ScriptedClient pinging(server().port());
   ASSERT_TRUE(silent.isOpen());
@@ -22,7 +22,7 @@ TEST_F(HelloDeadline, ASessionThatNeverSaysHelloIsClosedDespiteItsPings) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));  // far below the message rate
   }
   EXPECT_EQ(pinging.ws().closeCode(), 1008);
-  EXPECT_THAT(pinging.ws().closeReason(), HasSubstr("no hello"));
+  EXPECT_THAT(pinging.ws().closeReason(), HasSubstr("Hello did not arrive"));
   EXPECT_TRUE(silent.ws().waitClosed());
   EXPECT_EQ(silent.ws().closeCode(), 1008);
 }
@@ -58,7 +58,7 @@ TEST_F(BeforeHello, NamesAndStateMessagesAreNotSent) {
   EXPECT_FALSE(stranger.hasReceived(v1::ServerMessage::kParameterChanged));
 }
 
-TEST_F(BeforeHello, ChangesBetweenGreetingAndHelloAreSentAfterHello) {
+TEST_F(BeforeHello, ChangesSinceTheGreetingAreSentAfterHello) {
   ScriptedClient known = person({.token = "token-of-some-operator"});
   ScriptedClient late(server().port());
   ASSERT_TRUE(late.isOpen());
@@ -91,7 +91,7 @@ TEST_F(CommandRate, ABurstWithinTheLimitsIsAppliedCompletely) {
   EXPECT_FALSE(one.ws().closed());
 }
 
-TEST_F(CommandRate, CommandsBeyondTheRateAreBusyAndOnlyAFloodCloses) {
+TEST_F(CommandRate, CommandsBeyondTheRateAreBusy) {
   ScriptedClient one = client();
   const v1::Limits& limits = one.greeting().limits();
   const auto sent_count = static_cast<std::uint64_t>(limits.command_burst_count()) + 200;
@@ -106,7 +106,7 @@ TEST_F(CommandRate, CommandsBeyondTheRateAreBusyAndOnlyAFloodCloses) {
   for (std::uint64_t k = 1; k <= sent_count; ++k) {
     const auto reject = one.waitFor(v1::ServerMessage::kReject);
     ASSERT_TRUE(reject) << one.ws().closeCode() << " " << one.ws().closeReason();
-    if (reject->reject().message().find("commands a second") != std::string::npos) ++busy_count;
+    if (reject->reject().message().find("commands per second") != std::string::npos) ++busy_count;
   }
   EXPECT_GT(busy_count, 0u);
   EXPECT_TRUE(one.barrier()) << "the session is not closed for that";

@@ -115,7 +115,7 @@ TEST_F(Hostile, TextIsClosedAsUnsupported) {
   EXPECT_TRUE(isFineForOthers());
 }
 
-TEST_F(Hostile, MessageOverTheGreetingsLimitIsClosedAsTooBig) {
+TEST_F(Hostile, MessageOverTheLimitIsClosedAsTooBig) {
   ScriptedClient one = client();
   const core::Bytes bytes(one.greeting().limits().message_max_bytes() + 1, 0);
   one.ws().sendBinary(bytes);
@@ -141,7 +141,7 @@ TEST_F(Hostile, RandomBytesNeverDisturbAnotherClient) {
   EXPECT_TRUE(isFineForOthers());
 }
 
-TEST_F(Hostile, EveryPrefixAndFlippedBitOfACommandIsAnsweredOrRefused) {
+TEST_F(Hostile, DamagedCommandIsAnsweredOrRefused) {
   const std::string whole = validMessage();
   std::vector<std::string> messages;
   for (std::size_t length = 0; length < whole.size(); length += 3) messages.push_back(whole.substr(0, length));

@@ -70,7 +70,7 @@ TEST_F(PackedFrames, HaveTheSamplesOfPlainOnes) {
   EXPECT_GT(compared_count, 0);
 }
 
-TEST_F(PackedFrames, ALateClientStartsWithAKeyframeAndOthersKeepTheirDeltas) {
+TEST_F(PackedFrames, LateClientStartsWithAKeyframe) {
   ScriptedClient early = client();
   watch(early);
   codec::PackedSurfaceDecoder early_decoder, late_decoder;
@@ -95,7 +95,7 @@ TEST_F(PackedFrames, ALateClientStartsWithAKeyframeAndOthersKeepTheirDeltas) {
   }
 }
 
-TEST_F(PackedFrames, AtALowerRateAreKeyframesOnly) {
+TEST_F(PackedFrames, LowerRateGetsKeyframesOnly) {
   ScriptedClient slow = client();
   watch(slow, 5.0);
   ScriptedClient fast = client();
@@ -126,7 +126,7 @@ TEST_F(PackedFrames, SubscribingToTheOtherPackingStopsTheFirst) {
   }
 }
 
-TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotWithoutOne) {
+TEST_F(PackedFrames, WatchedStreamIsEncodedOnce) {
   const codec::Stream packed{v1::LAYER_SURFACE, v1::PACKING_PACKED};
   std::vector<ScriptedClient> clients;
   for (int i = 0; i < 6; ++i) clients.push_back(client());
@@ -147,7 +147,7 @@ TEST_F(PackedFrames, AreEncodedOnceForManyClientsAndNotWithoutOne) {
 
 class PackedParticles : public ServerTest {};
 
-TEST_F(PackedParticles, AreFiniteAndAsManyAsThePlainOnes) {
+TEST_F(PackedParticles, CountEqualsThatOfThePlainPacking) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_PARTICLES, 60.0, v1::PACKING_PACKED);
   for (int i = 0; i < 10; ++i) {

@@ -86,14 +86,14 @@ TEST_F(Parameters, UnknownPathIsRejectedByName) {
   EXPECT_EQ(reject.field(), "particles.stickiness");
 }
 
-TEST_F(Parameters, OneThatNeedsARestartIsRejectedByName) {
+TEST_F(Parameters, RestartParameterIsRejectedByName) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("wave.resolution_count", 64));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_NEEDS_RESTART);
   EXPECT_EQ(reject.field(), "wave.resolution_count");
 }
 
-TEST_F(FixedStepParameters, AValueThatBreaksAStepRuleIsRejectedWithTheRule) {
+TEST_F(FixedStepParameters, ValueThatBreaksAStepRuleIsRejected) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(setParameter("particles.sound_speed_mps", 500));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_BREAKS_STEP_RULE);

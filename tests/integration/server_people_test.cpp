@@ -70,7 +70,7 @@ std::vector<std::uint32_t> boatsOf(const v1::People& people, std::uint32_t perso
   return {};
 }
 
-TEST_F(People, GetAWelcomeWithTheirRoleAndAreListedForOthers) {
+TEST_F(People, WelcomeHasTheRoleAndOthersListThePerson) {
   ScriptedClient ada = player("Ada");
   EXPECT_EQ(ada.welcome().role(), v1::ROLE_PLAYER);
   EXPECT_EQ(ada.welcome().person_id(), 1U);
@@ -84,7 +84,7 @@ TEST_F(People, GetAWelcomeWithTheirRoleAndAreListedForOthers) {
   peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 1; });
 }
 
-TEST_F(People, WithoutAVisibleNameAreNamedAsGuests) {
+TEST_F(People, InvisibleNameBecomesAGuestName) {
   ScriptedClient ada = player("\u202EAda\u202C  ");
   ScriptedClient blank = player(" \u3000\u2066 \u200D");  // NOLINT(misc-misleading-bidirectional): what is tested
   const v1::People people = peopleWhen(ada, [](const v1::People& list) { return list.people_size() == 2; });
@@ -112,7 +112,7 @@ TEST_F(People, MayDoWhatTheirRoleAllows) {
   EXPECT_TRUE(chief.apply(reset()));
 }
 
-TEST_F(People, WithAWrongOrExpiredTokenAreRefused) {
+TEST_F(People, WrongOrExpiredTokenIsRefused) {
   for (const char* token : {"wrong-wrong-wrong-1", "expired-expired-1"}) {
     ScriptedClient stranger = person({.token = token});
     const auto refusal = stranger.waitFor(v1::ServerMessage::kRefusal);

@@ -3,7 +3,7 @@
 #include <fstream>
 #include <optional>
 
-#include <spindrift/rooms/replay.h>
+#include <spindrift/history/replay.h>
 
 #include "server_fixture.h"
 #include "temporary_folder.h"
@@ -25,9 +25,9 @@ class Recorded : public ServerTest {
       boats { capacity_count: 4 boats { x_m: 2 z_m: 0 } }
     )"}};
   }
-  rooms::SceneCatalog scenes() const override {
+  water::SceneCatalog scenes() const override {
     folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
-    return rooms::SceneCatalog(folder_.path());
+    return water::SceneCatalog(folder_.path());
   }
   void adjust(service::WaterServerOptions& options) const override {
     options.rules.record_folder = folder_.path() / "logs";
@@ -39,12 +39,12 @@ class Recorded : public ServerTest {
     return {};
   }
 
-  static core::Result<rooms::ReplayOutcome> replayed(const fs::path& file) {
-    auto log = rooms::CommandLogReader::open(file);
+  static core::Result<history::ReplayOutcome> replayed(const fs::path& file) {
+    auto log = history::CommandLogReader::open(file);
     if (!log) return log.error();
     gpu::DeviceChoice device;
     device.kind = gpu::DeviceChoice::Kind::kSoftware;
-    return rooms::replayLog(device, **log);
+    return history::replayLog(device, **log);
   }
 
   /// Records a session with every kind of change of the water; the server has stopped at the end.
@@ -87,7 +87,7 @@ class RecordedPool : public Recorded {
   std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
 };
 
-TEST_F(RecordedPool, RunsAgainBitForBitWhenItsParticlesAreLaidOutAnew) {
+TEST_F(RecordedPool, ReplaysALayoutChangeBitForBit) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.apply(splash(0.3)));
   ASSERT_TRUE(one.runFor(10));
@@ -116,7 +116,7 @@ class RecordedRepeating : public Recorded {
   }
 };
 
-TEST_F(RecordedRepeating, RestartsByItselfAndRunsAgainBitForBit) {
+TEST_F(RecordedRepeating, ReplaysItsRestartsBitForBit) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   v1::Command wave;
@@ -135,7 +135,7 @@ TEST_F(RecordedRepeating, RestartsByItselfAndRunsAgainBitForBit) {
   EXPECT_GE(outcome->hash_count, 20U);
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
 
-  auto log = rooms::CommandLogReader::open(logFile());
+  auto log = history::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   std::vector<v1::Side> sides;
   while (const auto record = (*log)->next()) {
@@ -144,7 +144,7 @@ TEST_F(RecordedRepeating, RestartsByItselfAndRunsAgainBitForBit) {
   EXPECT_THAT(sides, testing::ElementsAre(v1::SIDE_MINUS_X)) << "the log holds the side that the water decided";
 }
 
-TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndReported) {
+TEST_F(Recorded, TruncatedLogIsReplayedToItsLastRecord) {
   live();
   fs::resize_file(logFile(), fs::file_size(logFile()) - 3);
   const auto outcome = replayed(logFile());
@@ -157,10 +157,10 @@ TEST_F(Recorded, ATruncatedLogIsReplayedUpToItsLastWholeRecordAndReported) {
 TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
   live();
   // The same log without the first splash.
-  const auto log = rooms::CommandLogReader::open(logFile());
+  const auto log = history::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   v1::RecordHeader header = (*log)->header();
-  auto changed = rooms::CommandLogWriter::create(folder_.path() / "changed", header);
+  auto changed = history::CommandLogWriter::create(folder_.path() / "changed", header);
   ASSERT_TRUE(changed);
   std::optional<std::uint64_t> splash_tick;  // 0 when the client was faster than the first tick
   std::uint64_t next_hash_tick = 0;
@@ -182,12 +182,12 @@ TEST_F(Recorded, TheFirstTickThatDiffersIsNamed) {
 
 TEST_F(Recorded, AnotherDriverThanTheLogsIsReported) {
   live();
-  const auto log = rooms::CommandLogReader::open(logFile());
+  const auto log = history::CommandLogReader::open(logFile());
   ASSERT_TRUE(log);
   EXPECT_FALSE((*log)->header().gl_version().empty());
   v1::RecordHeader header = (*log)->header();
   header.set_gl_version("4.5 (Core Profile) Mesa 99.0");
-  auto changed = rooms::CommandLogWriter::create(folder_.path() / "changed", header);
+  auto changed = history::CommandLogWriter::create(folder_.path() / "changed", header);
   ASSERT_TRUE(changed);
   while (const auto record = (*log)->next()) (*changed)->write(*record);
   const auto outcome = replayed((*changed)->file());

@@ -14,8 +14,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-constexpr const char* kOperator = "operator-operator-1";
-constexpr const char* kPlayer = "player-player-player";
+constexpr const char* kRestOperator = "operator-operator-1";
+constexpr const char* kRestPlayer = "player-player-player";
 
 struct Answer {
   unsigned status = 0;
@@ -32,11 +32,11 @@ struct Answer {
 class Rest : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillPool}}; }
-  rooms::SceneCatalog scenes() const override {
+  water::SceneCatalog scenes() const override {
     folder_.write("pond.textproto", "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }");
     folder_.write("bay.textproto", std::string(kSleepy));
     folder_.write("broken.textproto", "wave { depth_m: 2000 }");
-    return rooms::SceneCatalog(folder_.path());
+    return water::SceneCatalog(folder_.path());
   }
   void adjust(service::WaterServerOptions& options) const override { options.max_room_count = 3; }
 
@@ -74,7 +74,7 @@ class Rest : public ServerTest {
 
 class RestByRole : public Rest {
   void adjust(service::WaterServerOptions& options) const override {
-    auto access = access::Access::parse(std::string("operator ") + kOperator + "\nplayer " + kPlayer, "tokens",
+    auto access = access::Access::parse(std::string("operator ") + kRestOperator + "\nplayer " + kRestPlayer, "tokens",
                                         core::Role::kViewer);
     ASSERT_TRUE(access);
     options.access.access = *std::move(access);
@@ -90,14 +90,14 @@ class RestOfAProgram : public Rest {
   const std::shared_ptr<std::atomic<int>> end_count_ = std::make_shared<std::atomic<int>>(0);
 };
 
-TEST_F(RestOfAProgram, ARepeatedDrainEndsTheServerOnceAndItIsNotReadyAtOnce) {
+TEST_F(RestOfAProgram, RepeatedDrainEndsTheServerOnce) {
   EXPECT_EQ(ask("POST", "/api/v1/drain").status, 202U);
   EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 503U);
   EXPECT_EQ(ask("POST", "/api/v1/drain").status, 202U) << "a client may repeat a request whose answer was lost";
   EXPECT_EQ(*end_count_, 1) << "a second signal would end the wait for the clients";
 }
 
-TEST_F(RestOfAProgram, ABodyIsRefusedWhereItHasToBeEmpty) {
+TEST_F(RestOfAProgram, UnexpectedBodyIsRefused) {
   for (const char* const path : {"/api/v1/drain", "/api/v1/rooms/main/snapshot"}) {
     const Answer answer = ask("POST", path, "{}");
     EXPECT_EQ(answer.status, 400U) << path;
@@ -238,7 +238,7 @@ TEST_F(Rest, ImpossibleRoomsAreRefusedWithTheReason) {
   EXPECT_EQ(ask("DELETE", "/api/v1/rooms/zzz").status, 404U);
 }
 
-TEST_F(Rest, AServerInsideAnotherProgramIsNotEndedByARequest) {
+TEST_F(Rest, EmbeddedServerRefusesToDrain) {
   EXPECT_EQ(ask("GET", "/api/v1/drain").status, 405U);
   const Answer answer = ask("POST", "/api/v1/drain");
   EXPECT_EQ(answer.status, 409U);
@@ -246,7 +246,7 @@ TEST_F(Rest, AServerInsideAnotherProgramIsNotEndedByARequest) {
   EXPECT_EQ(httpRequest(server().port(), "GET", "/readyz").status, 200U);
 }
 
-TEST_F(Rest, WhileDrainingNoRoomsOpenAndTheServerIsNotReady) {
+TEST_F(Rest, DrainingServerOpensNoRooms) {
   server().drain(std::chrono::seconds(2), "");
   const HttpAnswer ready = httpRequest(server().port(), "GET", "/readyz");
   EXPECT_EQ(ready.status, 503U);
@@ -265,19 +265,19 @@ TEST_F(RestByRole, RequestsThatChangeSomethingNeedAToken) {
   const std::string room = R"({"name": "duck", "scene": "pond"})";
   EXPECT_EQ(ask("GET", "/api/v1/rooms").status, 200U);
   EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", splash).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", splash, kPlayer).status, 200U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kPlayer).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kOperator).status, 200U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kPlayer).status, 403U);
-  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kPlayer).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/drain", "", kPlayer).status, 403U);
-  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kOperator).status, 201U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", splash, kRestPlayer).status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kRestPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms/main/commands", reset, kRestOperator).status, 200U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kRestPlayer).status, 403U);
+  EXPECT_EQ(ask("DELETE", "/api/v1/rooms/main", "", kRestPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/drain", "", kRestPlayer).status, 403U);
+  EXPECT_EQ(ask("POST", "/api/v1/rooms", room, kRestOperator).status, 201U);
   const Answer wrong = ask("GET", "/api/v1/rooms", "", "wrong-wrong-wrong-1");
   EXPECT_EQ(wrong.status, 401U);
   EXPECT_THAT(wrong.body, Not(HasSubstr("wrong-wrong")));
 }
 
-TEST_F(Rest, ARoomWithoutWatchersSleepsIfItsSceneSaysSo) {
+TEST_F(Rest, UnwatchedRoomSleepsIfItsSceneSaysSo) {
   ASSERT_EQ(ask("POST", "/api/v1/rooms", R"({"name": "bay", "scene": "bay"})").status, 201U);
   const auto isAsleep = [&] { return ask("GET", "/api/v1/rooms/bay").json.at("asleep").as_bool(); };
   const auto tickOf = [&](const char* room) {

@@ -137,7 +137,7 @@ TEST_F(Rooms, StopClosesEveryClientAndThePort) {
   server().stop();  // a second call does no harm
 }
 
-TEST_F(Rooms, StopDoesNotWaitForAClientThatDoesNotRead) {
+TEST_F(Rooms, StopDoesNotWaitForASilentClient) {
   ScriptedClient deaf = client("lake");
   deaf.subscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(deaf.nextFrame(v1::LAYER_SURFACE));

@@ -13,7 +13,7 @@ using testing::HasSubstr;
 class Scenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}, {"other", kStillWave}}; }
-  rooms::SceneCatalog scenes() const override {
+  water::SceneCatalog scenes() const override {
     folder_.write("pond.textproto",
                   "wave { resolution_count: 48 side_m: 4 depth_m: 0.5 }\nstream { frame_rate_hz: 60 }");
     folder_.write("box.textproto",
@@ -23,7 +23,7 @@ class Scenes : public ServerTest {
     folder_.write("flume.textproto", "wave { resolution_count: 48 side_m: 12 width_m: 2 depth_m: 1 }");
     folder_.write("broken.textproto", "wave { depth_m: 200 }\nparticles { count: 0 }\n");
     folder_.write("impossible.textproto", "particles { count: 10 }\n");
-    return rooms::SceneCatalog(folder_.path());
+    return water::SceneCatalog(folder_.path());
   }
 
   /// Changes the scene as soon as the room allows it; returns the tick of its Ack.
@@ -48,7 +48,7 @@ TEST_F(Scenes, AreListedInTheGreeting) {
   EXPECT_THAT(client().greeting().scenes(), ElementsAre("box", "broken", "flume", "impossible", "pond", "quay"));
 }
 
-TEST_F(Scenes, ClientsOfWire10AreRefusedWhereTheWaterIsNoSquare) {
+TEST_F(Scenes, ClientOfWire10IsRefusedInARectangle) {
   ScriptedClient old = person({.minor = 0});
   ASSERT_NE(old.welcome().role(), v1::ROLE_UNSPECIFIED) << "squares are what version 1.0 knows";
   ScriptedClient newer = client();
@@ -83,7 +83,7 @@ TEST_F(Scenes, OnlyTheAnswerToASpawnNamesABoat) {
   EXPECT_EQ(changed.ack().boat_id(), 0u);
 }
 
-TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
+TEST_F(Scenes, ChangeSendsAGreetingToAllClients) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ScriptedClient elsewhere = client("other");
@@ -111,7 +111,7 @@ TEST_F(Scenes, ChangeForAllClientsOfTheRoomWithAGreetingAndGrowingTicks) {
   EXPECT_EQ(client("other").greeting().scene().name(), "other");
 }
 
-TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
+TEST_F(Scenes, SubscriptionSurvivesASceneWithoutTheLayer) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   one.subscribe(v1::LAYER_PARTICLES);
@@ -139,7 +139,7 @@ TEST_F(Scenes, ThatLackALayerLeaveItsSubscriptionForTheNext) {
       one.waitFor([&](const v1::ServerMessage& m) { return m.has_diagnostics() && m.diagnostics().tick() > *pond; }));
 }
 
-TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldOneContinues) {
+TEST_F(Scenes, UnknownSceneIsRejected) {
   ScriptedClient one = client();
   for (const char* name : {"sea", "../main", ""}) {
     const v1::Reject reject = one.rejected(changeScene(name));
@@ -149,7 +149,7 @@ TEST_F(Scenes, ThatDoNotExistAreRejectedAndTheOldOneContinues) {
   EXPECT_TRUE(one.runFor(5));
 }
 
-TEST_F(Scenes, ThatDoNotLoadAreRejectedWithTheReasonAndTheOldOneContinues) {
+TEST_F(Scenes, InvalidSceneIsRejectedWithTheReason) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const v1::Reject broken = one.rejected(changeScene("broken"));
@@ -177,7 +177,7 @@ TEST_F(Scenes, KeepThePauseAndTheSpeed) {
   EXPECT_EQ(one.apply(setSpeed(0.5)), applied) << "the tick stands still";
 }
 
-TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
+TEST_F(Scenes, SecondChangeAtOnceIsBusy) {
   ScriptedClient one = client();
   ASSERT_TRUE(changeTo(one, "pond"));
   EXPECT_EQ(one.rejected(changeScene("pond")).reason(), v1::REJECT_REASON_BUSY);
@@ -186,10 +186,10 @@ TEST_F(Scenes, DoNotChangeFasterThanTheRoomCanBuildThem) {
 class ShippedScenes : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kStillWave}}; }
-  rooms::SceneCatalog scenes() const override { return rooms::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+  water::SceneCatalog scenes() const override { return water::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
 };
 
-TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
+TEST_F(ShippedScenes, AllRunInOneRoomOneAfterTheOther) {
   ScriptedClient one = client();
   for (const auto layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_BODIES, v1::LAYER_FOAM})
     one.subscribe(layer);
@@ -207,6 +207,10 @@ TEST_F(ShippedScenes, ChangeFromOneToTheNextWhilePeopleWatchAndAct) {
     const auto greeting = one.waitFor(v1::ServerMessage::kGreeting);
     ASSERT_TRUE(greeting);
     EXPECT_EQ(greeting->greeting().scene().name(), name);
+    const v1::FidelityLevels& levels = greeting->greeting().fidelity_levels();
+    ASSERT_EQ(levels.levels_size(), 4) << name;
+    for (const v1::FidelityLevel& level : levels.levels()) EXPECT_GT(level.cost_ms_per_s(), 0.0) << name;
+    EXPECT_GT(levels.levels(0).error_ratio(), levels.levels(3).error_ratio()) << name;
     // The room sends frames of every layer that the scene has, and they can be decoded.
     for (const int layer : greeting->greeting().layers()) {
       if (layer == v1::LAYER_DIAGNOSTICS) continue;

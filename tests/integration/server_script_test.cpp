@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kLagoon = R"(
+constexpr const char* kScriptLagoon = R"(
   wave { resolution_count: 64 side_m: 24 depth_m: 2 }
   particles { count: 512 layers_count: 2 headroom_m: 2 }
   coupling {}
@@ -19,7 +19,7 @@ constexpr const char* kLagoon = R"(
 
 class Script : public ServerTest {
  protected:
-  std::vector<RoomText> rooms() const override { return {{"main", kLagoon}, {"other", kStillWave}}; }
+  std::vector<RoomText> rooms() const override { return {{"main", kScriptLagoon}, {"other", kStillWave}}; }
   void adjust(service::WaterServerOptions& options) const override { options.rules.grace = std::chrono::hours(1); }
 
   script::ScriptReport run(const std::string& text) {
@@ -40,7 +40,7 @@ class Script : public ServerTest {
   }
 };
 
-TEST_F(Script, ASplashIsSeenAtItsPlaceByAnotherClient) {
+TEST_F(Script, SplashIsSeenByAnotherClient) {
   const auto report = run(R"(
     clients { name: "ada" }
     clients { name: "bob" subscribe { layer: LAYER_SURFACE max_rate_hz: 60 } }
@@ -58,7 +58,7 @@ TEST_F(Script, ASplashIsSeenAtItsPlaceByAnotherClient) {
   EXPECT_EQ(report.clients[1].malformed_count, 0u);
 }
 
-TEST_F(Script, FramesThatAPausedRoomRepeatAreOneState) {
+TEST_F(Script, RepeatedFramesOfAPauseAreOneState) {
   const auto report = run(R"(
     clients { name: "ada" }
     clients { name: "bob" subscribe { layer: LAYER_SURFACE max_rate_hz: 60 } }
@@ -74,7 +74,7 @@ TEST_F(Script, FramesThatAPausedRoomRepeatAreOneState) {
   EXPECT_EQ(report.clients[1].layers[0].state_count, 2u) << "before the reset and after it, at the same tick";
 }
 
-TEST_F(Script, PeopleDriveTheirBoatsAndComeBackToThem) {
+TEST_F(Script, PeopleResumeTheirBoats) {
   const auto report = run(R"(
     clients { name: "ada" person: "Ada" }
     clients { name: "bob" person: "Bob" }
@@ -144,7 +144,7 @@ TEST_F(Script, SeesEventsAndRefusals) {
   EXPECT_TRUE(report.passed()) << failures(report);
 }
 
-TEST_F(Script, BadScriptsAreRefusedWithTheirPlace) {
+TEST_F(Script, InvalidScriptIsRefusedWithItsLocation) {
   const auto error = [](const std::string& text) {
     const auto script = script::parseScript(text, "test");
     return script ? std::string("(accepted)") : script.error().message;

@@ -29,7 +29,7 @@ class Soak : public ServerTest {
   }
 };
 
-TEST_F(Soak, ClientsThatComeAndGoAreAnsweredAndSeeFiniteNumbers) {
+TEST_F(Soak, ComingAndGoingClientsAreAnswered) {
   bench::SoakOptions options;
   const std::string url = "ws://127.0.0.1:" + std::to_string(server().port()) + "/ws";
   options.urls = {url, url, url + "/not_there"};

@@ -8,7 +8,7 @@ using testing::HasSubstr;
 
 class Step : public WaveServerTest {};
 
-TEST_F(Step, AdvancesAPausedRoomByExactlyItsTicksAndShowsThem) {
+TEST_F(Step, AdvancesAPausedRoomByItsTicks) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_SURFACE);
   const auto paused = one.apply(setPaused(true));
@@ -73,7 +73,7 @@ TEST_F(Step, MovesTheWaterAsRunningDoes) {
   EXPECT_GT(maxElevation_m(frame->frame()), 0.01);
 }
 
-TEST_F(Step, OfARunningRoomIsRejectedWithARemedy) {
+TEST_F(Step, InARunningRoomIsRejected) {
   ScriptedClient one = client();
   const v1::Reject reject = one.rejected(step(1));
   EXPECT_EQ(reject.reason(), v1::REJECT_REASON_OUT_OF_RANGE);

@@ -19,7 +19,7 @@ const char* longStorm_s() {
 class Storm : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kHarborLike}, {"other", kStillWave}}; }
-  rooms::SceneCatalog scenes() const override { return rooms::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
+  water::SceneCatalog scenes() const override { return water::SceneCatalog(SPINDRIFT_SOURCE_DIR "/server/scenes"); }
 
   static constexpr const char* kHarborLike = R"(
     wave { resolution_count: 128 side_m: 24 depth_m: 1.5 }
@@ -94,7 +94,7 @@ class StormOfEveryRole : public Storm {
   }
 };
 
-TEST_F(StormOfEveryRole, OtherClientsKeepFramesAnswersAndConnection) {
+TEST_F(StormOfEveryRole, BystandersKeepFramesAndAnswers) {
   std::vector<Attacker> attackers;
   for (const char* token : {"", kViewer, kPlayer, kOperator, kOperator})
     attackers.push_back({Attack::kEverything, token});

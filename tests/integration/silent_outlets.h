@@ -18,11 +18,6 @@ struct SilentOutlets : rooms::RoomOutlets {
   void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override {}
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override {}
   void frameReady(const rooms::Room&, core::FrameView) override {}
-  rooms::WatchedLayers watched(const rooms::Room&, const core::ReducedCounts&, core::LevelSet) const override {
-    return {};
-  }
-  std::size_t sessionCount(const rooms::Room&) const override { return 0; }
-  std::size_t sessionCount() const override { return 0; }
 };
 
 }  // namespace spindrift::test

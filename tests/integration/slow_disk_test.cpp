@@ -6,7 +6,7 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
-#include <spindrift/rooms/state_store.h>
+#include <spindrift/history/state_store.h>
 
 #include "server_fixture.h"
 #include "temporary_folder.h"
@@ -47,7 +47,7 @@ class SlowDisk : public ServerTest {
     return {{"main", kStillWave}, {"dock", kStillWave}, {"quay", kStillWave}};
   }
   void adjust(service::WaterServerOptions& options) const override {
-    auto store = rooms::StateStore::open(
+    auto store = history::StateStore::open(
         {.folder = folder_.path(), .sync = state::Sync::kAlways, .snapshot_interval = std::chrono::hours(1)});
     ASSERT_TRUE(store) << store.error().message;
     options.rules.states = *std::move(store);
@@ -74,7 +74,7 @@ class SlowDisk : public ServerTest {
   std::chrono::milliseconds patience_{200};
 };
 
-TEST_F(SlowDisk, TheServerStartsWhileTheDiskStandsAndRefusesCommandsUntilItDoesNot) {
+TEST_F(SlowDisk, NewRoomRefusesCommandsUntilTheDiskAnswers) {
   ASSERT_TRUE(areOnDisk());
   stop();
   std::filesystem::remove_all(folder_.path() / "rooms");
@@ -89,7 +89,7 @@ TEST_F(SlowDisk, TheServerStartsWhileTheDiskStandsAndRefusesCommandsUntilItDoesN
   EXPECT_TRUE(player.apply(splash()));
 }
 
-TEST_F(SlowDisk, RoomsThatAreKeptStartWhileTheDiskStands) {
+TEST_F(SlowDisk, KeptRoomsStartOnABlockedDisk) {
   ASSERT_TRUE(client("quay").apply(setSpeed(0.5)));
   stop();
   is_disk_standing = true;
@@ -98,7 +98,7 @@ TEST_F(SlowDisk, RoomsThatAreKeptStartWhileTheDiskStands) {
   is_disk_standing = false;
 }
 
-TEST_F(SlowDisk, TheEndTriesNoFurtherSnapshotWhenItsTimeIsOverAndLosesNothing) {
+TEST_F(SlowDisk, StopGivesUpItsLastSnapshotWithoutLoss) {
   for (const char* room : {"main", "dock", "quay"}) ASSERT_TRUE(client(room).apply(setSpeed(0.5)));
   ASSERT_TRUE(areOnDisk());
   sync_ms = static_cast<int>(2 * patience_.count());

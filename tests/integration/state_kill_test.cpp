@@ -148,8 +148,8 @@ class StateKill : public ProgramTest {
     const fs::path newest = copyOfState("newest");
     const fs::path older = copyOfState("older");
     removeNewestSnapshots(older);
-    auto newest_store = rooms::StateStore::open({.folder = newest});
-    auto older_store = rooms::StateStore::open({.folder = older});
+    auto newest_store = history::StateStore::open({.folder = newest});
+    auto older_store = history::StateStore::open({.folder = older});
     ASSERT_TRUE(newest_store && older_store);
     const auto names = (*newest_store)->rooms();
     ASSERT_TRUE(names);
@@ -185,7 +185,7 @@ class StateKill : public ProgramTest {
     return ledger_.rooms()[room].state != RoomFact::State::kOpen && snapshotNumbers(stateFolder(), room).empty();
   }
 
-  void checkCommands(rooms::StateStore& store, const std::string& room) {
+  void checkCommands(history::StateStore& store, const std::string& room) {
     const RoomFact fact = ledger_.rooms()[room];
     auto place = store.place(room);
     ASSERT_TRUE(place) << place.error().message;
@@ -325,7 +325,7 @@ class StateKill : public ProgramTest {
   const Clock::time_point begin_ = Clock::now();
 };
 
-TEST_F(StateKill, NothingAcknowledgedIsLostAndEveryRestartGoesOnBitForBit) {
+TEST_F(StateKill, RestartLosesNothingAcknowledged) {
   const std::uint64_t rounds = variableOr("SPINDRIFT_KILLS", kKillCount);
   if (!start()) GTEST_SKIP() << "no device";
   for (std::uint64_t round = 1; round <= rounds; ++round) {

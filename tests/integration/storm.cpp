@@ -69,10 +69,6 @@ class Bystander {
     message.mutable_command()->mutable_splash()->set_radius_m(0.5);
     (void)client_->send(bytesOf(message));
   }
-  [[nodiscard]] std::uint64_t frameCount() const {
-    const std::lock_guard lock(mutex_);
-    return frame_count_;
-  }
   [[nodiscard]] std::size_t waitingCount() const {
     const std::lock_guard lock(mutex_);
     return loss_.empty() ? waiting_.size() : 0;
@@ -352,7 +348,7 @@ net::ClientUrl urlOf(const StormOptions& options, const std::string& room) {
 }  // namespace
 
 StormReport runStorm(const StormOptions& options) {
-  constexpr auto kPatience = 60s;
+  constexpr auto kStormPatience = 60s;
   constexpr auto kSplashInterval = 250ms;
   // Callbacks run only inside runFor(); clients must be destroyed before their pools.
   const auto watching = net::ClientPool::create(0);
@@ -390,7 +386,7 @@ StormReport runStorm(const StormOptions& options) {
   const auto end = Clock::now();
   out.fewest_frames = UINT64_MAX;
   // The last requests may still be answered.
-  while (Clock::now() < end + kPatience &&
+  while (Clock::now() < end + kStormPatience &&
          std::ranges::any_of(bystanders, [](const auto& one) { return one->waitingCount() > 0; }))
     turn(5ms);
   for (const auto& one : bystanders) one->report(out, end);

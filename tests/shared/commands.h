@@ -93,7 +93,7 @@ inline v1::Command numbered(std::uint64_t command_id, v1::Command command) {
   return command;
 }
 
-/// The splash with a place.
+/// The splash with a position.
 inline v1::Command at(double x_m, double z_m, v1::Command command) {
   command.mutable_splash()->set_x_m(x_m);
   command.mutable_splash()->set_z_m(z_m);

@@ -46,7 +46,7 @@ class Determinism : public ::testing::TestWithParam<Run> {
   }
 };
 
-TEST_P(Determinism, RepeatsBitForBitOnAnyNumberOfThreads) {
+TEST_P(Determinism, RepeatsOnAnyNumberOfThreads) {
   const auto [scene, ticks] = GetParam();
   const std::string first = hashOf(scene, ticks, 1);
   ASSERT_EQ(first.size(), 17u) << first;
@@ -55,7 +55,7 @@ TEST_P(Determinism, RepeatsBitForBitOnAnyNumberOfThreads) {
   EXPECT_EQ(hashOf(scene, ticks, 4), first) << "on four threads";
 }
 
-TEST_P(Determinism, DependsNeitherOnTheOrderOfWorkGroupsNorOnScratchBuffersNorOnASlowDevice) {
+TEST_P(Determinism, IsIndependentOfWorkGroupOrderAndScratch) {
   const auto [scene, ticks] = GetParam();
   const std::string plain = hashOf(scene, ticks, 2);
   ASSERT_EQ(plain.size(), 17u) << plain;

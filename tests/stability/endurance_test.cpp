@@ -1,5 +1,5 @@
 // Properties that must hold in long runs under any commands: the volume ledger, still water, ten thousand commands,
-// places of particles. The tests are short; environment variables make them as long as docs/operations/watch.md
+// positions of particles. The tests are short; environment variables make them as long as docs/operations/watch.md
 // describes.
 #include <algorithm>
 #include <chrono>
@@ -79,10 +79,10 @@ void expectTheWorkOfAFreshOne(gpu::Context& ctx, sim::WaterSim& water, const cor
   ASSERT_TRUE(fresh) << fresh.error().message;
   for (sim::WaterSim* each : {&water, fresh->get()}) {
     each->reset();
-    for (int tick = 0; tick < 300; ++tick) each->step();
+    for (int tick = 0; tick < (is_long ? 300 : 100); ++tick) each->step();
   }
   EXPECT_EQ(water.particleCount(), (*fresh)->particleCount());
-  EXPECT_EQ(water.stateHash(), (*fresh)->stateHash());
+  EXPECT_TRUE(water.copyState() == (*fresh)->copyState()) << "not the hash: ids of boats are not used again";
   const auto passes = passesOf(ctx, water, 30);
   EXPECT_FALSE(passes.empty());
   EXPECT_EQ(passes, passesOf(ctx, **fresh, 30));
@@ -97,7 +97,7 @@ void expectTheWorkOfAFreshOne(gpu::Context& ctx, sim::WaterSim& water, const cor
   EXPECT_LT(used_s / fresh_s, 1.5);
 }
 
-TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborWithTheWorkOfAFreshOne) {
+TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarbor) {
   const int commands = wanted("SPINDRIFT_COMMANDS", 1000);
   const int ticks = commands * 36 / 100;  // 10,000 commands within a minute
   const v1::Scene scene = shipped("harbor");
@@ -135,7 +135,7 @@ TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarborWithTheWorkOfAFres
   EXPECT_EQ(water.nonfiniteCount(), 0u);
 }
 
-TEST_F(Endurance, RandomParticleCountsLeaveASplashOfParticlesWithTheWorkOfAFreshOne) {
+TEST_F(Endurance, RandomParticleCountsKeepTheCostOfATick) {
   const int changes = wanted("SPINDRIFT_COUNT_CHANGES", 40);
   // The parameter goes up to 1,048,576; a software device needs seconds per tick there, so a short run stays below.
   const double most = wanted("SPINDRIFT_COUNT_MAX", 32768);
@@ -186,6 +186,15 @@ TEST_F(Endurance, TheLedgerOfSurfaceAndParticlesIsExact) {
   EXPECT_EQ(water.recoveredCount(), 0u);
 }
 
+/// Returns a quarter of a pool: between periodic sides the same water.
+core::Scene quarterOf(const v1::Scene& pool) {
+  core::Scene scene = scene::toCore(pool);
+  scene.wave->side_m /= 2;
+  scene.wave->resolution_count /= 2;
+  scene.particles->count /= 4;
+  return scene;
+}
+
 /// Root mean square speed of the particles. [m/s]
 double rootMeanSquareSpeed(const sim::WaterSim& water) {
   const double mass_kg = water.derived().particles->mass_kg * water.particleCount();
@@ -194,8 +203,7 @@ double rootMeanSquareSpeed(const sim::WaterSim& water) {
 
 TEST_F(Endurance, StillPoolStaysStillForAMinute) {
   const int ticks = 3600;
-  core::Scene scene = scene::toCore(shipped("still_pool"));
-  sim::WaterSim& water = make(scene);
+  sim::WaterSim& water = make(quarterOf(shipped("still_pool")));
   double first_mps = 0;
   double later_mps = 0;
   for (int tick = 0; tick < ticks; ++tick) {
@@ -211,8 +219,8 @@ TEST_F(Endurance, StillPoolStaysStillForAMinute) {
   EXPECT_EQ(water.recoveredCount(), 0u);
 }
 
-TEST_F(Endurance, StillPoolStaysStillForAMinuteWithPositionsSolvedFor) {
-  core::Scene scene = scene::toCore(shipped("still_pool"));
+TEST_F(Endurance, StillPoolStaysStillForAMinutePositionBased) {
+  core::Scene scene = quarterOf(shipped("still_pool"));
   scene.particles->solver = core::PressureSolver::kPositionBased;
   sim::WaterSim& water = make(scene);
   const int ticks = wanted("SPINDRIFT_STILL_TICKS", 900);
@@ -226,7 +234,7 @@ TEST_F(Endurance, StillPoolStaysStillForAMinuteWithPositionsSolvedFor) {
   std::printf("position-based: at most %.4f m/s (root mean square), fastest particle %.4f m/s\n", fastest_mps,
               fastest_particle_mps);
   EXPECT_LE(fastest_mps, 0.03);
-  // llvmpipe 0.08 m/s, zink 0.36: on another device one particle may still leave its place in the lattice while it
+  // llvmpipe 0.08 m/s, zink 0.36: on another device one particle may still leave its position in the lattice while it
   // settles. Before particles collided it was 0.69 m/s on llvmpipe.
   EXPECT_LE(fastest_particle_mps, 0.5) << "a stray";
   EXPECT_EQ(water.health().max_elevation_m, 0.0);

@@ -61,12 +61,13 @@ class Parameters : public Endurance, public ::testing::WithParamInterface<std::s
     const std::uint64_t recovered = water.recoveredCount();
     const double depth_m = scene.wave ? scene.wave->depth_m : scene.particles->headroom_m;
     // A narrow channel takes a smaller one.
-    const double across_m = scene.wave ? std::min(scene.wave->cells().length_m, scene.wave->cells().width_m) : 8.0;
+    const double across_m =
+        scene.wave ? std::min(core::waveCellsOf(*scene.wave).length_m, core::waveCellsOf(*scene.wave).width_m) : 8.0;
     const double radius_m = std::min(1.6, 0.2 * across_m);
     ASSERT_TRUE(water.start(core::Splash{0.3, -0.2, radius_m, std::min({0.5, 0.9 * depth_m, radius_m}), 0.22}));
     if (scene.wave) {
       // A sharp splash at a corner excites instabilities at the sides at once.
-      const core::WaveCells cells = scene.wave->cells();
+      const core::WaveCells cells = core::waveCellsOf(*scene.wave);
       const double cell_m = water.derived().wave->cell_m;
       ASSERT_TRUE(water.start(core::Splash{0.5 * cells.length_m - 6 * cell_m, 0.5 * cells.width_m - 6 * cell_m,
                                            1.5 * cell_m, std::min(0.1, 0.5 * depth_m), 0.05}));

@@ -82,7 +82,7 @@ class SavedState : public OnSoftware, public ::testing::WithParamInterface<std::
   }
 };
 
-TEST_P(SavedState, GoesOnBitForBitAfterEffectsAndBoats) {
+TEST_P(SavedState, ResumesBitForBitWithEffectsAndBoats) {
   comparesAfter(Crowd::Sends::kEffectsAndBoats);
 }
 

@@ -106,7 +106,7 @@ TEST_P(SeaParameters, KeepTheWaterHealthyWhileItMoves) {
   const int ticks = wanted("SPINDRIFT_SEA_TICKS", base.wave ? 6 : 2);
   const double rise_s = base_.has_storm() ? kRise_s : 0.25 * kRise_s;
   for (int tick = 0; tick < rise_s / water_->derived().tick_s; ++tick) water_->step();
-  if (base.wave) (void)water_->start(core::Splash{0.0, 0.0, 0.2 * base.wave->cells().width_m / 4, 0.2, 0.2});
+  if (base.wave) (void)water_->start(core::Splash{0.0, 0.0, 0.2 * core::waveCellsOf(*base.wave).width_m / 4, 0.2, 0.2});
   ASSERT_NO_FATAL_FAILURE(run(ticks));
   ASSERT_NO_FATAL_FAILURE(check());
   const double usual_m = highest_seen_m_;

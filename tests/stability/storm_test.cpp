@@ -122,7 +122,7 @@ class Storm : public Endurance {
   }
 };
 
-TEST_F(Storm, SplashesWavesAndBoatsNeverEmptyTheHarborBelowItsBed) {
+TEST_F(Storm, SplashesNeverEmptyTheHarborBelowItsBed) {
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks);
   EXPECT_GE(extremes.thinnest_units, 0);
@@ -189,7 +189,7 @@ TEST_P(StormInScene, KeepsTheVolumeAndStaysBounded) {
 
 /// After the last command, water can only lose energy. With dispersion the diagnostics' energy leaves out a part that
 /// swings to and fro with the waves, so stretches of time are compared instead of ticks.
-TEST_P(StormInScene, IsFollowedByACalmInWhichTheWaterGainsNoEnergy) {
+TEST_P(StormInScene, CalmAfterwardsGainsNoEnergy) {
   v1::Scene scene = shipped(GetParam());
   scene.clear_events();
   scene.clear_storm();

@@ -30,7 +30,7 @@ core::Scene towingBasin(std::uint32_t cells, double depth_m, core::Dispersion di
   scene.wave->depth_m = depth_m;
   scene.wave->damping_per_s = 0.5;
   scene.wave->dispersion = dispersion;
-  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
+  setBoundaries(*scene.wave, core::WaveBoundary::kPeriodic);
   scene.boats.emplace();
   return scene;
 }
@@ -102,7 +102,7 @@ Outcome floatingBody(gpu::Context& ctx, bool quick) {
     scene.wave->side_m = 20.0;
     scene.wave->depth_m = 1.5;
     scene.wave->damping_per_s = 1.0;
-    scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+    setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
     scene.boats.emplace();
     scene.boats->boats = {core::Boat{.length_m = 3.0, .beam_m = 1.2, .height_m = 0.8, .density_ratio = density_ratio}};
     auto water = sim::WaterSim::create(ctx, scene);
@@ -125,7 +125,7 @@ Outcome machWedge(gpu::Context& ctx, bool /*quick*/) {
   scene.wave->resolution_count = 256;
   scene.wave->side_m = 40.0;
   scene.wave->depth_m = 0.4;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.boats.emplace();
   scene.boats->boats = {core::Boat{
       .x_m = -15.0, .length_m = 1.5, .beam_m = 0.6, .height_m = 0.3, .max_speed_mps = 5.0, .throttle_ratio = 1.0}};

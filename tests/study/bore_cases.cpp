@@ -44,7 +44,7 @@ double lastCrossing(std::span<const double> row, double level) {
   return 0.0;
 }
 
-/// The same for the place where it rises above.
+/// The same for the position where it rises above.
 double firstRise(std::span<const double> row, double level) {
   for (std::size_t i = 0; i + 1 < row.size(); ++i) {
     if (row[i] <= level && row[i + 1] > level) return static_cast<double>(i) + (level - row[i]) / (row[i + 1] - row[i]);

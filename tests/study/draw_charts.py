@@ -49,7 +49,7 @@ class Chart:
     series: list[Series]
     is_x_logarithmic: bool = False
     is_y_logarithmic: bool = False
-    bound: tuple[float, str] | None = None  # a vertical line: place and text
+    bound: tuple[float, str] | None = None  # a vertical line: position and text
 
 
 @dataclasses.dataclass

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include <spindrift/sim_setup/fourier.h>
+#include <spindrift/core/fourier.h>
 
 namespace spindrift::study {
 
@@ -107,11 +107,11 @@ std::vector<LinearSea::Complex> LinearSea::spectrumOf(std::span<const double> fi
       is_empty = is_empty && field[x + n_ * z] == 0.0;
     }
     if (is_empty) continue;
-    sim::transform(row, sim::Transform::kForward);
+    core::transform(row, core::Transform::kForward);
     for (std::size_t x = 0; x <= n_ / 2; ++x) out[z + n_ * x] = row[x];
   }
   for (std::size_t x = 0; x <= n_ / 2; ++x)
-    sim::transform(std::span(out).subspan(n_ * x, n_), sim::Transform::kForward);
+    core::transform(std::span(out).subspan(n_ * x, n_), core::Transform::kForward);
   return out;
 }
 
@@ -135,14 +135,14 @@ void LinearSea::advance(std::span<const double> head_m, double dt_s) {
 std::vector<double> LinearSea::surface() const {
   std::vector<Complex> columns = elevation_m_;
   for (std::size_t x = 0; x <= n_ / 2; ++x)
-    sim::transform(std::span(columns).subspan(n_ * x, n_), sim::Transform::kInverse);
+    core::transform(std::span(columns).subspan(n_ * x, n_), core::Transform::kInverse);
   std::vector<double> out(n_ * n_);
   std::vector<Complex> row(n_);
   const auto cells = static_cast<double>(n_ * n_);
   for (std::size_t z = 0; z < n_; ++z) {
     for (std::size_t x = 0; x <= n_ / 2; ++x) row[x] = columns[z + n_ * x];
     for (std::size_t x = n_ / 2 + 1; x < n_; ++x) row[x] = std::conj(row[n_ - x]);
-    sim::transform(row, sim::Transform::kInverse);
+    core::transform(row, core::Transform::kInverse);
     for (std::size_t x = 0; x < n_; ++x) out[x + n_ * z] = row[x].real() / cells;
   }
   return out;

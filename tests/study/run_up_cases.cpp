@@ -63,7 +63,7 @@ void startWave(sim::WaterSim& water, const BeachChannel& channel, const Solitary
       [&](double x, double) { return x < end_m ? velocity(wave.at(x)) : 0.0; });
 }
 
-/// Highest place [m over the still water] that the water has reached after `duration_s`.
+/// Highest point [m over the still water] that the water has reached after `duration_s`.
 core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_m, double manning_spm13,
                            core::Dispersion dispersion) {
   const double half_m = kStartArgument / std::sqrt(0.75 * height_m);
@@ -96,7 +96,7 @@ core::Result<double> runUp(gpu::Context& ctx, double height_m, double cells_per_
   return highest_m;
 }
 
-/// Root mean square of the differences over the span of the expected values; places that should be dry do not count.
+/// Root mean square of the differences over the span of the expected values; positions that should be dry do not count.
 template <std::size_t N>
 double relativeError(const std::array<double, N>& measured, const std::array<double, N>& expected) {
   double sum = 0.0, low = 0.0, high = 0.0;

@@ -40,7 +40,7 @@ core::Scene openSea(bool quick) {
   wave.damping_per_s = 0.0;
   wave.sponge_width_m = 4.0;
   wave.dispersion = core::Dispersion::kAiry;
-  wave.setBoundaries(WaveBoundary::kAbsorb);
+  setBoundaries(wave, WaveBoundary::kAbsorb);
   scene.storm.emplace();
   scene.storm->level_ratio = 1.0;
   scene.storm->drops_per_m2_s = 0.0;
@@ -57,7 +57,7 @@ struct Samples {
   };
   std::vector<Place> places;
   std::vector<double> times_s;
-  std::vector<std::vector<double>> eta_m;  ///< by time, then place
+  std::vector<std::vector<double>> eta_m;  ///< by time, then position
 
   [[nodiscard]] double variance_m2() const {
     double sum = 0.0;

@@ -8,12 +8,12 @@
 
 namespace spindrift::study {
 
-/// Value at a place that is `cells` cells from the first edge, linear between the middles of the cells; beyond the
+/// Value at a position that is `cells` cells from the first edge, linear between the middles of the cells; beyond the
 /// first and the last middle theirs. Precondition: at least 2 values.
 double betweenCells(std::span<const double> values, double cells);
 
 /// The central-upwind scheme of Kurganov & Petrova (2007): second order, positive depth; level water stays level if its
-/// shore is at the edge of a cell. Without friction, between walls. Places count from 0 at the first wall.
+/// shore is at the edge of a cell. Without friction, between walls. Positions count from 0 at the first wall.
 class ShallowReference {
  public:
   struct Water {
@@ -30,7 +30,7 @@ class ShallowReference {
   [[nodiscard]] double time_s() const { return time_s_; }
   /// Level of the surface, linear between the middles of the cells. [m]
   [[nodiscard]] double levelAt(double x_m) const;
-  /// Water beyond a place. [m^2]
+  /// Water beyond a position. [m^2]
   [[nodiscard]] double waterBeyond(double x_m) const;
 
  private:

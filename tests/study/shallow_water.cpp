@@ -21,7 +21,7 @@ core::Scene shallowScene(std::uint32_t resolution_count, double cell_m, double d
   scene.wave->damping_per_s = 0.0;
   scene.wave->bulk = core::Bulk::kNonlinear;
   scene.wave->manning_spm13 = 0.0;
-  scene.wave->setBoundaries(WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, WaveBoundary::kReflect);
   scene.wave->fixed_substeps_count = 1;
   scene.allow_unstable = true;  // the tick is the step, whatever the rule would choose
   scene.tick_rate_hz = std::sqrt(scene.gravity_mps2 * depth_m) / (courant * cell_m);
@@ -36,7 +36,7 @@ core::Scene shallowChannel(std::uint32_t cells, double cell_m, double depth_m, d
 }
 
 void makePeriodic(core::Scene& scene) {
-  scene.wave->setBoundaries(WaveBoundary::kPeriodic);
+  setBoundaries(*scene.wave, WaveBoundary::kPeriodic);
 }
 
 int fitTicks(core::Scene& scene, double duration_s, double longest_tick_s) {
@@ -46,7 +46,7 @@ int fitTicks(core::Scene& scene, double duration_s, double longest_tick_s) {
 }
 
 void setBed(core::Scene& scene, const Field2& depth_m) {
-  const core::WaveCells water = scene.wave->cells();
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
   core::DepthGrid grid;
   grid.columns_count = 2 * water.count.x + 1;
   grid.rows_count = 2 * water.count.z + 1;

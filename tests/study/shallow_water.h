@@ -32,7 +32,7 @@ void setBed(core::Scene& scene, const Field2& depth_m);
 
 /// Elevations of the second row of cells. [m]
 std::vector<double> rowOf(sim::WaterSim& water);
-/// Places of the cells along x. [m]
+/// Positions of the cells along x. [m]
 std::vector<double> placesAlong(const sim::WaterSim& water);
 
 /// Still depth of the ground at the cells, negative on land. x fastest. [m]

@@ -200,7 +200,7 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   if (!made) return made.error();
   sim::WaterSim& water = **made;
   setSurface(water, [](double x, double) { return 0.2 * std::pow(std::cosh((x - 14.0) / 1.5), -2); });
-  // Place and height of the crest: the highest cell of a row, refined by a parabola.
+  // Position and height of the crest: the highest cell of a row, refined by a parabola.
   const double cell_m = 96.0 / n;
   const auto crest = [&] {
     const auto eta_m = water.copyState().elevation_m;

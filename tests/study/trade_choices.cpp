@@ -36,7 +36,7 @@ core::Scene withFinerParticles(core::Scene scene, double scale) {
 
 core::Scene withResolution(core::Scene scene, double scale) {
   core::WaveScene& wave = *scene.wave;
-  const core::WaveCells before = wave.cells();
+  const core::WaveCells before = core::waveCellsOf(wave);
   // Multiples of 16 stay so, and the cells of a rectangle fit its width.
   const std::uint32_t step = wave.resolution_count % 16 == 0 ? 16 : 1;
   const double cells = std::round(wave.resolution_count * scale / step) * step;

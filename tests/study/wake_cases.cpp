@@ -127,7 +127,7 @@ TrackWaves onTrack(const Wake& wake, std::span<const double> surface_m, Columns 
 }
 
 /// Half angle [deg] of the line through the boat on which the outer ridge lies: least squares over windows behind the
-/// boat, each with the outermost place where the waves reach 60 % of the largest off the track.
+/// boat, each with the outermost point where the waves reach 60 % of the largest off the track.
 double ridgeAngle_deg(const Wake& wake, std::span<const double> surface_m, double nearest_m, double farthest_m,
                       double window_m) {
   double product = 0.0;
@@ -191,7 +191,7 @@ double rootMeanSquare(const Wake& wake, std::span<const double> surface_m, Colum
   return std::sqrt(sum / static_cast<double>(wake.side_count * (part.last - part.first)));
 }
 
-/// Half angle [deg] between the track and the crest of the wedge: least squares through its highest places, 2 to 5 m
+/// Half angle [deg] between the track and the crest of the wedge: least squares through its highest points, 2 to 5 m
 /// to the side.
 double wedgeAngle_deg(const Wake& wake, std::span<const double> surface_m) {
   double s = 0.0, b = 0.0, ss = 0.0, sb = 0.0, count = 0.0;

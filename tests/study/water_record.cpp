@@ -162,7 +162,7 @@ WaterRecord::Sample sampleOf(sim::WaterSim& water) {
   if (!scene.particles) return sample;
   sample.density_rms_ratio = densityError(water, state);
   if (scene.coupling && scene.coupling->mode == core::CouplingMode::kTwoWay)
-    return sample;  // the place of spray is random
+    return sample;  // the position of spray is random
   sample.column_m = columns(water, state);
   if (scene.particles->fill_x_ratio < 1) sample.front_m = frontOf(water, state);
   return sample;

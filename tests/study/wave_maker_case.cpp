@@ -47,7 +47,7 @@ core::Scene flumeScene(const Water& water, double length_m, double cell_m, doubl
   wave.manning_spm13 = 0.0;
   wave.bulk = water.bulk;
   wave.dispersion = water.dispersion;
-  wave.setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(wave, core::WaveBoundary::kReflect);
   if (absorbing_m > 0) {
     wave.boundary_plus_x = core::WaveBoundary::kAbsorb;
     wave.absorption = core::Absorption::kPml;

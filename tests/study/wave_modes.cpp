@@ -18,7 +18,7 @@ core::Scene waveScene(std::uint32_t resolution_count, double side_m, double dept
   wave.depth_m = depth_m;
   wave.damping_per_s = 0.0;
   wave.stencil = stencil;
-  wave.setBoundaries(sides);
+  setBoundaries(wave, sides);
   scene.tick_rate_hz = std::sqrt(scene.gravity_mps2 * depth_m) / (courant * side_m / resolution_count);
   return scene;
 }
@@ -36,7 +36,7 @@ core::Scene dispersiveScene(std::uint32_t resolution_count, double cell_m, doubl
   wave.damping_per_s = 0.0;
   wave.fixed_substeps_count = 1;
   wave.dispersion = core::Dispersion::kAiry;
-  wave.setBoundaries(sides);
+  setBoundaries(wave, sides);
   return scene;
 }
 

@@ -17,7 +17,7 @@ class WavePacket {
   /// Mean group speed of its waves, by energy.
   [[nodiscard]] double groupSpeed_mps() const { return group_speed_mps_; }
 
-  /// Elevation at a place and time over its largest, and flow [m/s] over that.
+  /// Elevation at a position and time over its largest, and flow [m/s] over that.
   [[nodiscard]] double elevationAt(double x_m, double time_s) const { return sum(x_m, time_s, false); }
   [[nodiscard]] double flowAt_mps(double x_m, double time_s) const { return sum(x_m, time_s, true); }
 

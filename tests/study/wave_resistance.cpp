@@ -13,7 +13,7 @@ using std::numbers::pi;
 /// volume there.
 constexpr double kLongestPhase = 25.0;
 
-/// Wave number of the waves that stand still in the frame of a boat: U^2 k^2 cos^2 = omega^2. 0 if there is none.
+/// Wave number of the waves that stand still in the frame of a boat: U^2 k^2 cos^2 = omega^2. 0 if no wave does.
 double standingWave(const LinearWater& water, double component_mps, double longest_radpm) {
   const auto lead = [&](double k) { return component_mps * component_mps * k * k - water.omega2(k); };
   double low = 1e-9 * longest_radpm;

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Writes what the documents and the page say of the trade study, from docs/plots/trade.json:
+"""Writes what the documents and the server say of the trade study, from docs/plots/trade.json:
 
-    write_tables.py [--root FOLDER]                      the tables and the page's figures
+    write_tables.py [--root FOLDER]                      the tables and the errors that the server tells
     write_tables.py [--root FOLDER] --check              only compares; exit code 1 and the names of files that differ
     write_tables.py [--root FOLDER] --take FILE COMMIT   first makes trade.json of FILE, which `spindrift-study --suite trade` wrote
 
@@ -18,7 +18,7 @@ import sys
 HERE = pathlib.Path(__file__).resolve()
 FIGURES = "docs/plots/trade.json"
 DOCUMENTS = ["docs/study.md", "docs/accuracy.md"]
-PAGE = "web-client/src/ui/fidelity_costs.json"
+ERRORS = "server/scenes/fidelity_errors.txtpb"  # text of proto/spindrift/v1/fidelity_errors.proto
 MARKED = re.compile(r"(<!-- study:(\w+) -->\n).*?(<!-- /study -->)", re.DOTALL)
 LEVELS = ["draft", "balanced", "fine", "reference"]
 LEVEL = "fidelity"  # the knob of the rows that are fidelity levels
@@ -73,15 +73,17 @@ def written(figures):
     return text + "\n"
 
 
-def page_figures(figures):
-    """What the page needs: [seconds of cost, percent of error] at each level, by scene, and the means over BALANCED."""
-    def at_level(scene, level):
-        row = row_of(scene, LEVEL, level)
-        return [float(digits(row["cost_ms_per_s"] / 1000, 2)), float(digits(100 * row["height_rms_ratio"], 2))]
-
-    scenes = {scene["scene"]: [at_level(scene, level) for level in LEVELS] for scene in figures["scenes"]}
-    means = [[float(digits(mean_of(figures, level)[key], 2)) for key in ("cost_ratio", "error_ratio")] for level in LEVELS]
-    return {"date": figures["date"], "commit": figures["commit"], "scenes": scenes, "means": means}
+def errors_text(figures):
+    """What the server tells of each scene: the error at each level."""
+    lines = [
+        "# Written by tests/study/write_tables.py from docs/plots/trade.json; `./dev study --update` measures it again.",
+        f'measured_on: "{figures["date"]}"',
+        f'commit: "{figures["commit"]}"',
+    ]
+    for scene in figures["scenes"]:
+        ratios = ", ".join(digits(row_of(scene, LEVEL, level)["height_rms_ratio"], 2) for level in LEVELS)
+        lines.append(f'scenes {{ name: "{scene["scene"]}" error_ratios: [{ratios}] }}')
+    return "\n".join(lines) + "\n"
 
 
 def row_of(scene, knob, setting):
@@ -207,7 +209,7 @@ def table_costs(figures):
 
 def files_of(root, figures):
     """What every file has to contain, by its name."""
-    out = {FIGURES: written(figures), PAGE: json.dumps(page_figures(figures)) + "\n"}
+    out = {FIGURES: written(figures), ERRORS: errors_text(figures)}
     for name in DOCUMENTS:
         text = (root / name).read_text(encoding="utf-8")
         out[name] = MARKED.sub(lambda mark: mark[1] + globals()[f"table_{mark[2]}"](figures) + mark[3], text)

@@ -154,7 +154,7 @@ describe("the capacity model", () => {
     assert.ok(result.first_frame_p99_ms < 3000);
   });
 
-  it("brings every room of a dead server back, after its silence was noticed and the room was built", () => {
+  it("brings every room of a dead server back", () => {
     const result = deaths();
     assert.equal(result.rooms_not_back, 0);
     // The last pulse is up to 0.2 s old when the server dies.
@@ -190,12 +190,12 @@ describe("the capacity model", () => {
     assert.match(text, /1 parameters were not measured \(room_build_p50_s\): run capacity_measure\.py/);
   });
 
-  it("refuses rooms that do not fit on the servers, and shares of levels that are not the whole", () => {
+  it("refuses rooms that do not fit and shares that are not the whole", () => {
     assert.match(run(["--case", "failover", "--rooms", "100", "--servers", "2"]).text, /100 rooms do not fit on 2 servers/);
     assert.match(run(["--case", "fanout", "--levels", "coarse=0.5"]).text, /add up to 0\.5, not 1/);
   });
 
-  it("knows a unit, a meaning and a source of every parameter, and a line of the program for every fixed one", () => {
+  it("knows unit, meaning and source of every parameter", () => {
     const content = JSON.parse(readFileSync(join(CAPACITY, "capacity_parameters.json"), "utf8"));
     for (const [name, entry] of Object.entries(content)) {
       assert.deepEqual(Object.keys(entry).sort(), ["meaning", "source", "unit", "value"], name);

@@ -97,6 +97,15 @@ describe("./dev", () => {
     assert.equal(shop.dev(["build"]).calls.filter((call) => call.startsWith("npm")).length, 0);
   });
 
+  it("uses the Node that it has just installed, where that is new enough", () => {
+    const script = `source "$1"; PATH=/nowhere
+      need_packages() { npm() { :; }; node() { echo v20.19.2; }; }
+      step() { echo "fetches another one"; }
+      need_node && echo ready`;
+    const result = spawnSync("bash", ["-c", script, "bash", join(repository, ".ci/lib/node.sh")], { encoding: "utf8" });
+    assert.equal(result.stdout, "ready\n", result.stderr);
+  });
+
   it("accepts the Node versions that Vite supports and no others", () => {
     const accepts = (version) =>
       spawnSync("bash", ["-c", 'source "$1"; node_is_new_enough "$2"', "bash", join(repository, ".ci/lib/node.sh"), version]).status === 0;

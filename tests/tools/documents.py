@@ -5,9 +5,12 @@ Reports, one per line as FILE:LINE: MESSAGE,
 * relative links to a file or folder that Git does not know, and #anchors without a heading;
 * `file:function` where the file does not exist or does not contain the function's name;
 * paths in back quotes that begin with a folder of the repository and do not exist;
-* documents below docs/ that no other document links.
+* tests of GoogleTest that do not exist: `Suite.Name`, the beginning of one with … behind it, and filters;
+* documents below docs/ that no other document links;
+* decisions whose first line names the decisions that supersede them, where their row in the index does not, and the reverse.
 Exit code 1 when there is a fault. Decisions and the changelog are records: the paths in them may be old.
 """
+import fnmatch
 import pathlib
 import re
 import subprocess
@@ -21,6 +24,9 @@ FENCE = re.compile(r"^ {0,3}(```+|~~~+)")
 CODE = re.compile(r"(`+)(.+?)\1")
 FUNCTION = re.compile(r"([\w.@/-]*\w\.(?:cpp|h|comp|glsl|proto|ts|mjs|py|sh)):((?:\w+::)*~?[A-Za-z_]\w*)")
 PATH = re.compile(r"(?:\.ci|docker|docs|proto|server|shaders|tests|web-client)/[\w./-]*")
+TEST = re.compile(r"\bTEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)")
+TEST_NAME = re.compile(r"\b([A-Z]\w+)\.([A-Z]\w+)(…|\*)?")
+TEST_FILTER = re.compile(r"gtest_filter=['\"]?([\w*./:-]+)")
 PLACEHOLDER = re.compile(r"\b(?:NAME|TARGET|FILE|SUBJECT|VERB)\b")
 
 
@@ -42,6 +48,7 @@ class Checkout:
         self.root = root
         listed = self.git("ls-files", "-z", "--cached", "--others", "--exclude-standard")
         self.files = {name for name in listed.split("\0") if name and (root / name).is_file()}
+        self.tests = {pair for name in self.files if re.fullmatch(r"tests/.*\.cpp", name) for pair in TEST.findall(self.text(name))}
         self.folders = {str(parent) for name in self.files for parent in pathlib.PurePosixPath(name).parents}
 
     def git(self, *arguments):
@@ -129,6 +136,34 @@ def check_function(checkout, name, function):
     return None
 
 
+def check_tests(checkout, line):
+    """Yields what is wrong with the tests that a line names."""
+    suites = {suite for suite, _ in checkout.tests}
+    for suite, test, more in TEST_NAME.findall(TEST_FILTER.sub("", line)):
+        if suite in suites and not any(known == test or more and known.startswith(test) for of, known in checkout.tests if of == suite):
+            yield f"there is no test {suite}.{test}{more}"
+    if not checkout.tests:
+        return
+    names = [name for pair in checkout.tests for name in (".".join(pair), f"PREFIX/{'.'.join(pair)}/SCENE")]
+    for pattern in (one for found in TEST_FILTER.findall(line) for one in found.split(":")):
+        if not fnmatch.filter(names, pattern):
+            yield f"no test matches {pattern}"
+
+
+def check_superseded(documents):
+    """Yields the decisions whose page and row in the index name different successors."""
+    index = documents.get("docs/decisions/README.md")
+    for row in index.lines if index else ():
+        if not (page := re.match(r"\| \[(\d+)\]\(([\w.-]+)\)", row)) or f"docs/decisions/{page[2]}" not in documents:
+            continue
+        text = "\n".join(documents[f"docs/decisions/{page[2]}"].lines)
+        first = re.search(r"\A#[^\n]*\n\nSuperseded[^:]*", text)
+        above = re.findall(r"\[(\d+)\]", first[0]) if first else []
+        said = re.search(r"uperseded by ([\d, and]+)", row)
+        if sorted(above) != sorted(re.findall(r"\d+", said[1]) if said else []):
+            yield f"docs/decisions/{page[2]}:1: the index names other decisions that supersede it"
+
+
 def faults(root):
     """Returns every fault, by file and line, and the number of documents."""
     checkout = Checkout(root)
@@ -140,6 +175,7 @@ def faults(root):
         found = [(number, check_link(checkout, documents, document, target, linked)) for number, target in document.links]
         for number, line in enumerate(document.lines, start=1):
             found += [(number, check_function(checkout, *match)) for match in FUNCTION.findall(line)]
+            found += [(number, fault) for fault in check_tests(checkout, line)]
             if not is_record(document.name):
                 for _, code in CODE.findall(line):
                     path = code.rstrip("/")
@@ -150,6 +186,7 @@ def faults(root):
         found.sort(key=lambda entry: entry[0])
         out += [f"{document.name}:{number}: {fault}" for number, fault in found if fault]
     out += [f"{name}:1: no other document links it" for name in names if name.startswith("docs/") and name not in linked]
+    out += check_superseded(documents)
     return out, len(names)
 
 

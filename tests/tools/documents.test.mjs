@@ -114,4 +114,34 @@ describe("documents.py", () => {
     write("docs/decisions/001-why.md", "`server/old/file.cpp` [x](002-gone.md)\n");
     assert.deepEqual(check(folder).faults, ["docs/decisions/001-why.md:1: link 002-gone.md: there is no docs/decisions/002-gone.md"]);
   });
+
+  it("reports tests that do not exist, by name, by the beginning of a name and by filter", () => {
+    write("tests/unit/outbox_test.cpp", "TEST(Outbox, KeepsTheOrder) {}\nTEST_P(Storm,\n       LosesNothing) {}\n");
+    write("README.md", "[guide](docs/guide.md) `Outbox.KeepsTheOrder` `Outbox.Keeps…` `Other.Thing` `--gtest_filter='*Keeps*:Storm.*'` `gtest_filter=*Loses*/SCENE`\n");
+    assert.deepEqual(check(folder).faults, []);
+    write("README.md", "[guide](docs/guide.md)\n`Outbox.Keeps` `Storm.Keeps…`\n`--gtest_filter='*Keeps*:Outbox.Loses*'`\n");
+    assert.deepEqual(check(folder).faults, [
+      "README.md:2: there is no test Outbox.Keeps",
+      "README.md:2: there is no test Storm.Keeps…",
+      "README.md:3: no test matches Outbox.Loses*",
+    ]);
+  });
+
+  it("reports decisions whose page and index name different successors", () => {
+    const row = (note) => `| [001](001-why.md) | Why | Because. ${note} |\n`;
+    const page = (line) => `# 1. Why\n\n${line}\n\n**Context.** A [link](../guide.md).\n`;
+    const fault = "docs/decisions/001-why.md:1: the index names other decisions that supersede it";
+    write("README.md", "[guide](docs/guide.md) [index](docs/decisions/README.md)\n");
+    for (const [line, note, faults] of [
+      ["Superseded by decision [2](001-why.md).", "Superseded by 2.", []],
+      ["Superseded in part by decisions [2](001-why.md) and [3](001-why.md): a part.", "In part superseded by 2 and 3.", []],
+      ["Superseded by decision [2](001-why.md).", "", [fault]],
+      ["**Context.** None.", "Superseded by 2.", [fault]],
+      ["Superseded by decision [2](001-why.md).", "Superseded by 3.", [fault]],
+    ]) {
+      write("docs/decisions/README.md", row(note));
+      write("docs/decisions/001-why.md", page(line));
+      assert.deepEqual(check(folder).faults, faults, `${line} ${note}`);
+    }
+  });
 });

@@ -170,7 +170,7 @@ describe("the metrics of a running server", () => {
     }
   });
 
-  it("count in each bucket of a histogram what is in those below, too, and in the last one all", (context) => {
+  it("count histogram buckets cumulatively", (context) => {
     if (reason) return context.skip(reason);
     for (const [name] of [...metrics].filter(([, { type }]) => type === "histogram")) {
       const rows = [...page.matchAll(new RegExp(`^spindrift_${name}_bucket\\{.*le="([^"]+)"\\} (\\d+)$`, "gm"))];

@@ -98,13 +98,13 @@ print(json.dumps([newest_row(""), newest_row(head), newest_row("warning\\n" + he
   });
 
   it("misses the bound of memory with a slow leak, and names value and bound", () => {
-    // 2 MB an hour.
+    // 2 MB per hour.
     const missed = judge({ row: '{"edge_rss_mb": 100.0 + 2.0 * k * 10.0 / 3600.0}' });
     assert.equal(missed.length, 1);
     assert.match(missed[0], /^memory of edge: 2 MB\/h.*\(bound 1 MB\/h\)$/);
   });
 
-  it("does not take memory of additional rooms, or a leak of NATS, for one of ours", () => {
+  it("ignores memory of additional rooms and of NATS", () => {
     assert.deepEqual(judge({ row: '{"calm": int(k < 40), "server_rss_mb": 100.0 if k < 40 else 200.0, "nats_rss_mb": 100.0 + k}' }), []);
   });
 

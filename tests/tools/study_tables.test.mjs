@@ -8,7 +8,7 @@ import { it } from "node:test";
 import { repository } from "./workshop.mjs";
 
 const script = join(repository, "tests/study/write_tables.py");
-const written = ["docs/plots/trade.json", "docs/study.md", "docs/accuracy.md", "web-client/src/ui/fidelity_costs.json"];
+const written = ["docs/plots/trade.json", "docs/study.md", "docs/accuracy.md", "server/scenes/fidelity_errors.txtpb"];
 
 function run(...args) {
   const result = spawnSync("python3", [script, ...args], { encoding: "utf8" });
@@ -16,7 +16,7 @@ function run(...args) {
   return { code: result.status, out: result.stdout };
 }
 
-it("the documents and the page have the figures of trade.json", () => {
+it("the documents and the server have the figures of trade.json", () => {
   assert.deepEqual(run("--check"), { code: 0, out: "" });
 });
 

@@ -43,7 +43,7 @@ describe("the total of ./dev test", () => {
     assert.match(sum.text, /FAILED native: unit\/Outbox\.Drops\n {4}expected 1, got 2/);
   });
 
-  it("counts a test that skipped itself as skipped and one whose program is missing as failed", () => {
+  it("counts self-skipped tests as skipped and missing programs as failed", () => {
     const { text } = summarise(["native", 8, CTEST]);
     assert.match(text, /skipped native: gpu\/Wave\.Travels \(no EGL device\)/);
     assert.match(text, /FAILED native: unit_net_NOT_BUILT\n {4}did not run: Unable to find executable/);

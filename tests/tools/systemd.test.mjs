@@ -44,7 +44,7 @@ describe("the service", () => {
     assert.deepEqual(service("SystemCallFilter"), ["@system-service", "~@privileged"]);
   });
 
-  it("leaves the program what it needs: memory for compiled shaders, devices, room for connections, time for the last snapshots", () => {
+  it("leaves the program memory, devices, descriptors and time to stop", () => {
     assert.deepEqual(service("MemoryDenyWriteExecute"), ["no"]);
     assert.deepEqual(service("PrivateDevices"), ["no"]);
     assert.ok(service("DeviceAllow").includes("char-drm rw"));

@@ -34,7 +34,7 @@ describe("test_targets.py", () => {
     assert.deepEqual(targets("^gpu/Sweep", folder).names, ["two_test"]);
   });
 
-  it("fails if there is none, and reports an invalid regular expression", () => {
+  it("fails without a matching test, and reports an invalid regular expression", () => {
     assert.deepEqual(targets("nothere", folder), { code: 1, names: [], complaint: "" });
     const wrong = targets("(", folder);
     assert.equal(wrong.code, 2);

@@ -26,7 +26,7 @@ esac
   );
   chmodSync(join(folder, "clang-tidy"), 0o755);
   const tidy = (...files) =>
-    spawnSync("python3", [join(repository, "tests/tools/tidy.py"), "build/fuzz", report, ...files], {
+    spawnSync("python3", [join(repository, "tests/tools/tidy.py"), "build/tidy", report, ...files], {
       encoding: "utf8",
       env: { ...process.env, PATH: `${folder}:${process.env.PATH}` },
     });

@@ -20,9 +20,17 @@ WORDS = [
     (r"\b(?:go|goes|gone|went) on\b(?! I/O)", "'continue', 'resume'"),
     (r"\bwhom\b", "the noun that is meant: 'the clients that ...', 'the person that ...'"),
     (r"\bwhat holds\b", "the subject"),
+    (r"\b(?:commands|messages|frames|bytes|substeps?|steps|iterations|ms|once|twice) an? (?:second|minute|tick|substep|frame)\b", "'per'"),
+    (r"\b(?:at|around|beside) (?:a|an?other|each|every|this) place\b|\bfunction of place\b", "'position'"),
+    (r"\b(?:a|no) free place\b|\bplaces for (?:boats|effects)\b", "'slot', or the limit that is meant"),
+    (r"\b(?:the )?most there can be\b", "'the limit of ... is reached'"),
+    (r"\bstands? twice\b", "'is given twice'"),
 ]
 PATTERNS = [(re.compile(rf"(?<!there )(?:{pattern})", re.IGNORECASE), advice) for pattern, advice in WORDS]
 TEXTS = (".md", ".cpp", ".h", ".comp", ".glsl", ".proto", ".py", ".sh", ".ts", ".mjs", ".textproto")
+# The first word of a comment of a declaration: a verb, or a noun that names the thing.
+RIDDLE = re.compile(r"^\s*/// (Of|Whether|What|Where|Who|Which|How)\b")
+HEADER = re.compile(r"server/.*\.h")
 RECORDS = ("CHANGELOG.md", "docs/decisions/")
 ITSELF = ("tests/tools/words.py", "tests/tools/words.test.mjs")
 
@@ -40,11 +48,16 @@ def is_prose(line):
 
 def faults_of(name, text):
     fenced = False
+    comment = False  # whether the line before belongs to the same comment
     for number, line in enumerate(text.splitlines(), start=1):
         if not name.startswith(RECORDS):
             for pattern, advice in PATTERNS:
                 if found := pattern.search(line):
                     yield f"{name}:{number}: '{found[0]}': write {advice}"
+        if HEADER.fullmatch(name):
+            if not comment and (found := RIDDLE.match(line)):
+                yield f"{name}:{number}: '{found[1]}' begins a comment: write 'Returns ...', or what the thing is"
+            comment = line.lstrip().startswith("///")
         fenced ^= line.lstrip().startswith("```")
         if name.endswith(".md") and not fenced and len(line) > PROSE_MAX_COLUMNS and is_prose(line):
             yield f"{name}:{number}: {len(line)} columns of prose: wrap at {PROSE_MAX_COLUMNS}"

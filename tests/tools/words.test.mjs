@@ -36,6 +36,20 @@ describe("words.py", () => {
     });
   });
 
+  it("finds rates without 'per', places and comments that begin with a riddle", () => {
+    write("server/sim/include/spindrift/sim/a.h", "/// Whether it moves, at a place.\nbool a();\n/// Returns the steps a tick.\n/// Of the last one.\nint b();\n");
+    write("server/sim/a.h", "/// Whether it moves. Takes place in the first place.\nbool a();\n");
+    assert.deepEqual(check(), {
+      status: 1,
+      faults: [
+        "server/sim/a.h:1: 'Whether' begins a comment: write 'Returns ...', or what the thing is",
+        "server/sim/include/spindrift/sim/a.h:1: 'at a place': write 'position'",
+        "server/sim/include/spindrift/sim/a.h:1: 'Whether' begins a comment: write 'Returns ...', or what the thing is",
+        "server/sim/include/spindrift/sim/a.h:3: 'steps a tick': write 'per'",
+      ],
+    });
+  });
+
   it("finds prose beyond 140 columns, but neither tables, code nor links", () => {
     const long = "word ".repeat(30);
     write("a.md", `${long}\n\n| ${long} |\n\n    ${long}\n\n\`\`\`\n${long}\n\`\`\`\n\n[text](${"x".repeat(150)})\n`);

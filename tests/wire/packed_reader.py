@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A reader of frames written from proto/README.md alone, with Python's standard library and nothing of this project's code.
+"""A reader of frames in one long file, because it is written from proto/README.md alone, with nothing of this project's code.
 
     packed_reader.py FOLDER     reads every case of FOLDER/golden.json and compares
 

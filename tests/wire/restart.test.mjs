@@ -77,7 +77,7 @@ describe("a server that ends", () => {
     return server;
   };
 
-  it("is not ready any more, takes no sessions and rooms, and closes with 1001 at last", async () => {
+  it("refuses sessions and rooms, then closes with 1001", async () => {
     const { port, stop } = await start(0, ["--drain-s", "3"]);
     const page = new Page(port, "Ada");
     pages.push(page);

@@ -33,7 +33,7 @@ try {
   const run = spawnSync(clang, [...options, `-I${codecRoot}`, `-I${path.join(coreRoot, "include")}`, ...sources, "-o", module], { stdio: "inherit" });
   if (run.error || run.status !== 0) {
     const why = run.error ? run.error.message : `exit code ${run.status}`;
-    console.error(`wasm: "${clang}" made no WebAssembly (${why}); it takes Debian's clang, lld and libc++-14-dev-wasm32`);
+    console.error(`wasm: "${clang}" made no WebAssembly (${why}); it takes Debian's clang, lld and libc++-dev-wasm32`);
     process.exit(run.status || 2);
   }
   mkdirSync(path.dirname(outFile), { recursive: true });

@@ -22,7 +22,7 @@ describe("the token of a link", () => {
     expect(opened("http://host/#token=a%b").token).toBe("a%b");
   });
 
-  it("is undefined where there is none, and the address stays as it is", () => {
+  it("is undefined without a token, and the address stays as it is", () => {
     for (const href of ["http://host/", "http://host/#", "http://host/#token=", "http://host/#mytoken=abc", "http://host/?token=abc"])
       expect(opened(href)).toEqual({ token: undefined, address: href });
   });

@@ -20,7 +20,7 @@ describe("a boat's name tag", () => {
     expect(right.yPx).toBeCloseTo(422 - (2 / 10 / Math.tan(Math.PI / 6)) * 422, 3);
   });
 
-  it("is hidden behind the camera, in its plane, outside the window, and for a place that is not a number", () => {
+  it("is hidden outside the view and without a finite position", () => {
     for (const point of [[0, 0, 11], [0, 0, 10], [50, 0, 0], [0, 50, 0], [0, -50, 0], [Number.NaN, 0, 0]] as const) expect(tagPlace(seen, point, 390, 844, [])).toBeUndefined();
   });
 

@@ -65,7 +65,7 @@ describe("a buoy in the way of a boat", () => {
     expect(pushedAside({ ...place, zM: 1.1 }, [boat(0)])).toEqual([0, 1.1]);
   });
 
-  it("is pushed to its side of the hull, and never moves far from one picture to the next", () => {
+  it("is pushed to its side of the hull without jumps", () => {
     let [, before] = pushedAside(place, [boat(-3)]);
     let mostM = 0;
     for (let xM = -3; xM <= 3; xM += 0.02) {

@@ -93,7 +93,7 @@ describe.each([true, false])("a view, with reduced motion %s", (isStill) => {
     }
   });
 
-  it("of a boat comes up behind it although the user clicks, and stays where a drag has turned it", () => {
+  it("follows a boat and stays where a drag turned it", () => {
     views.go("boat", nowS);
     pictures(600, kBoat);
     const behind = camera.position.clone();

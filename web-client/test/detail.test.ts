@@ -140,7 +140,7 @@ describe("the load governor", () => {
     expect(run(governor, () => 0.9, 8)).toEqual(["fine", "medium"]);
   });
 
-  it("steps up when there is time for four times as much, and retries a level that failed less often", () => {
+  it("steps up with spare time, and retries failed levels less often", () => {
     const governor = new LoadGovernor();
     run(governor, () => 0.9, 4);
     expect(governor.level).toBe("fine");

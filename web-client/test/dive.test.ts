@@ -50,14 +50,14 @@ describe("a camera", () => {
     expect(kept(3, 4, 0)).toEqual(new Vector3(3, 4, 0));
   });
 
-  it("looks at a tank from outside, below its water's level, and does not leave it from inside", () => {
+  it("looks at a tank from outside and stays inside", () => {
     const tank: Partial<GreetingInfo> = { setting: "glassTank", obstacles: [], beaches: [] };
     expect(kept(0, -0.8, 20, tank).y).toBeCloseTo(-0.8, 9);
     expect(kept(0, -5, 20, tank).y).toBeCloseTo(-1, 9);
     expect(kept(7.99, -1, 0, tank).x).toBeCloseTo(8 - 1.6 * kNearM, 9);
   });
 
-  it("does not dive where no water is deep enough, or where there is no wave", () => {
+  it("does not dive in shallow water or without a wave", () => {
     expect(water({}, 3 * kNearM)).toBeUndefined();
     expect(water({ wave: undefined } as Partial<GreetingInfo>)).toBeUndefined();
   });

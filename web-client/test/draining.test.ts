@@ -23,7 +23,7 @@ function drainingRig(value = kSameServer, random = 0.5): Rig {
 }
 
 describe("a server that is about to end", () => {
-  it("keeps its connection until it closes, and is connected to again as the same person at the random moment", () => {
+  it("keeps its connection and resumes at the random moment", () => {
     const rig = drainingRig();
     expect(rig.state.name).toBe("live");
     expect(rig.eventsOf("draining")).toEqual([{ kind: "draining", draining: kSameServer }]);

@@ -1,12 +1,10 @@
-import { readFileSync } from "node:fs";
-import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
 import { fidelityName, kFidelities, wireFidelity } from "../src/codec/fidelity";
 import { parse } from "../src/codec/parse";
 import { Fidelity } from "../src/gen/spindrift/v1/scene_pb";
 import { RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
-import { describeCost, shortCost } from "../src/ui/fidelity_costs";
+import { describeLevel, levelTable } from "../src/ui/fidelity_texts";
 import { PaceWatch } from "../src/ui/pace_watch";
 import { encode, greeting } from "./wire";
 
@@ -26,41 +24,47 @@ describe("the fidelity", () => {
 });
 
 describe("what a level costs", () => {
-  interface Row {
-    knob: string;
-    setting: string;
-    cost_ms_per_s: number;
-    height_rms_ratio: number;
-  }
-  interface Study {
-    date: string;
-    scenes: { scene: string; rows: Row[] }[];
-    over_all_scenes: { setting: string; cost_ratio: number; error_ratio: number }[];
-  }
-  const study = JSON.parse(readFileSync(join(import.meta.dirname, "../../docs/plots/trade.json"), "utf8")) as Study;
-  const short = (value: number): number => Number(value.toPrecision(2));
+  const scene = { wave: { resolutionCount: 256, sideM: 16, depthM: 1 } };
+  const levelsOf = (levels: object[], errorsMeasuredOn = "") => {
+    const parsed = parse(encode(greeting({ scene, fidelityLevels: { levels, errorsMeasuredOn } })));
+    return parsed.kind === "greeting" ? parsed.greeting.fidelityLevels : [];
+  };
+  const measured = () =>
+    levelsOf(
+      [
+        { fidelity: Fidelity.DRAFT, costMsPerS: 361.4, errorRatio: 0.3812 },
+        { fidelity: Fidelity.BALANCED, costMsPerS: 1183, errorRatio: 0 },
+      ],
+      "2026-11-25",
+    );
 
-  it("is what the study measured, with its day", () => {
-    expect(study.scenes.map(({ scene }) => scene)).toContain("harbor");
-    for (const { scene, rows } of study.scenes) {
-      for (const { name } of kFidelities) {
-        const row = rows.find(({ knob, setting }) => knob === "fidelity" && setting === name)!;
-        const { cost, error } = shortCost(scene, name);
-        expect(parseFloat(cost)).toBeCloseTo(short(row.cost_ms_per_s / 1000), 9);
-        expect(parseFloat(error)).toBeCloseTo(short(100 * row.height_rms_ratio), 9);
-        expect(describeCost(scene, name)).toContain(`on ${study.date}: ${cost} of processor time per simulated second, water ${error} off`);
-      }
-    }
+  it("is what the server says, with the day of the errors", () => {
+    const [draft, balanced] = measured();
+    expect(describeLevel(draft)).toBe("At draft, a simulated second takes this server 360 ms; the height of the water is 38 % off (measured on 2026-11-25).");
+    expect(describeLevel(balanced)).toContain("takes this server 1.2 s; the height of the water is 0 % off");
+    expect(levelTable(measured())).toEqual([["level", "time per second, predicted", "error"], ["draft", "360 ms", "38 %"], ["balanced", "1.2 s", "0 %"]]);
   });
 
-  it("is said to be the mean over the measured scenes for the others", () => {
-    for (const { setting, cost_ratio, error_ratio } of study.over_all_scenes) {
-      const level = kFidelities.find(({ name }) => name === setting)!.name;
-      expect(shortCost("pool", level)).toEqual({ cost: `× ${short(cost_ratio)}`, error: `× ${short(error_ratio)}` });
-      if (level === "balanced") continue;
-      expect(describeCost("pool", level)).toContain(`mean of ${study.scenes.length} measured scenes (${study.date})`);
-      expect(describeCost("pool", level)).toContain(`${short(cost_ratio)} times the work of balanced, ${short(error_ratio)} times its error`);
-    }
+  it("has no error in a scene that was not measured", () => {
+    const levels = levelsOf([{ fidelity: Fidelity.FINE, costMsPerS: 99 }]);
+    expect(describeLevel(levels[0])).toBe("At fine, a simulated second takes this server 99 ms. The error was not measured for this scene.");
+    expect(levelTable(levels)[1]).toEqual(["fine", "99 ms", "-"]);
+  });
+
+  it("is not shown where a server does not say it", () => {
+    const parsed = parse(encode(greeting({ scene })));
+    expect(parsed).toMatchObject({ greeting: { fidelityLevels: [] } });
+    expect(describeLevel(undefined)).toBe("");
+  });
+
+  it("leaves out levels that the page does not know and figures that are invalid", () => {
+    const levels = [
+      { fidelity: 99 as Fidelity, costMsPerS: 1 },
+      { fidelity: Fidelity.DRAFT, costMsPerS: NaN },
+      { fidelity: Fidelity.BALANCED, costMsPerS: -1 },
+      { fidelity: Fidelity.FINE, costMsPerS: 7, errorRatio: Infinity },
+    ];
+    expect(levelsOf(levels)).toEqual([{ name: "fine", costMsPerS: 7, errorRatio: undefined, measuredOn: "" }]);
   });
 });
 

@@ -27,7 +27,7 @@ const kRises = [
 ];
 
 describe("requests for the ground", () => {
-  it("are made one at a time, once more after any number of changes, and take only the newest answer", async () => {
+  it("run one at a time and take only the newest answer", async () => {
     const answers: ((ground: GroundGrid) => void)[] = [];
     const taken: [string, GroundGrid][] = [];
     const requests = new GroundRequests(() => new Promise((resolve) => answers.push(resolve)), (room, ground) => taken.push([room, ground]), () => {});
@@ -62,7 +62,7 @@ describe("the ground of a scene with a bed", () => {
     expect([...groundOf(kRises).riseM]).toEqual(kRises.flat().map((rise) => 0.5 * rise));
   });
 
-  it("is refused if its size and its heights differ, or its step is not a length", () => {
+  it("is refused if size and heights differ", () => {
     expect(readGround(bytesOf(kRises, { countX: 5 }))).toMatchObject({ reason: "ground: 8 heights for 5 x 2 cells" });
     expect(isMalformed(readGround(bytesOf(kRises, { quantumM: NaN })))).toBe(true);
     expect(isMalformed(readGround(new Uint8Array([255, 1, 2])))).toBe(true);
@@ -86,7 +86,7 @@ describe("the ground of a scene with a bed", () => {
     expect(geometry.boundingBox!.max.y).toBeCloseTo(1, 1);
   });
 
-  it("makes a shore of a closed side that is land, and a quay of one that is deep", () => {
+  it("makes a shore of closed land and a quay of deep water", () => {
     const land: Bed = { sideM: 12, widthM: 6, depthM: 4, beaches: [], ground: groundOf([[-8, -8, 1, 1], [-8, -8, 1, 1]]) };
     const sides = { "+x": "closed", "-x": "closed", "+z": "open", "-z": "open" } as const;
     const coast = { bed: land, sides };

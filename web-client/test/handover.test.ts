@@ -126,7 +126,7 @@ describe("the page's ring of frames", () => {
 });
 
 describe("the link's meter", () => {
-  it("counts the layers of one state as one frame, and every state of a paused room as one", () => {
+  it("counts the layers of one state as one frame", () => {
     const countOf = (...shown: [bigint, bigint][]): number => {
       const meter = new LinkMeter(0);
       for (const [stateId, tick] of shown) meter.frame("surface", { stateId, tick });

@@ -55,7 +55,7 @@ function folderOf(file: string): string {
 }
 
 describe("the search for a cycle", () => {
-  it("finds one, also between types only, and none where there is none", () => {
+  it("finds one, also between types only, and nothing in a tree without circles", () => {
     const graph = (edges: Record<string, string[]>) => new Map(Object.entries(edges));
     expect(findCycle(graph({ a: ["b", "c"], b: ["c"], c: ["d"], d: ["b"] }))).toEqual(["b", "c", "d", "b"]);
     expect(findCycle(graph({ a: ["b", "c"], b: ["c"], c: [] }))).toEqual([]);

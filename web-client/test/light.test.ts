@@ -60,7 +60,7 @@ describe("the light", () => {
     expect(lightAt(0, 0).glow).toEqual([0, 0, 0]);
   });
 
-  it("is brightest at noon, warm at the golden hour, dim with the sun below the horizon, grey in a storm", () => {
+  it("is brightest at noon, warm at the golden hour, grey in a storm", () => {
     const noon = lightAt(12, 0);
     const golden = lightAt(17.15, 0);
     const dusk = lightAt(18.35, 0);

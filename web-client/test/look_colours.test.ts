@@ -57,7 +57,7 @@ describe.each(["coolWarm", "purpleGreen"] as const)("the diverging map %s", (nam
 });
 
 describe("the range of the colours", () => {
-  it("ends at 1, 2 or 5 times a power of ten that is not below the values", () => {
+  it("ends at 1, 2 or 5 times a power of ten", () => {
     const cases = [[1, 1], [1.01, 2], [2, 2], [2.1, 5], [5.5, 10], [0.13, 0.2], [0.2, 0.2], [0.0021, 0.005], [73, 100]] as const;
     for (const [value, nice] of cases) expect(niceAbove(value)).toBe(nice);
   });

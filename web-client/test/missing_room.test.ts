@@ -25,7 +25,7 @@ describe("the question for a missing room", () => {
     expect(await findMissingRoom("wss://h/water/ws/no%20pe", "", fetch)).toEqual({ name: "no pe", rooms: ["main", "tank"] });
   });
 
-  it("has no answer for a room that exists, a server that is gone, one without rooms, and the default room", async () => {
+  it("has no answer for an existing room or without a server", async () => {
     const room = "http://h:1/api/v1/rooms/pool";
     for (const replies of [{ [room]: { status: 200 } }, { [room]: { status: 401 } }, {}, { [room]: { status: 404 } }, { [room]: { status: 404 }, "http://h:1/api/v1/rooms": { status: 200, body: {} } }])
       expect(await findMissingRoom("ws://h:1/ws/pool", "", serverOf(replies).fetch)).toBeUndefined();
@@ -53,7 +53,7 @@ describe("a connection to a missing room", () => {
     expect(rig.state.name).toBe("live");
   });
 
-  it("is tried again while it is not known to be missing, and not asked about once a socket has opened", async () => {
+  it("is retried until it is known to be missing", async () => {
     const rig = new Rig();
     rig.socket.drop();
     await settled();

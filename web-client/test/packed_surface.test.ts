@@ -45,7 +45,7 @@ describe("packed frames", () => {
     expect(arrived.every(({ payload }) => payload.length === 2 * 20 * 20)).toBe(true);
   });
 
-  it("continues with a keyframe after a lost frame, and requests one at most once a second", () => {
+  it("continues with a keyframe after a lost frame, and requests one at most once per second", () => {
     const rig = liveRig();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();
@@ -62,7 +62,7 @@ describe("packed frames", () => {
     expect(rig.frames).toHaveLength(2);
   });
 
-  it("requests a keyframe after a damaged plane, but not after damaged particles: the next frame of those is one", () => {
+  it("requests a keyframe after a damaged plane, but not after damaged particles", () => {
     const rig = liveRig();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();

@@ -76,7 +76,7 @@ describe("the identity of the page", () => {
     expect(new IdentityStore(kept, "ws://host/ws/other").load()).toEqual({ ...ada, resumeKey: "" });
   });
 
-  it("stores no resume key while the page is open, so that a duplicated tab is another person", () => {
+  it("stores no resume key while the page is open", () => {
     const kept = storage();
     const ada = { name: "Ada", token: "secret", resumeKey: "key" };
     const first = new IdentityStore(kept, "u");

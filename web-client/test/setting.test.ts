@@ -16,7 +16,7 @@ describe("the setting", () => {
       expect(readSetting(create(SceneSchema, { wave: sized, setting }))).toBe(name);
   });
 
-  it("follows from the sides where a server names none, or one that this page does not know", () => {
+  it("follows from the sides if the server names no known one", () => {
     for (const setting of [Setting.UNSPECIFIED, 99 as Setting]) {
       expect(readSetting(create(SceneSchema, { wave: sized, setting }))).toBe("openSea");
       expect(readSetting(create(SceneSchema, { wave: { ...sized, ...wall }, setting }))).toBe("pool");

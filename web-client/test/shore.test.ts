@@ -14,7 +14,7 @@ const kBed: Bed = { sideM: 16, widthM: 4, depthM: 1, beaches: [{ side: "+x", wid
 const kCounts = { resolutionCount: 16, countZ: 4 };
 
 describe("the ground under the cells of a moving shore", () => {
-  it("has rocks as domes that continue as cones below the water, with one slope where both meet", () => {
+  it("has rocks as domes on cones without a kink", () => {
     expect(obstacleRiseM(kRock, 1, 0)).toBeCloseTo(0.8, 9);
     expect(obstacleRiseM(kRock, 3, 0)).toBeCloseTo(0, 9);
     expect(obstacleRiseM(kRock, 1, 4)).toBeCloseTo(-1.6, 9);
@@ -37,7 +37,7 @@ describe("the ground under the cells of a moving shore", () => {
     expect(groundM[0]).toBeCloseTo(-1, 6);
   });
 
-  it("is the mean over what a sample covers at a lower level of detail, also where parts of cells count", () => {
+  it("is the mean over a sample at a lower level of detail", () => {
     const plane = Float32Array.from([0, 1, 2, 3, 10, 11, 12, 13]);
     expect([...meansOver(plane, { resolutionCount: 4, countZ: 2 }, { resolutionCount: 2, countZ: 1 })]).toEqual([5.5, 7.5]);
     const thirds = meansOver(Float32Array.from([0, 3, 6, 9]), { resolutionCount: 4, countZ: 1 }, { resolutionCount: 3, countZ: 1 });
@@ -121,14 +121,14 @@ describe("the wetness of the ground", () => {
 });
 
 describe("the foam of the swash", () => {
-  it("is white at a front that fills the ground fast, and none where water creeps or stands", () => {
+  it("is white at a fast front only", () => {
     expect(frontFoam(0.05, 0.1)).toBeGreaterThan(0.9);
     expect(frontFoam(0.01, 0.4)).toBe(0);
     expect(frontFoam(0.05, 5)).toBe(0);
     expect(frontFoam(kFilmM, 0.01)).toBe(0);
   });
 
-  it("comes with the front and is left on the ground, where it lasts longer than on water", () => {
+  it("stays on the ground longer than on water", () => {
     const left = washed(0.05).at(0, 0)!.foam;
     expect(left).toBeGreaterThan(0.7);
     const covered = new ShoreWetness();

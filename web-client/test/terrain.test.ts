@@ -91,7 +91,7 @@ describe("an obstacle", () => {
     expect(geometry.getIndex()!.count / 3).toBeLessThan(plain ? 2500 : 4000);
   });
 
-  it("is drawn where the simulation has it: at the still water, stones stand at most a little outside of a wall", () => {
+  it("has its stones at most a little outside of the simulated wall", () => {
     const positions = makeBreakwater(wall, 3, "beacon", false).geometry.getAttribute("position");
     for (let n = 0; n < positions.count; ++n) if (positions.getY(n) > 0.05) expect(Math.abs(positions.getZ(n))).toBeLessThan(1 + 0.15);
   });

@@ -58,7 +58,7 @@ describe("the curve between two frames", () => {
     }
   });
 
-  it("has no kink at a frame: the slope at its end is that of the next interval's start", () => {
+  it("has equal slopes on both sides of a frame", () => {
     const signal = (timeS: number): number => Math.sin(1.3 * timeS + 0.4);
     const step = 1e-5;
     const next: FrameTimes = { beforeS: 0, fromS: 1, toS: 2, afterS: 3 };
@@ -102,7 +102,7 @@ describe("the rate between two frames", () => {
       }
   });
 
-  it("is that of the line to a neighbour where the time shown is that of a single frame, as in a paused room", () => {
+  it("is that of the line to a neighbour at the time of a frame", () => {
     expect(ratesOf({ beforeS: 3.5, fromS: 4, toS: 4, afterS: undefined }, 0)).toEqual([-2, 2, 0, 0]);
     expect(ratesOf({ beforeS: undefined, fromS: 4, toS: 4, afterS: 4.25 }, 0)).toEqual([0, 0, -4, 4]);
   });

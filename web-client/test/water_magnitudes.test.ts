@@ -38,7 +38,7 @@ describe("the values of the water", () => {
     const magnitudes = waterMagnitudes(surfaceOf(ripples), greeting, "elevation");
     expect(magnitudes.length).toBeGreaterThan(3000);
     expect(magnitudes.length).toBeLessThan(4096 * 0.9);
-    // A place beside the rock is interpolated between rock and water.
+    // A position beside the rock is interpolated between rock and water.
     expect(magnitudes.filter((magnitude) => magnitude > 0.1).length).toBeLessThan(0.5 * kBeyondShares.surface * magnitudes.length);
     expect(reachOf(magnitudes, 0.01, kBeyondShares.surface)).toBeLessThan(0.05);
   });

@@ -40,7 +40,7 @@ function births(capacityCount = 20_000): Births {
 
 const born = (kind: Kind, change: Partial<Birth> = {}): Birth => ({ kind, xM: 0, yM: 0, zM: 0, vxMps: 0, vyMps: 0, vzMps: 0, radiusM: 0.02, lifeS: 10, ...change });
 
-/** Returns the values of one particle: place, kind + age share, velocity, radius. */
+/** Returns the values of one particle: position, kind + age share, velocity, radius. */
 const valuesOf = ({ values }: DiffuseParticles, n = 0): number[] => [...values.subarray(n * kFloatsPerParticle, (n + 1) * kFloatsPerParticle)];
 
 describe("a drop", () => {
@@ -250,7 +250,7 @@ describe("white particles of the server", () => {
     return { ...header, ...structuredClone(bounds), layer: "particles", timeS: 0, count: 100, maxSpeedMps: 6, radiusM: 0.1, buffer: bytes.buffer } as unknown as ParticleFrame;
   };
 
-  it("tear off drops where they are fast, white and above the surface, with about their velocity", () => {
+  it("shed drops where they are fast, white and above the surface", () => {
     const none = births();
     addFromParticles(none, frameOf(0, 127, 65535), moving(0), 1);
     addFromParticles(none, frameOf(255, 20, 65535), moving(0), 1);

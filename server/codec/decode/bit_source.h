@@ -48,7 +48,7 @@ class BitSource {
     return true;
   }
   [[nodiscard]] std::uint32_t place() const { return at_; }
-  /// Like peek(), at another place before the end.
+  /// Like peek(), at another position before the end.
   [[nodiscard]] std::uint64_t peekAt(std::uint32_t place) const {
     std::uint64_t word = 0;
     std::memcpy(&word, bytes_ + place / 8, sizeof word);

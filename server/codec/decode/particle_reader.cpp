@@ -49,7 +49,7 @@ constexpr std::array<std::uint32_t, kHalfSymbolCount> makeEnds() {
 }
 constexpr std::array<std::uint32_t, kHalfSymbolCount> kEnds = makeEnds();
 
-/// Decodes the cells: writes the corner of its eighth as each particle's place.
+/// Decodes the cells: writes the corner of its eighth as each particle's position.
 class CellReader {
  public:
   CellReader(const ParticleShape& shape, std::uint8_t* out) : shape_(shape), out_(out), left_(shape.count) {
@@ -205,8 +205,8 @@ class AttributeReader {
   Attribute vx_, vy_, vz_, foam_, tint_;
 };
 
-/// Adds the low bits of the places and the attributes of a group to the places from the cells. `place`: position of the
-/// low bits.
+/// Adds the low bits of the positions and the attributes of a group to the positions from the cells. `place`: position
+/// of the low bits.
 void putGroup(const BitSource& bits, std::uint32_t place, std::uint32_t low, const Tails& tails, std::size_t count,
               std::uint8_t* out) {
   const std::uint64_t mask = (1u << low) - 1;

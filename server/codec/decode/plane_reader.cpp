@@ -109,7 +109,7 @@ void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
     left = in.group(group, rows * columns, left, classes_[tile]);
     classes_[tile] = static_cast<std::uint8_t>(left);
     if (columns == kTile) continue;
-    // Move the rows of a narrow tile to their places in the group, the last one first.
+    // Move the rows of a narrow tile to their positions in the group, the last one first.
     for (std::size_t j = rows; j-- > 0;)
       std::memmove(group.of.data() + j * kTile, group.of.data() + j * columns, columns * sizeof group.of[0]);
   }

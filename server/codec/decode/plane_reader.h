@@ -21,7 +21,7 @@ struct PlaneLayout {
   std::size_t nx = 0;
   std::size_t nz = 0;
 
-  /// Of a row of tiles.
+  /// Returns the number of tiles in a row.
   [[nodiscard]] std::size_t tilesCount() const { return (nx + kTile - 1) / kTile; }
   [[nodiscard]] std::size_t stride() const { return kLeft + kTile * tilesCount() + kRight; }
   [[nodiscard]] std::size_t sampleCount() const {
@@ -67,7 +67,7 @@ class PlaneRow {
 
  private:
   struct History {
-    const std::int16_t *before, *earlier;  ///< null if there is none
+    const std::int16_t *before, *earlier;  ///< null without such a frame
   };
   /// Assigns the parts of the memory and returns their size in bytes. With null memory it only returns the size.
   std::size_t takeParts(std::uint8_t* memory);

@@ -255,7 +255,7 @@ struct GroupWriter {
     }
   }
 
-  /// Writes the places and signs of at most kLastSparseClass residuals that are not 0, after the class: less than 56
+  /// Writes the positions and signs of at most kLastSparseClass residuals that are not 0, after the class: less than 56
   /// bits.
   SPINDRIFT_INLINE void putPlaces(const GroupRows& rows) {
     std::uint64_t not_zero = 0, below_zero = 0;

@@ -1,6 +1,6 @@
 // Codes particles as the contents of the cells of a grid. A cell is cut into eighths, whose counts replace the highest
 // bit of each coordinate. The order of particles carries no information, so the counts cost less than those bits. Empty
-// cells cost a run length. The other bits of a place are nearly random and are written unchanged.
+// cells cost a run length. The other bits of a position are nearly random and are written unchanged.
 #pragma once
 
 #include <array>
@@ -32,8 +32,8 @@ struct ParticleScale {
   float speed = 0.0f;  ///< 0..1
 };
 
-/// Sorts the particles into the order of the wire and writes them: cells, places within the cells, then in groups of 64
-/// particles the velocities along x, y, z, foam, tint. Reuses its memory.
+/// Sorts the particles into the order of the wire and writes them: cells, positions within the cells, then in groups of
+/// 64 particles the velocities along x, y, z, foam, tint. Reuses its memory.
 class ParticleCellsEncoder {
  public:
   /// Three words per particle, as in core::ParticleView.

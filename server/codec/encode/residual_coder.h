@@ -1,7 +1,7 @@
 // Codes residuals in groups of up to 64 neighbours. The class of a group gives the size of its residuals, and each
 // class has a fixed code. Nothing is adapted while coding, so the cost per group is the same in every frame.
 //
-// Classes: 0: all residuals are zero, nothing follows. c = 1..4: c residuals are 1 or -1, the rest 0; their places
+// Classes: 0: all residuals are zero, nothing follows. c = 1..4: c residuals are 1 or -1, the rest 0; their positions
 // follow. From 5 on the mean magnitude is about 2^((c - 13) / 2): residuals are coded in fours up to 9, in pairs up to
 // 12, singly from 13 on; from 18 on the lowest (c - 16) / 2 bits of each are raw. A value larger than its code allows
 // follows an escape.
@@ -21,7 +21,7 @@ class ResidualEncoder {
   /// Returns a writer for up to group_count groups; hand it back with end().
   GroupWriter begin(std::size_t group_count);
   void end(const GroupWriter& writer);
-  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 if there is none; along a line
+  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 at the edge; along a line
   /// both are the class of the group before. Returns the group's class.
   std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
   /// For bits outside the groups.

@@ -125,7 +125,7 @@ SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& histo
   std::array<std::array<double, kCount>, kCount> products{};
   std::array<double, kCount> right{};
   Run run{};
-  // A plane of one row or one column has no better place than its edge.
+  // A plane of one row or one column has no better position than its edge.
   const std::size_t first_x = nx > 1 ? 1 : 0;
   for (std::size_t z = nz > 1 ? 1 : 0, line = 0; z < nz; z += row_stride, ++line) {
     RowSums sums{};

@@ -1,5 +1,5 @@
 // Predicts a heightfield from its two previous frames and from the samples of this frame that are already coded. The
-// form follows the wave equation: eta(t + dt) depends on eta(t) around the place and on eta(t - dt). The weights are
+// form follows the wave equation: eta(t + dt) depends on eta(t) around the position and on eta(t - dt). The weights are
 // fitted to each frame (fitWeights), which includes depth, damping, the frame interval and the quantization noise.
 // Integers only, so that every client computes the same result.
 #pragma once
@@ -46,7 +46,7 @@ class SurfacePlane {
   std::vector<std::int16_t> samples_;
 };
 
-/// The frames that a plane is predicted from. Null if there is none; its weights are then 0.
+/// The frames that a plane is predicted from. Null without such a frame; its weights are then 0.
 struct SurfaceHistory {
   const SurfacePlane* before = nullptr;
   const SurfacePlane* earlier = nullptr;

@@ -57,7 +57,7 @@ constexpr ClassExpectation expectClass(std::uint32_t left, std::uint32_t above) 
   if (left == 0 || above == 0) return {left + above, 1};
   return {(left + above + 1) / 2, 2};
 }
-/// A residual of a sparse group: its place, and a bit that is 1 for -1.
+/// A residual of a sparse group: its position, and a bit that is 1 for -1.
 inline constexpr std::uint32_t kPlaceBits = 6;
 /// Bits of the sum of all residuals at the end of a payload.
 inline constexpr std::uint32_t kSumBits = 16;

@@ -7,9 +7,9 @@
 
 namespace spindrift::codec {
 
-/// Weights in units of 1 / 4096. Each multiplies a sum over: the same place one frame before (kBefore), its 4 nearest,
-/// its 4 diagonal neighbours, the 4 samples two cells away along the axes; the same place two frames before and its 4
-/// nearest and 4 diagonal neighbours; in this frame the neighbours at -x, at -z, and at both.
+/// Weights in units of 1 / 4096. Each multiplies a sum over: the same position one frame before (kBefore), its 4
+/// nearest, its 4 diagonal neighbours, the 4 samples two cells away along the axes; the same position two frames before
+/// and its 4 nearest and 4 diagonal neighbours; in this frame the neighbours at -x, at -z, and at both.
 struct SurfaceWeights {
   enum Term : std::size_t {
     kBefore,

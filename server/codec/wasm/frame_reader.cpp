@@ -53,7 +53,7 @@ std::uint8_t* makeRoom(std::size_t before_bytes, std::uint32_t byte_count) {
 
 using namespace spindrift::codec;
 
-/// Returns room for the payload of `count` particles. 0: there is none.
+/// Returns room for the payload of `count` particles. 0: not enough memory.
 SPINDRIFT_EXPORT(prepareParticles) std::uint8_t* prepareParticles(std::uint32_t count, std::uint32_t byte_count) {
   words = heapBegin();
   if (count > kParticleReadMaxCount) return nullptr;
@@ -67,7 +67,7 @@ std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, 
                                                                                                          : nullptr;
 }
 
-/// Returns room for the payload of a plane of nx x nz samples. 0: there is none. Another size forgets the planes.
+/// Returns room for the payload of a plane of nx x nz samples. 0: not enough memory. Another size forgets the planes.
 SPINDRIFT_EXPORT(preparePlane)
 std::uint8_t* preparePlane(std::uint32_t nx, std::uint32_t nz, std::uint32_t byte_count) {
   const auto isAllowed = [](std::uint32_t n) { return n >= 1 && n <= PlaneRow::kMaxResolutionCount; };
@@ -113,7 +113,7 @@ SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
   return plain_samples;
 }
 
-/// Returns room for any payload whose checksum is wanted. 0: there is none.
+/// Returns room for any payload whose checksum is wanted. 0: not enough memory.
 SPINDRIFT_EXPORT(prepareChecksum) std::uint8_t* prepareChecksum(std::uint32_t byte_count) {
   return makeRoom(0, byte_count);
 }

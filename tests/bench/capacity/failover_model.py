@@ -62,7 +62,7 @@ class FailoverModel:
         return min(1.0, self.share * len(server.rooms))
 
     def place(self):
-        """Rooms that were opened one after the other, each on the least loaded server with a free place."""
+        """Rooms that were opened one after the other, each on the least loaded server that may have more."""
         for k in range(self.s.rooms):
             free = [one for one in self.servers if len(one.rooms) < self.s.room_max_count]
             if not free:

@@ -7,7 +7,7 @@ import { repository } from "../server.mjs";
  * @typedef {object} Shot
  * @property {number} tick the water shown
  * @property {number} [historyTicks] before it, for what the page keeps of them: kHistoryTicks unless it is longer
- * @property {{view?: string, eyeM?: number[], targetM?: number[]}} [camera] a view of the page (by default the first one), or a place
+ * @property {{view?: string, eyeM?: number[], targetM?: number[]}} [camera] a view of the page (by default the first one), or a position
  */
 
 /** @type {Shot} */

@@ -1,6 +1,5 @@
 // The cost of accuracy: compares every choice for a scene with a run that is finer than the finest level.
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <optional>
 
@@ -17,6 +16,7 @@
 #include <spindrift/study_suites/suites.h>
 
 #include "trade_rows.h"
+#include "trade_verdicts.h"
 
 namespace spindrift::study_suites {
 namespace {
@@ -40,14 +40,8 @@ constexpr double kRepeatBelow_s = 1.0;
 constexpr int kHashTicks = 20;
 constexpr v1::Fidelity kLevels[] = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                     v1::FIDELITY_REFERENCE};
-constexpr const char* kLevelKnob = "fidelity";
 /// Each shipped effect as it is, with the wave alone, and with particles alone (thesis, section 3.8.1).
 constexpr const char* kEffects[] = {"splash", "breaking_wave", "boat_wake"};
-
-/// Differences below this share are chance: the error of the same scene with another seed varies by this much, and so
-/// does its cost on a quiet machine.
-constexpr double kChance = 0.05;
-constexpr const char* kSeedKnob = "seed";
 
 /// Counts the bytes that the room's encoder would send.
 study::FrameBytes frameBytes() {
@@ -93,34 +87,6 @@ core::Result<std::vector<TradeChoice>> choicesOf(const TradeScene& scene, bool q
   if (!scene.has_knobs) return choices;
   for (TradeChoice& knob : study::singleKnobs(balanced)) choices->push_back(std::move(knob));
   return choices;
-}
-
-/// Returns whether the row simulates the same water: not with another seed, nor with less water.
-bool isComparable(const TradeRow& row) {
-  return row.knob != kSeedKnob && row.knob != "coupling";
-}
-
-/// Effect of chance on cost and error: the difference between another seed and `balanced` in the same run.
-study::CostAndError chanceOf(const study::CostAndError& seed, const study::CostAndError& balanced) {
-  const auto share = [](double a, double b) { return std::max(kChance, 1 - std::min(a / b, b / a)); };
-  return {share(seed.cost, balanced.cost), share(seed.error, balanced.error)};
-}
-
-void markFront(std::vector<TradeRow>& rows) {
-  study::CostAndError chance{kChance, kChance};
-  for (const TradeRow& row : rows) {
-    if (row.knob == kSeedKnob && row.refused.empty())
-      chance = chanceOf({row.cost_ms_per_s, row.errors.height_rms_ratio},
-                        {rows[1].cost_ms_per_s, rows[1].errors.height_rms_ratio});
-  }
-  std::vector<study::CostAndError> points;
-  for (const TradeRow& row : rows) {
-    const bool counts = row.refused.empty() && isComparable(row);
-    points.push_back(counts ? study::CostAndError{row.cost_ms_per_s, row.errors.height_rms_ratio}
-                            : study::CostAndError{HUGE_VAL, HUGE_VAL});
-  }
-  const std::vector<bool> front = study::paretoFront(points, chance);
-  for (std::size_t i = 0; i < rows.size(); ++i) rows[i].is_on_front = front[i] && std::isfinite(points[i].cost);
 }
 
 double secondsOf(const TradeScene& scene, bool quick) {
@@ -258,58 +224,6 @@ class TradeRuns {
   StudyJournal& journal_;
   std::string all_hashes_;  ///< empty: hashes() was not called
 };
-
-/// Checks for each scene that no level is closer than REFERENCE by more than chance.
-void judgeScene(const std::vector<TradeRow>& rows, SuiteResult& result, std::FILE* out) {
-  const TradeRow* closest = nullptr;
-  const TradeRow* finest = nullptr;
-  for (const TradeRow& row : rows) {
-    if (row.knob != kLevelKnob) continue;
-    finest = &row;
-    if (closest == nullptr || row.errors.height_rms_ratio < closest->errors.height_rms_ratio) closest = &row;
-  }
-  const bool holds = (1 - kChance) * finest->errors.height_rms_ratio <= closest->errors.height_rms_ratio;
-  ++(holds ? result.held_count : result.missed_count);
-  fmt::print(out, "  {} the closest level is {}: {:.3g} %, {}: {:.3g} % (differences of {:.0f} % are chance)\n",
-             holds ? "ok  " : "MISS", closest->setting, 100 * closest->errors.height_rms_ratio, finest->setting,
-             100 * finest->errors.height_rms_ratio, 100 * kChance);
-}
-
-/// A level over all scenes: geometric means of its cost and error over those of BALANCED.
-struct MeanLevel {
-  std::string setting;
-  double cost = 1.0;
-  double error = 1.0;
-};
-
-std::vector<MeanLevel> meansOver(const std::vector<std::vector<TradeRow>>& scenes) {
-  std::vector<MeanLevel> means;
-  const double share = 1.0 / static_cast<double>(scenes.size());
-  for (const std::vector<TradeRow>& rows : scenes) {
-    const TradeRow& balanced = rows[1];
-    for (const TradeRow& row : rows) {
-      if (row.knob != kLevelKnob) continue;
-      auto mean = std::ranges::find(means, row.setting, &MeanLevel::setting);
-      if (mean == means.end()) mean = means.insert(means.end(), MeanLevel{row.setting});
-      mean->cost *= std::pow(row.cost_ms_per_s / balanced.cost_ms_per_s, share);
-      mean->error *= std::pow(row.errors.height_rms_ratio / balanced.errors.height_rms_ratio, share);
-    }
-  }
-  return means;
-}
-
-/// Checks over all scenes that finer levels are closer.
-void judgeLevels(const std::vector<MeanLevel>& means, SuiteResult& result, std::FILE* out) {
-  fmt::print(out, "over all scenes, against balanced\n");
-  double before = HUGE_VAL;
-  for (const MeanLevel& mean : means) {
-    const bool holds = mean.error < before;
-    fmt::print(out, "  {:<20} cost x {:>6.2f}  error x {:>5.2f}{}\n", mean.setting, mean.cost, mean.error,
-               holds ? "" : "  MISS: no closer than the level before");
-    ++(holds ? result.held_count : result.missed_count);
-    before = mean.error;
-  }
-}
 
 }  // namespace
 

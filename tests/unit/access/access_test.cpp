@@ -22,7 +22,7 @@ std::string refusal(const std::string& text) {
   return access ? "(accepted)" : access.error().message;
 }
 
-TEST(Access, WithoutTokensEveryClientIsAnOperator) {
+TEST(Access, EmptyAccessMakesEveryClientAnOperator) {
   const auto grant = Access().resolve("", kNow);
   ASSERT_TRUE(grant);
   EXPECT_EQ(grant->role, Role::kOperator);
@@ -93,7 +93,7 @@ TEST(Access, ALineCanNameRoomsAPersonAndAnEnd) {
   EXPECT_FALSE(shared->is_person) << "several people may use it";
 }
 
-TEST(Access, BadOptionsOfALineAreReportedWithoutTheirText) {
+TEST(Access, InvalidOptionsAreReportedWithoutTheirText) {
   const auto with = [](const std::string& options) { return refusal("operator aaaaaaaaaaaaaaaa " + options); };
   for (const char* options : {"room=", "room=a,,b", "room=a,", "room=a room=b", "sub=", "sub=a sub=b",
                               "until=2026-11-22T00:00:00Z until=2026-11-22T00:00:00Z"}) {

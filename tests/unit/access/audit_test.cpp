@@ -73,7 +73,7 @@ TEST(AuditLine, LongValuesAreCut) {
   (void)objectOf(text);
 }
 
-TEST(AuditFile, AppendsLinesInOrderAndOnlyItsOwnerMayReadThem) {
+TEST(AuditFile, AppendsLinesToAFileOfItsOwnerOnly) {
   test::TemporaryFolder folder;
   const auto path = folder.path() / "audit.jsonl";
   folder.write("audit.jsonl", "");

@@ -105,7 +105,7 @@ TEST(JwkSet, RefusesEd25519PointsOfSmallOrder) {
   for (int k = 0; k < 20; ++k) EXPECT_EQ(refusalOf(set(edKey(test::makeEd25519Key()))), "(accepted)");
 }
 
-TEST(JwkSet, RefusesRsaKeysWithAnExponentForWhichAnybodyCanSign) {
+TEST(JwkSet, RefusesRsaKeysWithAWeakExponent) {
   const test::KeyPair key = test::makeRsaKey();
   const auto withExponent = [&](const std::string& exponent) {
     const std::string whole = rsaKey(key);

@@ -19,7 +19,7 @@ TEST(JwtKeys, TheKindOfAPublicKeyFixesItsAlgorithm) {
   EXPECT_EQ(parsePublicKey(test::pemOf(test::makeEd25519Key()), "key")->algorithm, JwtAlgorithm::kEdDsa);
 }
 
-TEST(JwtKeys, OtherKeysAreRefusedWithTheReason) {
+TEST(JwtKeys, UnsupportedKeysAreRefusedWithTheReason) {
   EXPECT_THAT(refusalOf(parsePublicKey(test::pemOf(test::makeEd25519Key(), true), "key.pem")),
               HasSubstr("key.pem: this is a private key"));
   EXPECT_THAT(refusalOf(parsePublicKey(test::pemOf(test::makeEcKey()), "key")), HasSubstr("not supported"));
@@ -35,7 +35,7 @@ TEST(JwtKeys, AnEd25519PointOfSmallOrderIsRefused) {
       HasSubstr("key.pem: the Ed25519 key is a point of small order"));
 }
 
-TEST(JwtKeys, ALineBreakAfterASecretDoesNotBelongToIt) {
+TEST(JwtKeys, LineBreakAfterASecretIsIgnored) {
   const std::string secret(32, 's');
   for (const char* end : {"", "\n", "\r\n"}) EXPECT_EQ(parseSecret(secret + end, "key")->secret, secret);
 }

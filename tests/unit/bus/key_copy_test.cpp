@@ -32,7 +32,7 @@ TEST(KeyCopy, FollowsValuesAndRemovals) {
   EXPECT_EQ(copy.revision(), 5U);
 }
 
-TEST(KeyCopy, KeepsAnOwnWriteThatTheWatchHasNotToldYet) {
+TEST(KeyCopy, KeepsAnOwnWriteBeforeTheWatchReportsIt) {
   KeyCopy copy;
   copy.put("a", bytes("old"), 1);
   EXPECT_TRUE(copy.wrote("a", bytes("mine"), 4));
@@ -46,7 +46,7 @@ TEST(KeyCopy, KeepsAnOwnWriteThatTheWatchHasNotToldYet) {
   EXPECT_EQ(textOf(copy), "");
 }
 
-TEST(KeyCopy, IsCompleteUpToARevisionWithoutAValueOfItsOwn) {
+TEST(KeyCopy, IsCompleteAtARevisionOfAnotherKey) {
   KeyCopy copy;
   copy.complete(7);
   EXPECT_EQ(copy.revision(), 7U);

@@ -42,7 +42,7 @@ TEST(PartHead, IsSixteenBytesLittleEndian) {
   EXPECT_EQ(head->part_count, 10U);
 }
 
-TEST(PartHead, OutOfItsBoundsIsNone) {
+TEST(PartHead, OutOfBoundsIsRefused) {
   EXPECT_FALSE(readPartHead({})) << "no bytes";
   EXPECT_FALSE(readPartHead(core::ByteView(partOf({1, 0, 1}, "")).first(kPartHeadBytes - 1)));
   EXPECT_FALSE(readPartHead(partOf({1, 0, 0}, "")));
@@ -59,7 +59,7 @@ TEST(Parts, AMessageOfOnePartIsTheWholeMessage) {
   EXPECT_EQ(receiver.lost, 0U);
 }
 
-TEST(Parts, InOrderMakeTheirMessage) {
+TEST(Parts, OrderedPartsMakeTheirMessage) {
   Receiver receiver;
   EXPECT_EQ(receiver.take(partOf({1, 0, 3}, "a")), "-");
   EXPECT_EQ(receiver.take(partOf({1, 1, 3}, "bc")), "-");
@@ -69,7 +69,7 @@ TEST(Parts, InOrderMakeTheirMessage) {
   EXPECT_EQ(receiver.lost, 0U);
 }
 
-TEST(Parts, OfTheLargestMessageMakeIt) {
+TEST(Parts, LargestMessageRoundTrips) {
   PartCollector collector;
   std::uint64_t lost = 0;
   core::Bytes content(kPartMaxBytes);
@@ -84,7 +84,7 @@ TEST(Parts, OfTheLargestMessageMakeIt) {
   EXPECT_EQ(lost, 0U);
 }
 
-TEST(Parts, ALostOneCostsItsMessageOnceAndNoOther) {
+TEST(Parts, LostPartCostsOneMessage) {
   for (const std::uint32_t missing : {0U, 1U, 2U}) {
     Receiver receiver;
     for (std::uint32_t k = 0; k < 3; ++k) {
@@ -100,7 +100,7 @@ TEST(Parts, ALostOneCostsItsMessageOnceAndNoOther) {
   }
 }
 
-TEST(Parts, ThatComeTwiceOrWithAnotherCountOrTooLargeCostTheirMessage) {
+TEST(Parts, InvalidPartCostsItsMessage) {
   Receiver receiver;
   (void)receiver.take(partOf({1, 0, 2}, "a"));
   EXPECT_EQ(receiver.take(partOf({1, 0, 2}, "a")), "-");
@@ -115,7 +115,7 @@ TEST(Parts, ThatComeTwiceOrWithAnotherCountOrTooLargeCostTheirMessage) {
   EXPECT_EQ(receiver.lost, 3U);
 }
 
-TEST(Parts, OfManySendersMayInterleave) {
+TEST(Parts, SendersMayInterleave) {
   Receiver receiver;
   for (std::uint32_t k = 0; k < 3; ++k) {
     for (std::uint64_t sender = 1; sender <= PartCollector::kOpenMaxCount; ++sender) {
@@ -126,7 +126,7 @@ TEST(Parts, OfManySendersMayInterleave) {
   EXPECT_EQ(receiver.lost, 0U);
 }
 
-TEST(Parts, OfTooManyOpenMessagesTheOldestIsGivenUp) {
+TEST(Parts, OldestOpenMessageIsDroppedAtTheLimit) {
   Receiver receiver;
   for (std::uint64_t message = 0; message <= PartCollector::kOpenMaxCount; ++message) {
     EXPECT_EQ(receiver.take(partOf({message, 0, 2}, "a")), "-");

@@ -14,12 +14,12 @@ TEST(WithoutPassword, LeavesSchemeHostAndPort) {
   EXPECT_EQ(withoutPassword(""), "");
 }
 
-TEST(WithoutPassword, OfSeveralServersShowsNone) {
+TEST(WithoutPassword, HidesThePasswordsOfSeveralServers) {
   EXPECT_EQ(withoutPassword("nats://a:secret@one:4222,nats://two,tls://b:secret@three"),
             "nats://one:4222,nats://two,tls://three");
 }
 
-TEST(WithoutPassword, OneWithAnAtSignIsRemovedWhole) {
+TEST(WithoutPassword, RemovesAPasswordWithAnAtSign) {
   EXPECT_EQ(withoutPassword("nats://ada:se@cret@host"), "nats://host");
 }
 

@@ -38,7 +38,7 @@ class ConfigFile : public CommandLineTest {
   TemporaryFolder folder_;
 };
 
-TEST_F(ConfigFile, ErrorsNamePlaceFieldValueAndBound) {
+TEST_F(ConfigFile, ErrorsNameLocationFieldValueAndBound) {
   EXPECT_EQ(refused("\nport: 65536\n"), "serve.textproto:2:1: port: Value 65536 not in range 0 to 65535");
   EXPECT_EQ(refused("port: -1\n"), "serve.textproto:1:1: port: Value -1 not in range 0 to 65535");
   EXPECT_EQ(refused("# a comment\n\tgrace_s: 3601\n"),
@@ -51,12 +51,12 @@ TEST_F(ConfigFile, ErrorsNamePlaceFieldValueAndBound) {
             "serve.textproto:1:12: log_level: loud not in {trace,debug,info,warning,error,off}");
 }
 
-TEST_F(ConfigFile, AnUnknownFieldIsNamedWithTheWayToTheKnownOnes) {
+TEST_F(ConfigFile, UnknownFieldIsReportedWithARemedy) {
   EXPECT_EQ(refused("threads: 2\nprot: 80\n"),
             "serve.textproto:2:5: there is no field 'prot'; spindrift serve --print-config lists the fields");
 }
 
-TEST_F(ConfigFile, AWrongTypeIsNamedWithTheFieldAndWhatToWrite) {
+TEST_F(ConfigFile, WrongTypeIsReportedWithARemedy) {
   EXPECT_EQ(refused("port: \"http\""),
             "serve.textproto:1:7: port: Expected integer, got: \"http\"; write a whole number in [0 - 65535]");
   EXPECT_EQ(refused("port\n:\n  # the port\n \"http\""),
@@ -73,7 +73,7 @@ TEST_F(ConfigFile, AWrongTypeIsNamedWithTheFieldAndWhatToWrite) {
 
 TEST_F(ConfigFile, AFieldThatIsHereTwiceIsRefused) {
   EXPECT_THAT(refused("port: 1\nport: 2\n"),
-              AllOf(HasSubstr("serve.textproto:2:"), HasSubstr("port: it is here a second time")));
+              AllOf(HasSubstr("serve.textproto:2:"), HasSubstr("port: it is given twice")));
 }
 
 TEST_F(ConfigFile, AnotherEncodingIsReadOrNamed) {
@@ -87,14 +87,14 @@ TEST_F(ConfigFile, AnotherEncodingIsReadOrNamed) {
               HasSubstr("1:6: "));
 }
 
-TEST_F(ConfigFile, TextThatIsNoConfigurationIsRefused) {
+TEST_F(ConfigFile, TextThatIsNotAConfigurationIsRefused) {
   for (const char* text : {"{", "port", "port:", "[a.b]: 1", "port { }", "\"", "scene: \"a", "\xFF", "room: [\"a\""})
     EXPECT_THAT(refused(text), HasSubstr("serve.textproto:1:")) << text;
   EXPECT_THAT(refused("room: \"a=b\\0.textproto\""), AllOf(HasSubstr(":1:1: room: "), HasSubstr("zero byte")));
   EXPECT_THAT(refused(std::string("port: 1\0", 8)), HasSubstr("serve.textproto:1:"));
 }
 
-TEST_F(ConfigFile, DamagedTextIsReadOrRefusedWithAPlace) {
+TEST_F(ConfigFile, DamagedTextIsReadOrRefusedWithALocation) {
   const std::string whole = cli::configText(*CommandLine({"--room", "a=b", "--room", "c=d", "--adapt"}).sources);
   std::mt19937 random(19);
   const auto below = [&](std::size_t bound) { return static_cast<std::size_t>(random() % bound); };
@@ -134,7 +134,7 @@ TEST_F(ConfigFile, AnEmptyFileChangesNothing) {
   }
 }
 
-TEST_F(ConfigFile, AFileThatCannotBeReadIsNamedWithTheReason) {
+TEST_F(ConfigFile, UnreadableFileIsNamedWithTheReason) {
   EXPECT_EQ(CommandLine({"--config", path("missing")}).error,
             "--config " + path("missing") + ": there is no such file; check the path");
   EXPECT_EQ(CommandLine({"--config", folder().path().string()}).error,
@@ -142,7 +142,7 @@ TEST_F(ConfigFile, AFileThatCannotBeReadIsNamedWithTheReason) {
   EXPECT_THAT(CommandLine({"--config", "/dev/zero"}).error, HasSubstr("is not a regular file"));
 }
 
-TEST_F(ConfigFile, OneMebibyteIsTheBound) {
+TEST_F(ConfigFile, SizeIsLimitedToOneMebibyte) {
   const std::string text = "port: 1003\n";
   const std::string comment(cli::kConfigFileMaxBytes - text.size(), '#');
   EXPECT_EQ(CommandLine({"--config", file(text + comment)}).options.port, 1003);

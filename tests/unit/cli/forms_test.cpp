@@ -50,7 +50,7 @@ TEST_F(Forms, AnOriginIsWhatBrowsersSend) {
               ElementsAre("https://water.example"));
 }
 
-TEST_F(Forms, AnOriginOfAnotherFormIsRefusedWithWhatWasMeant) {
+TEST_F(Forms, InvalidOriginIsRefusedWithARemedy) {
   const auto expectMeant = [](const std::string& text, const std::string& meant) {
     EXPECT_THAT(fault("--origin", text),
                 AllOf(HasSubstr("'" + text + "' is not an Origin"), HasSubstr("write " + meant)));
@@ -83,7 +83,7 @@ TEST_F(Forms, AnAddressToListenOnIsAnIpAddress) {
   EXPECT_THAT(fault("--address", ""), HasSubstr("is not an IP address"));
 }
 
-TEST_F(Forms, WhatIsNoNumberIsNotCalledOutOfRange) {
+TEST_F(Forms, NonNumberIsReportedAsSuch) {
   EXPECT_EQ(fault("--port", "8080.0"), "--port: Value 8080.0 is not a whole number from 0 to 65535");
   EXPECT_EQ(fault("--port", "http"), "--port: Value http is not a whole number from 0 to 65535");
   EXPECT_EQ(fault("--port", "65536"), "--port: Value 65536 not in range 0 to 65535");
@@ -93,7 +93,7 @@ TEST_F(Forms, WhatIsNoNumberIsNotCalledOutOfRange) {
   EXPECT_EQ(fault("--grace-s", "3601"), "--grace-s: Value 3601 not in range 0 to 3600");
 }
 
-TEST_F(Forms, NatsServersAreUrlsAndTheirPasswordsAreNotRepeated) {
+TEST_F(Forms, NatsUrlsAreCheckedWithoutTheirPasswords) {
   for (const char* const servers :
        {"nats://one:4222", "tls://ada:se/cret@one:4222,nats://two", "one:4222", "nats://[::1]:4222/"})
     EXPECT_EQ(fault("--nats", servers), "") << servers;
@@ -106,7 +106,7 @@ TEST_F(Forms, NatsServersAreUrlsAndTheirPasswordsAreNotRepeated) {
   }
 }
 
-TEST_F(Forms, TextsThatAreComparedHaveNoBlanksAtTheirEnds) {
+TEST_F(Forms, BlanksAtTheEndsAreRefused) {
   EXPECT_EQ(fault("--jwt-issuer", "https://school.example/"), "");
   EXPECT_THAT(fault("--jwt-issuer", "https://school.example "), HasSubstr("has blanks at its ends"));
   EXPECT_THAT(fault("--jwt-audience", "water\n"), HasSubstr("'water\\n' has blanks at its ends"));

@@ -34,7 +34,7 @@ std::string messageOf(const std::string& message) {
   return std::string(parsed(lineOf(message)).at("message").as_string());
 }
 
-TEST(JsonLog, HasTimeLevelThreadAndMessageInThisOrder) {
+TEST(JsonLog, LineHasTimeLevelThreadAndMessage) {
   const std::string line = lineOf("room main: fine", spdlog::level::warn, milliseconds(1'769'860'800'007));
   EXPECT_TRUE(line.starts_with("{\"time\":\"2026-01-31T12:00:00.007Z\",\"level\":\"warning\",\"thread\":")) << line;
   EXPECT_TRUE(line.ends_with(",\"message\":\"room main: fine\"}\n")) << line;
@@ -51,7 +51,7 @@ TEST(JsonLog, TimesAreUtcWithMilliseconds) {
   EXPECT_EQ(time(951'782'400'000), "2000-02-29T00:00:00.000Z");
 }
 
-TEST(JsonLog, QuotesAndControlCharactersComeBackAsTheyWere) {
+TEST(JsonLog, QuotesAndControlCharactersRoundTrip) {
   const std::string hostile = "\"}\n{\"level\":\"error\"\\ \t\r\b\f \x01\x1F\x7F";
   EXPECT_EQ(messageOf(hostile), hostile);
   EXPECT_EQ(messageOf(std::string("a\0b", 3)), std::string("a\0b", 3));

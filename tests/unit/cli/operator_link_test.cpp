@@ -27,20 +27,20 @@ class OperatorLink : public CommandLineTest {
   static std::string printed(const cli::ServeOptions& options) { return cli::readyText(options, 8080); }
 };
 
-TEST_F(OperatorLink, OnTheLoopbackGuestsAreOperatorsAndThereIsNoLink) {
+TEST_F(OperatorLink, IsAbsentOnTheLoopback) {
   for (const char* address : {"127.0.0.1", "127.1.2.3", "::1"}) {
     EXPECT_EQ(guestsOf({"--address", address}), Role::kOperator);
     EXPECT_EQ(printed(started({"--address", "127.0.0.1"})), "Spindrift is ready: http://127.0.0.1:8080/\n");
   }
 }
 
-TEST_F(OperatorLink, WhereOthersReachTheServerGuestsArePlayers) {
+TEST_F(OperatorLink, GuestsOfAReachableServerArePlayers) {
   for (const char* address : {"0.0.0.0", "::", "192.0.2.7", "2001:db8::7"})
     EXPECT_EQ(guestsOf({"--address", address}), Role::kPlayer) << address;
   EXPECT_EQ(guestsOf({"--trust-proxy", "127.0.0.1"}), Role::kPlayer) << "others come through the proxy";
 }
 
-TEST_F(OperatorLink, ItsTokenIsAnOperatorsAndAnotherOneAtEachStart) {
+TEST_F(OperatorLink, TokenOfAnOperatorChangesAtEachStart) {
   const cli::ServeOptions first = started({"--address", "0.0.0.0"});
   const auto access = cli::loadAccess(first);
   const auto grant = access->resolve(first.operator_token, "main", system_clock::now());
@@ -52,7 +52,7 @@ TEST_F(OperatorLink, ItsTokenIsAnOperatorsAndAnotherOneAtEachStart) {
       << "after SIGHUP";
 }
 
-TEST_F(OperatorLink, IsPrintedWithAHostThatABrowserOpensAndTheTokenInTheFragment) {
+TEST_F(OperatorLink, HasAnOpenableHostAndTheTokenInItsFragment) {
   const cli::ServeOptions options = started({"--address", "0.0.0.0"});
   EXPECT_EQ(printed(options),
             "Spindrift is ready: http://0.0.0.0:8080/\n"

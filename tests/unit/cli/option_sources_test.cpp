@@ -40,7 +40,7 @@ TEST_F(Sources, EveryOptionHasAFieldAndEveryFieldAnOption) {
   EXPECT_EQ(fields, options) << "add the field to serve_config.proto, or the flag to serve_options.cpp";
 }
 
-TEST_F(Sources, OnlyConfigPrintConfigAndHelpAreNotConfigurable) {
+TEST_F(Sources, AllOptionsButThreeAreConfigurable) {
   const CommandLine line({});
   std::set<std::string> names;
   for (const CLI::Option* option : line.serve->get_options([](CLI::Option* o) { return !o->get_configurable(); }))
@@ -56,7 +56,7 @@ TEST_F(Sources, NamesFollowFromTheFlag) {
   EXPECT_EQ(cli::fieldName(*line.serve->get_option("--tokens")), "tokens_file") << "by the first of its names";
 }
 
-TEST_F(Sources, WithoutAnySourceTheDefaultsCount) {
+TEST_F(Sources, DefaultsApplyWithoutASource) {
   const CommandLine line({});
   EXPECT_EQ(line.error, "");
   EXPECT_EQ(line.options.port, 8080);
@@ -82,7 +82,7 @@ TEST_F(Sources, AFlagBeatsTheEnvironmentAndThatTheFile) {
   EXPECT_EQ(line.sourceOf("address"), OptionSource::kDefault);
 }
 
-TEST_F(Sources, ASwitchThatTheFileTurnsOnCanBeTurnedOff) {
+TEST_F(Sources, SwitchOfTheFileCanBeTurnedOff) {
   const std::string config = file("adapt: true");
   EXPECT_TRUE(CommandLine({"--config", config}).options.adapts);
   EXPECT_FALSE(CommandLine({"--config", config, "--adapt=false"}).options.adapts);
@@ -130,7 +130,7 @@ TEST_F(Sources, ABadVariableIsRefusedByNameWithTheBound) {
   EXPECT_THAT(refused("SPINDRIFT_LOG_FORMAT", "xml"), AllOf(StartsWith("SPINDRIFT_LOG_FORMAT: "), HasSubstr("json")));
 }
 
-TEST_F(Sources, AVariableThatKubernetesSetForAServiceIsNamedAsSuch) {
+TEST_F(Sources, VariableSetByKubernetesIsNamed) {
   set("SPINDRIFT_PORT", "tcp://10.96.14.7:80");
   EXPECT_THAT(CommandLine({}).error, AllOf(StartsWith("SPINDRIFT_PORT: 'tcp://10.96.14.7:80' was set by Kubernetes"),
                                            HasSubstr("enableServiceLinks: false")));
@@ -152,7 +152,7 @@ TEST_F(Sources, ABadVariableBehindAFlagIsNotRead) {
   EXPECT_EQ(CommandLine({"--port", "1001"}).error, "");
 }
 
-TEST_F(Sources, AFlagThatIsNoNumberIsRefused) {
+TEST_F(Sources, FlagThatIsNotANumberIsRefused) {
   EXPECT_THROW(CommandLine({"--grace", "nan"}), CLI::ValidationError);
   EXPECT_THROW(CommandLine({"--address-share", "nan"}), CLI::ValidationError);
   EXPECT_THROW(CommandLine({"--tokens", ""}), CLI::ValidationError) << "not silently without tokens";

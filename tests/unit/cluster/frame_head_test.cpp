@@ -56,7 +56,7 @@ TEST(Frame, HasKeyframeThenDelta) {
   EXPECT_EQ(text(frame->delta), "de");
 }
 
-TEST(Frame, WithLevelsThatDoNotExistIsNone) {
+TEST(Frame, UnknownLevelsAreRefused) {
   core::Bytes message = messageOf({.keyframe_bytes = 3}, "key");
   constexpr std::size_t kDuePlace = 22;
   message[kDuePlace] = 1U << core::kLevelCount;
@@ -77,7 +77,7 @@ TEST(Frame, MayLackOneOfThem) {
   EXPECT_EQ(text(readFrame(delta)->delta), "de");
 }
 
-TEST(Frame, OfAnotherSizeThanItsHeadSaysIsNone) {
+TEST(Frame, WrongSizeIsRefused) {
   EXPECT_FALSE(readFrame(messageOf({}, ""))) << "neither keyframe nor delta";
   EXPECT_FALSE(readFrame(messageOf({.keyframe_bytes = 3}, "ke")));
   EXPECT_FALSE(readFrame(messageOf({.keyframe_bytes = 3}, "keys")));
@@ -87,7 +87,7 @@ TEST(Frame, OfAnotherSizeThanItsHeadSaysIsNone) {
   EXPECT_FALSE(readFrame(messageOf({.keyframe_bytes = 4, .delta_bytes = 0xFFFFFFFF}, "key")));
 }
 
-TEST(Frame, WithAnotherMarkIsNone) {
+TEST(Frame, WrongMarkIsRefused) {
   core::Bytes message = messageOf({.keyframe_bytes = 3}, "key");
   for (std::size_t k = 0; k < 4; ++k) {
     message[k] ^= 1U;

@@ -61,7 +61,7 @@ struct Node {
   NodeName name;
 };
 
-TEST(NodeName, IsOfTheFirstAndTheSecondIsToldAtOnce) {
+TEST(NodeName, SecondClaimIsRefusedAtOnce) {
   Wire wire;
   Node first(wire);
   EXPECT_EQ(first.claim(), "");
@@ -90,7 +90,7 @@ TEST(NodeName, OtherNamesAreFree) {
   EXPECT_EQ(second.claim(), "");
 }
 
-TEST(NodeName, OfTwoThatStartTogetherOneEnds) {
+TEST(NodeName, OneOfTwoSimultaneousClaimsEnds) {
   for (int k = 0; k < 20; ++k) {
     Wire wire;
     Node first(wire);
@@ -102,7 +102,7 @@ TEST(NodeName, OfTwoThatStartTogetherOneEnds) {
   }
 }
 
-TEST(NodeName, OfTwoThatWereCutOffFromEachOtherOneIsTold) {
+TEST(NodeName, OneOfTwoReunitedOwnersIsTold) {
   Wire wire;
   Node first(wire);
   EXPECT_EQ(first.claim(), "");

@@ -70,7 +70,7 @@ TEST(NewRoom, GoesToTheLeastLoadedServer) {
   EXPECT_EQ(servers.choose(kStart), "a") << "the newest pulse counts";
 }
 
-TEST(NewRoom, GoesToNoServerThatIsDeadOrLeavingOrFull) {
+TEST(NewRoom, AvoidsDeadLeavingAndFullServers) {
   Servers servers;
   servers.note(pulse("dead", 0.1), kStart);
   v1::ServerPulse leaving = pulse("leaving", 0.2);
@@ -82,7 +82,7 @@ TEST(NewRoom, GoesToNoServerThatIsDeadOrLeavingOrFull) {
   EXPECT_EQ(servers.choose(kLater), "busy");
 }
 
-TEST(NewRoom, CountsRoomsThatWerePlacedTooLatelyForThePulses) {
+TEST(NewRoom, CountsRoomsPlacedSinceTheLastPulse) {
   Servers servers;
   servers.note(pulse("a", 0.1, {"main"}, 3), kStart);
   servers.note(pulse("b", 0.3), kStart);
@@ -108,7 +108,7 @@ TEST(RoomOfADeadServer, StaysKnownUntilAnotherServerHasIt) {
   EXPECT_THAT(servers.rooms(), ElementsAre("lab", "main", "pool"));
 }
 
-TEST(RoomOfADeadServer, IsNotItsOwnAgainWhenItComesBackWithoutIt) {
+TEST(RoomOfADeadServer, StaysWithItsNewServer) {
   Servers servers;
   servers.note(pulse("a", 0, {"main"}), kStart);
   servers.note(pulse("b", 0, {"main"}), kLater);
@@ -132,7 +132,7 @@ TEST(ClosedRoom, IsNoRoomAnyMore) {
   EXPECT_THAT(servers.rooms(), ElementsAre("main"));
 }
 
-TEST(AllServers, ComeToTheSameChoiceInWhateverOrderTheyHear) {
+TEST(AllServers, ChooseAlikeInAnyOrderOfPulses) {
   std::vector<v1::ServerPulse> pulses{pulse("c", 0.2), pulse("a", 0.2), pulse("d", 0.1, {"main"}, 1), pulse("b", 0.2)};
   const auto by_name = [](const auto& one, const auto& other) { return one.server() < other.server(); };
   std::ranges::sort(pulses, by_name);

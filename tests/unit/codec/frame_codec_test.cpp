@@ -97,7 +97,7 @@ TEST(FrameEncoding, RoundTripsTheSurfaceExactlyToTheQuantum) {
   }
 }
 
-TEST(FrameEncoding, RoundTripsParticlesToTheirBoundsSpeedsTintAndFoam) {
+TEST(FrameEncoding, RoundTripsParticles) {
   const auto samples = decodeParticles(particleFrame());
   ASSERT_TRUE(samples) << samples.error().message;
   EXPECT_EQ(samples->count, 2u);
@@ -174,7 +174,7 @@ TEST(FrameEncoding, CarriesDiagnostics) {
   EXPECT_EQ(message->diagnostics().passes(1).name(), "sph");
 }
 
-TEST(FrameEncoding, OfAMissingLayerIsNull) {
+TEST(FrameEncoding, MissingLayerGivesNull) {
   FrameEncoder encoder;
   const core::FrameView empty;
   for (const v1::Layer layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_DIAGNOSTICS, v1::LAYER_BODIES})
@@ -212,7 +212,7 @@ TEST(FrameEncoding, EachLevelIsEncodedSeparatelyWithItsLevel) {
   EXPECT_FALSE(encoder.encode(kPacked, test.view, core::Level::kMedium, true).keyframe) << "not in the frame";
 }
 
-TEST(FrameEncoding, LayersWithoutLevelsAreEncodedAtTheFullLevelOnly) {
+TEST(FrameEncoding, LayerWithoutLevelsIsEncodedAtFullOnly) {
   TestFrame test;
   const std::vector<std::uint32_t> boat(7);
   test.view.bodies = core::BodiesView{1, boat};

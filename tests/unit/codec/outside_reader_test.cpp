@@ -96,7 +96,7 @@ TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
     std::uint32_t count;
     double length_m;  ///< along x; 4 m along the others
     double radius_m;
-    std::uint32_t spread;  ///< of the 65536 places along each axis
+    std::uint32_t spread;  ///< of the 65536 positions along each axis
   };
   // Empty; one; a block of 64 and one more; crowded into one eighth; spread wide; so long that cells have fewer bits;
   // too many cells for any bits.

@@ -70,7 +70,7 @@ TEST(PrefixCode, RefusesIncompleteLengths) {
   EXPECT_FALSE(slots.assign(std::vector<std::uint8_t>{0, 0}));
 }
 
-TEST(Residuals, OfEverySizeRoundTrip) {
+TEST(Residuals, RoundTripAtEverySize) {
   Random random(2);
   ResidualEncoder out;
   struct Group {
@@ -155,7 +155,7 @@ std::int32_t fromHistoryAt(const SurfaceHistory& history, const SurfaceWeights& 
   return static_cast<std::int32_t>(sum);
 }
 
-TEST(Prediction, OfARowEqualsThatOfItsSamples) {
+TEST(Prediction, RowEqualsItsSamples) {
   Random random(4);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
   for (const std::uint32_t n : {2u, 16u, 17u, 18u, 33u, 64u}) {
@@ -196,7 +196,7 @@ core::Bytes payloadOf(const SurfacePlane& plane, const SurfaceHistory& history, 
   return bytes;
 }
 
-TEST(Prediction, FitsTheCalmWaterBesideABreakerOnceItKnowsWhereThatIs) {
+TEST(Prediction, FitsCalmWaterBesideAKnownBreaker) {
   constexpr std::size_t kSide = 128;
   Random random(6);
   // Two waves that travel, and a breaker in a corner that no frame predicts.
@@ -224,7 +224,7 @@ void expectSame(const PlaneRow& read, const SurfacePlane& plane, const std::stri
   }
 }
 
-TEST(Planes, RoundTripToTheBitAtAnySizeAndWeights) {
+TEST(Planes, RoundTripAtAnySizeAndWeights) {
   Random random(5);
   const auto noise = [&](std::size_t, std::size_t) { return random(); };
   for (const core::CellCounts n : {core::CellCounts{1, 1},
@@ -305,7 +305,7 @@ class Water {
   std::vector<double> now_, before_;
 };
 
-TEST(SurfacePredicted, TakesAtMost2Point3BitsPerSampleOfWavesEveryOtherTick) {
+TEST(SurfacePredicted, TakesAtMost2Point3BitsPerSample) {
   constexpr std::uint32_t kSide = 128;
   Water water(kSide);
   FrameEncoder encoder;

@@ -126,7 +126,7 @@ TEST(ParticlesByCell, AreThePlainParticlesToHalfAQuantum) {
   expectSame(water(9, 0.2));
 }
 
-TEST(ParticlesByCell, MayBeNoneOneOrManyInOnePlace) {
+TEST(ParticlesByCell, RoundTripsNoneOneOrManyAtOnePosition) {
   Cloud cloud({-4, -1, -4}, {4, 3, 4}, 0.1);
   EXPECT_EQ(packed(cloud).particles_by_cell().count(), 0u);
   expectSame(cloud);
@@ -147,7 +147,7 @@ TEST(ParticlesByCell, FitAWorldThatIsLargeForItsParticles) {
   expectSame(cloud);
 }
 
-TEST(ParticlesByCell, PlacesTakeHardlyMoreThanTheBound) {
+TEST(ParticlesByCell, PositionsTakeHardlyMoreThanTheBound) {
   const Cloud cloud = water(40, 0.2);
   Cloud still = cloud;
   for (std::size_t i = 0; i < still.words.size(); i += 3) {

@@ -71,7 +71,7 @@ TEST_P(PlaneKeeperTest, MakesTheKeyframeOfTheEncoderToTheBit) {
   }
 }
 
-TEST_P(PlaneKeeperTest, AClientGoesOnFromItWithTheNextDelta) {
+TEST_P(PlaneKeeperTest, KeyframeFitsTheNextDelta) {
   const core::CellCounts count{48, 32};
   FrameEncoder encoder;
   PlaneKeeper keeper;

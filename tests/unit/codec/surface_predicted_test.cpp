@@ -83,7 +83,7 @@ TEST(SurfacePredicted, IsThePlainSurfaceToTheBitFrameAfterFrame) {
       ASSERT_TRUE(samples) << samples.error().message;
       EXPECT_EQ(samples->count.x, n);
       EXPECT_EQ(samples->length_m, 16.0);
-      EXPECT_EQ(samples->elevation_m, plainOf(surface)) << n << " samples a side, tick " << tick;
+      EXPECT_EQ(samples->elevation_m, plainOf(surface)) << n << " samples per side, tick " << tick;
     }
   }
 }
@@ -116,7 +116,7 @@ TEST(SurfacePredicted, TakesAFractionOfThePlainBytes) {
       plain_bytes += encoder.encode(v1::LAYER_SURFACE, surface.view(tick))->size();
     }
   }
-  EXPECT_LT(8 * packed_bytes, plain_bytes) << "2 bits a sample are left over by rounding";
+  EXPECT_LT(8 * packed_bytes, plain_bytes) << "2 bits per sample are left over by rounding";
   EXPECT_LT(2 * whole_bytes, plain_bytes) << "two frames in each";
   const Surface still(128, [](std::uint32_t, std::uint32_t) { return 0; });
   (void)encoder.encode(kPacked, still.view(100), core::Level::kFull, false);

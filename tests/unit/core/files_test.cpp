@@ -26,7 +26,7 @@ class Texts : public testing::Test {
   test::TemporaryFolder folder_;
 };
 
-TEST_F(Texts, LoseAByteOrderMarkOfUtf8AtTheirStartOnly) {
+TEST_F(Texts, ByteOrderMarkIsRemovedAtTheStartOnly) {
   EXPECT_EQ(*read("\xEF\xBB\xBFplayer"), "player");
   EXPECT_EQ(*read("\xEF\xBB\xBF"), "");
   EXPECT_EQ(*read("a\xEF\xBB\xBF"), "a\xEF\xBB\xBF");
@@ -35,7 +35,7 @@ TEST_F(Texts, LoseAByteOrderMarkOfUtf8AtTheirStartOnly) {
   EXPECT_EQ(*read(""), "");
 }
 
-TEST_F(Texts, InUtf16OrUtf32AreRefusedWithTheRemedy) {
+TEST_F(Texts, Utf16AndUtf32AreRefusedWithARemedy) {
   EXPECT_THAT(refusalOf("\xFF\xFE"s + "a\0"s),
               AllOf(HasSubstr("is UTF-16 text; save it as UTF-8"), HasSubstr("iconv -f UTF-16 -t UTF-8")));
   EXPECT_THAT(refusalOf("\xFE\xFF"s + "\0a"s), HasSubstr("is UTF-16 text"));
@@ -46,7 +46,7 @@ TEST_F(Texts, InUtf16OrUtf32AreRefusedWithTheRemedy) {
   EXPECT_EQ(*read("a\0bc"s), "a\0bc"s) << "its reader names the place of a zero byte";
 }
 
-TEST_F(Texts, WhoseNameHasAZeroByteAreRefusedAndNotCut) {
+TEST_F(Texts, NameWithAZeroByteIsRefused) {
   folder_.write("file.txt", "text");
   const auto text = readText((folder_.path() / "file.txt").string() + "\0.png"s, 100, "a text", "shorten it");
   ASSERT_FALSE(text);

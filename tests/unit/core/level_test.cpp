@@ -21,12 +21,12 @@ TEST(LevelSet, HoldsWhatWasInserted) {
   EXPECT_EQ(LevelSet::all(), LevelSet::fromBits(0b1111));
 }
 
-TEST(LevelSet, KeepsItsBitsAndIgnoresThoseOfOtherLevels) {
+TEST(LevelSet, IgnoresBitsOfUnknownLevels) {
   for (std::uint32_t bits = 0; bits < 16; ++bits) EXPECT_EQ(LevelSet::fromBits(bits).bits(), bits);
   EXPECT_EQ(LevelSet::fromBits(0xFFFFFFFF), LevelSet::all());
 }
 
-TEST(Levels, TakeFramesWithinTheirRateAndAllOfASlowerRoom) {
+TEST(Levels, TakeFramesWithinTheirRate) {
   EXPECT_FALSE(takesFrameAfter(Level::kCoarse, 1.0 / 30)) << "20 per second";
   EXPECT_TRUE(takesFrameAfter(Level::kCoarse, 1.0 / 20 - 1e-9));
   EXPECT_TRUE(takesFrameAfter(Level::kCoarse, 1.0 / 5));

@@ -17,11 +17,11 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-constexpr std::uint32_t kCount = 256;
+constexpr std::uint32_t kBarrierCount = 256;
 
 /// Layout of the block in shaders/tests/block.glsl.
-struct CheckBlock {
-  std::uint32_t item_count = kCount / 4;
+struct BarrierBlock {
+  std::uint32_t item_count = kBarrierCount / 4;
   float gain = 1.0f;
   float rest[14] = {};
 };
@@ -35,14 +35,14 @@ class BarrierTest : public GpuTest {
     auto made = Context::create(*choice, Checks{.barriers = true});
     if (!made) GTEST_SKIP() << made.error().message;
     ctx = std::move(*made);
-    take(values, TexelBuffer::create(*ctx, "values", kCount / 4, TexelFormat::kRGBA32F));
+    take(values, TexelBuffer::create(*ctx, "values", kBarrierCount / 4, TexelFormat::kRGBA32F));
     take(counts, Buffer::create(*ctx, "counts", 8));
     take(differences, Buffer::create(*ctx, "differences", 4));
-    take(block, Buffer::create(*ctx, "block", sizeof(CheckBlock), BufferUse::kUpdatable));
+    take(block, Buffer::create(*ctx, "block", sizeof(BarrierBlock), BufferUse::kUpdatable));
     take(write, Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}}));
     take(compare, Program::create(*ctx, "tests/texel_equals_storage.comp"));
-    block.uploadValue(CheckBlock{});
-    write.setUniform("item_count", kCount);
+    block.uploadValue(BarrierBlock{});
+    write.setUniform("item_count", kBarrierCount);
     ctx->barrier(kAll);
     (void)ctx->takeFaults();
   }
@@ -65,7 +65,7 @@ class BarrierTest : public GpuTest {
   void runWrite() {
     values.bindStorage(0);
     counts.bindStorage(1);
-    ASSERT_TRUE(write.dispatch(kCount));
+    ASSERT_TRUE(write.dispatch(kBarrierCount));
   }
   void runCompare() {
     block.bindUniform(0);
@@ -87,7 +87,7 @@ class BarrierTest : public GpuTest {
   Program write, compare;
 };
 
-TEST_F(BarrierTest, AForgottenBarrierIsReportedWithBothProgramsAndTheBuffer) {
+TEST_F(BarrierTest, MissingBarrierIsReportedWithItsPrograms) {
   runWrite();
   ctx->barrier(Barrier::kStorage);  // no barrier for the texels
   runCompare();
@@ -110,7 +110,7 @@ TEST_F(BarrierTest, PassesWithTheirBarriersAreNoFault) {
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST_F(BarrierTest, AStoreToABufferThatIsStillReadIsAFault) {
+TEST_F(BarrierTest, StoreToABufferInUseIsAFault) {
   runCompare();
   runWrite();
   EXPECT_THAT(ctx->takeFaults(),
@@ -125,8 +125,8 @@ TEST_F(BarrierTest, ADisjointWriteIsDeclaredInsteadOfSeparated) {
   EXPECT_THAT(ctx->takeFaults(), IsEmpty());
 }
 
-TEST_F(BarrierTest, GroupCountsThatAShaderWroteNeedTheirOwnBarrier) {
-  auto arguments = Buffer::create(*ctx, "arguments", 4 * kCount);
+TEST_F(BarrierTest, WrittenGroupCountsNeedACommandBarrier) {
+  auto arguments = Buffer::create(*ctx, "arguments", 4 * kBarrierCount);
   ASSERT_TRUE(arguments);
   arguments->bindStorage(0);
   counts.bindStorage(1);
@@ -139,7 +139,7 @@ TEST_F(BarrierTest, GroupCountsThatAShaderWroteNeedTheirOwnBarrier) {
   EXPECT_THAT(ctx->takeFaults(), ElementsAre(AllOf(HasSubstr("arguments"), HasSubstr("Barrier::kIndirect"))));
 }
 
-TEST_F(BarrierTest, ABindingWithoutABufferAndABlockLargerThanItsBufferAreFaults) {
+TEST_F(BarrierTest, MissingBufferAndLargeBlockAreFaults) {
   differences = {};
   values.bindTexel(3);
   values.bindStorage(0);
@@ -152,7 +152,7 @@ TEST_F(BarrierTest, ABindingWithoutABufferAndABlockLargerThanItsBufferAreFaults)
   EXPECT_THAT(ctx->takeFaults(), ElementsAre(HasSubstr("storage binding 1 (Differences), where no buffer is bound")));
   take(differences, Buffer::create(*ctx, "differences", 4));
   differences.bindStorage(1);
-  auto small = Buffer::create(*ctx, "small block", sizeof(CheckBlock) - 8, BufferUse::kUpdatable);
+  auto small = Buffer::create(*ctx, "small block", sizeof(BarrierBlock) - 8, BufferUse::kUpdatable);
   ASSERT_TRUE(small);
   small->bindUniform(0);
   ASSERT_TRUE(compare.dispatch(64, 1));
@@ -160,13 +160,13 @@ TEST_F(BarrierTest, ABindingWithoutABufferAndABlockLargerThanItsBufferAreFaults)
                                                    HasSubstr("\"small block\" bound to it only 56"))));
 }
 
-TEST_F(BarrierTest, UploadsDownloadsClearsAndCopiesIssueTheirOwnBarriers) {
+TEST_F(BarrierTest, ApiOperationsIssueTheirOwnBarriers) {
   auto other = Buffer::create(*ctx, "other", values.sizeBytes());
   auto ring = ReadbackRing::create(*ctx, "ring", values.sizeBytes(), 1);
   ASSERT_TRUE(other && ring);
-  const auto zeros = std::vector<std::int32_t>(kCount, 0);
+  const auto zeros = std::vector<std::int32_t>(kBarrierCount, 0);
   const std::vector<std::pair<const char*, std::function<void()>>> operations = {
-      {"download", [&] { (void)values.downloadVector<std::int32_t>(kCount); }},
+      {"download", [&] { (void)values.downloadVector<std::int32_t>(kBarrierCount); }},
       {"upload", [&] { values.upload(zeros); }},
       {"clear", [&] { values.clear(); }},
       {"copy from", [&] { other->copyFrom(values, 0, values.sizeBytes()); }},
@@ -198,7 +198,7 @@ TEST_F(BarrierTest, UpdatesOfAUniformBlockNeedNoBarrier) {
   ctx->barrier(kAll);
   EXPECT_EQ(barriersOf([&] {
               for (int i = 0; i < 4; ++i) {
-                block.uploadValue(CheckBlock{});
+                block.uploadValue(BarrierBlock{});
                 runCompare();
                 ctx->barrier(Barrier::kStorage);
               }

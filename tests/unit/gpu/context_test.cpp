@@ -52,7 +52,7 @@ TEST_F(ContextTest, SoftwareMeansARendererWithoutHardware) {
   EXPECT_EQ((*software)->device().index, -1);
 }
 
-TEST_F(ContextTest, ASecondContextReplacesTheCurrentOneAndDoesNotDamageIt) {
+TEST_F(ContextTest, SecondContextDoesNotDamageTheFirst) {
   {
     auto second = Context::create(*testDevice());
     ASSERT_TRUE(second);

@@ -77,7 +77,7 @@ class Selecting : public testing::Test {
   int open_count = 0;
 };
 
-TEST_F(Selecting, AutoGoesOnToTheNextDeviceWhenTheProbeFails) {
+TEST_F(Selecting, AutoTakesTheNextDeviceWhenTheProbeFails) {
   candidates = {hardware(0, "card0"), hardware(1, "card1"), software()};
   working = {"card1", ""};
   const auto selected = select();
@@ -89,7 +89,7 @@ TEST_F(Selecting, AutoGoesOnToTheNextDeviceWhenTheProbeFails) {
   EXPECT_EQ(open_count, 1);
 }
 
-TEST_F(Selecting, AutoEndsAtSoftwareAndSaysWhyNoHardware) {
+TEST_F(Selecting, AutoFallsBackToSoftwareWithTheReason) {
   candidates = {hardware(0, "card0"), software()};
   working = {""};
   const auto selected = select();
@@ -112,7 +112,7 @@ TEST_F(Selecting, AutoAdvisesWhereHardwareIsNotUsed) {
 TEST_F(Selecting, AutoAdvisesWhereEglDoesNotListTheHardware) {
   candidates = {software()};
   working = {""};
-  EXPECT_THAT(select()->info.advice, IsEmpty()) << "there is none";
+  EXPECT_THAT(select()->info.advice, IsEmpty()) << "no advice is needed";
   files["/dev/dri/renderD128"] = EACCES;
   EXPECT_THAT(select()->info.advice, HasSubstr("this user may not open /dev/dri/renderD128: add it to the group"));
   files["/dev/dri/renderD128"] = 0;
@@ -121,7 +121,7 @@ TEST_F(Selecting, AutoAdvisesWhereEglDoesNotListTheHardware) {
   EXPECT_THAT(select()->info.advice, HasSubstr("NVIDIA_DRIVER_CAPABILITIES"));
 }
 
-TEST_F(Selecting, ADeviceIsFoundByItsFilesAndItsUuid) {
+TEST_F(Selecting, DeviceIsFoundByItsFilesAndUuid) {
   const std::string uuid = "01234567-89ab-cdef-0123-456789abcdef";
   candidates = {hardware(0, "card0"), hardware(1, "card1", uuid), software()};
   candidates[1].render_file = "renderD129";
@@ -158,7 +158,7 @@ TEST(DeviceAdvice, SaysWhyAFileCannotBeOpened) {
   EXPECT_THAT(fileAdvice("", {}), IsEmpty()) << "EGL does not name a file";
 }
 
-TEST_F(Selecting, WithoutAWorkingDeviceTheErrorListsEveryAttempt) {
+TEST_F(Selecting, ErrorListsEveryAttempt) {
   candidates = {hardware(0, "card0"), software()};
   const auto selected = select();
   ASSERT_FALSE(selected);
@@ -175,7 +175,7 @@ TEST_F(Selecting, AnIndexIsNotReplacedByAnotherDevice) {
   EXPECT_FALSE(select({.kind = Kind::kIndex, .index = 2})) << "there are two";
 }
 
-TEST_F(Selecting, AGpuThatTwoVendorLibrariesListHasOneIndex) {
+TEST_F(Selecting, GpuListedTwiceHasOneIndex) {
   candidates = {hardware(-1, "card0"),
                 hardware(-1, "card1", "0123456789abcdef"),
                 hardware(-1, "card0"),
@@ -189,7 +189,7 @@ TEST_F(Selecting, AGpuThatTwoVendorLibrariesListHasOneIndex) {
   EXPECT_THAT(indices, ElementsAre(0, 1, 0, 1, 2, 3, -1)) << "what EGL does not tell apart stays apart";
 }
 
-TEST_F(Selecting, TheSecondWayToAGpuIsTakenWhenTheFirstHasNoDriver) {
+TEST_F(Selecting, SecondLibraryIsTakenWhenTheFirstFails) {
   candidates = {hardware(-1, "card0", "a"), hardware(-1, "nvidia0", "a"), software()};
   mergeDuplicates(candidates);
   working = {"nvidia0", ""};

@@ -32,7 +32,7 @@ TEST_F(FenceTest, IsPassedOnceTheWorkBeforeItIsDone) {
   EXPECT_EQ(Fence().poll(), Fence::Status::kPassed) << "there is nothing to wait for";
 }
 
-TEST_F(FenceTest, ASlowDeviceLagsAndAWaitLetsItCatchUp) {
+TEST_F(FenceTest, WaitLetsASlowDeviceCatchUp) {
   ctx->fenceDelay().set(3);
   std::vector<Fence> fences;
   for (int i = 0; i < 5; ++i) fences.push_back(Fence::insert(*ctx));
@@ -110,7 +110,7 @@ TEST_F(DeviceLossTest, FreesTheSlotsInFlightWithoutReturningThem) {
   EXPECT_EQ((*ring)->usedCount(), 0u);
 }
 
-TEST_F(DeviceLossTest, DownloadsGiveZerosAndObjectsCanStillBeMadeAndDropped) {
+TEST_F(DeviceLossTest, DownloadsGiveZeros) {
   auto buffer = Buffer::create(*ctx, "before", 64);
   auto program = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
   ASSERT_TRUE(buffer && program);
@@ -158,7 +158,7 @@ TEST_F(DeviceLossTest, AWaitForAFenceEndsWithTheResetOfTheDevice) {
   EXPECT_EQ(asked, 6);
 }
 
-TEST_F(DeviceLossTest, AWaitForAFenceThatIsNeverPassedEndsWithItsLimit) {
+TEST_F(DeviceLossTest, WaitForAFenceEndsWithItsLimit) {
   static int slices = 0;
   slices = 0;
   const Replaced hang(

@@ -23,7 +23,7 @@ TEST(NoDevice, NamesTheVariablesThatHideTheDrivers) {
   EXPECT_THAT(none.error().message, testing::Not(testing::HasSubstr("\n")));
 }
 
-TEST(NoDevice, SaysWhatTheDriverHasAndWhichVariableCausesIt) {
+TEST(NoDevice, ErrorNamesTheDriverAndTheVariable) {
   setenv("MESA_GL_VERSION_OVERRIDE", "3.3", 1);
   const auto none = Context::create({.kind = DeviceChoice::Kind::kSoftware});
   if (none || none.error().message.find("it has 3.3") == std::string::npos) GTEST_SKIP() << "this driver is not Mesa's";

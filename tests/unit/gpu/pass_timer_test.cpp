@@ -37,7 +37,7 @@ class PassTimersTest : public GpuTest {
   Buffer counts;
 };
 
-TEST_F(PassTimersTest, CountsScopesByNameAndTheirSumStaysWithinTheOuterScope) {
+TEST_F(PassTimersTest, SumOfScopesStaysWithinTheOuterScope) {
   PassTimers timers(*ctx);
   {
     const auto step = timers.scope("step");

@@ -77,7 +77,7 @@ TEST_F(ReadbackRingTest, GathersSeveralCopiesAndSeesShaderWrites) {
   EXPECT_EQ(std::vector(words.begin() + 2, words.end()), numbers(kCount - 1, 10));
 }
 
-TEST_F(ReadbackRingTest, RefusesWhenEverySlotIsInUseAndCountsIt) {
+TEST_F(ReadbackRingTest, RefusesWhenEverySlotIsInUse) {
   auto ring = ReadbackRing::create(*ctx, "frames", 64, 2);
   auto source = Buffer::create(*ctx, "source", 64);
   ASSERT_TRUE(ring && source);

@@ -69,7 +69,7 @@ TEST_F(ShaderFolderTest, ExpandsEveryEntryPointToWhatTheBuildEmbeds) {
   }
 }
 
-TEST_F(ShaderFolderTest, NamesFileAndLineOfAnIncludeThatIsNotThere) {
+TEST_F(ShaderFolderTest, MissingIncludeIsReportedWithFileAndLine) {
   write("tests/iota.comp", "// first\n#include \"tests/nothere.glsl\"\n");
   const auto expanded = ShaderFolder(root()).expand("tests/iota.comp");
   ASSERT_FALSE(expanded);
@@ -125,7 +125,7 @@ TEST_F(LiveShader, RunsTheChangedFileAndKeepsItsUniforms) {
   EXPECT_EQ(ctx_->debugErrorCount(), 0u);
 }
 
-TEST_F(LiveShader, KeepsTheOldProgramWhenItsFileDoesNotCompile) {
+TEST_F(LiveShader, KeepsTheOldProgramOnACompileError) {
   auto program = Program::create(*ctx_, "tests/iota.comp", {{"GROUP", "32"}});
   ASSERT_TRUE(program) << program.error().message;
   replace("tests/iota.comp", "+ offset", "+ no_such_name");

@@ -148,7 +148,7 @@ TEST_F(ProgramCacheTest, AnErrorIsNotKept) {
   }
 }
 
-TEST_F(ProgramCacheTest, ProgramsThatShareACompiledOneHaveTheirOwnUniforms) {
+TEST_F(ProgramCacheTest, SharedProgramsKeepTheirOwnUniforms) {
   auto values = Buffer::create(*ctx, "values", 16);
   auto counts = Buffer::create(*ctx, "counts", 8);
   auto ten = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});

@@ -2,8 +2,9 @@
 // requests that the application answers late, never, or after the server has ended.
 #include <gtest/gtest.h>
 
+#include <spindrift/http/origin.h>
+
 #include "address_limits.h"
-#include "origin.h"
 #include "test_application.h"
 
 namespace spindrift::net {

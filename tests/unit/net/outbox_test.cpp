@@ -1,3 +1,5 @@
+// What an outbox sends, replaces and drops: one rule per test, in one long file because the two planes share their
+// rules.
 #include "outbox.h"
 
 #include <gtest/gtest.h>
@@ -130,20 +132,26 @@ TEST(Outbox, HoldsOneFramePerLayer) {
   EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
 }
 
+/// Returns whether the session can take a frame of stream 1 at this time as a keyframe only.
+bool wantsKeyframe(const Outbox& outbox, Clock::time_point now) {
+  const auto need = outbox.need(1);
+  return need && need->keyframe_from && *need->keyframe_from <= now;
+}
+
 TEST(Outbox, SendsADeltaIfTheClientHasTheFrameBefore) {
   Outbox outbox(8);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "it has nothing yet";
+  EXPECT_TRUE(wantsKeyframe(outbox, later())) << "it has nothing yet";
   outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "nothing that it could not read";
   const auto whole = shared("3");
   outbox.offerFrame(1, {whole, shared("3 on 2")}, later());
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe);
+  EXPECT_FALSE(wantsKeyframe(outbox, later()));
   EXPECT_EQ(outbox.next().message, whole);
   const auto continuing = shared("4 on 3");
   outbox.offerFrame(1, {shared("4"), continuing}, later());
   EXPECT_EQ(outbox.next().message, continuing);
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe);
+  EXPECT_FALSE(wantsKeyframe(outbox, later()));
 }
 
 TEST(Outbox, ContinuesWithAKeyframeAfterALoss) {
@@ -151,10 +159,10 @@ TEST(Outbox, ContinuesWithAKeyframeAfterALoss) {
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
   outbox.offerFrame(1, {shared("1"), {}}, later());
   EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
-  EXPECT_FALSE(outbox.demand(1, 0, later()).wants_keyframe) << "the client does not read";
+  EXPECT_FALSE(wantsKeyframe(outbox, later())) << "the client does not read";
   outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe) << "the writer is free again";
+  EXPECT_TRUE(wantsKeyframe(outbox, later())) << "the writer is free again";
   const auto whole = shared("4");
   outbox.offerFrame(1, {whole, shared("4 on 3")}, later());
   EXPECT_EQ(outbox.next().message, whole);
@@ -177,7 +185,7 @@ TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
   int asked_count = 0;
   for (int k = 0; k < 30; ++k) {  // 30 frames per second, every third is taken
     now += std::chrono::microseconds(33'333);
-    const bool wants_keyframe = outbox.demand(1, 0, now).wants_keyframe;
+    const bool wants_keyframe = wantsKeyframe(outbox, now);
     asked_count += wants_keyframe ? 1 : 0;
     outbox.offerFrame(1, {wants_keyframe ? shared("w") : core::SharedBytes(), shared("c")}, now);
     if (const auto sent = outbox.next().message) taken.emplace_back(sent->begin(), sent->end());
@@ -219,7 +227,9 @@ TEST(Outbox, NeverSendsADeltaAcrossLevels) {
   outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
   EXPECT_EQ(textOf(outbox.next().message), "continuing");
   // In another scene the level equals full.
-  EXPECT_TRUE(outbox.demand(1, 1, later()).wants_keyframe);
+  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1, false), later());
+  EXPECT_EQ(textOf(outbox.next().message), "nothing");
+  EXPECT_TRUE(wantsKeyframe(outbox, later()));
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
   EXPECT_EQ(textOf(outbox.next().message), "whole");
   outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
@@ -261,11 +271,11 @@ class LinkOf30Hz {
  public:
   LinkOf30Hz(Outbox& outbox, std::uint32_t reduced_count) : outbox_(outbox), reduced_count_(reduced_count) {}
 
-  std::vector<core::Level> run(int seconds, int taken_of) {
+  std::vector<core::Level> run(int duration_s, int taken_of) {
     std::vector<core::Level> changes;
-    for (int k = 0; k < 30 * seconds; ++k) {
+    for (int k = 0; k < 30 * duration_s; ++k) {
       now_ += std::chrono::microseconds(33'333);
-      const core::Level asked = outbox_.demand(1, reduced_count_, now_).level;
+      const core::Level asked = outbox_.need(1)->level;
       outbox_.offerFrame(1, levelFrame(core::effectiveLevel(asked, reduced_count_), reduced_count_), now_);
       if (k % taken_of != 0) continue;
       outbox_.next();
@@ -296,7 +306,7 @@ TEST(Outbox, ASessionThatDoesNotAdaptKeepsItsLevel) {
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kFine});
   LinkOf30Hz link(outbox, 3);
   EXPECT_TRUE(link.run(10, 3).empty());
-  EXPECT_EQ(outbox.demand(1, 3, later()).level, core::Level::kFine);
+  EXPECT_EQ(outbox.need(1)->level, core::Level::kFine);
 }
 
 TEST(Outbox, ANewSubscriptionStartsWithAKeyframe) {
@@ -305,7 +315,7 @@ TEST(Outbox, ANewSubscriptionStartsWithAKeyframe) {
   outbox.offerFrame(1, {shared("1"), {}}, later());
   outbox.next();
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(outbox.demand(1, 0, later()).wants_keyframe);
+  EXPECT_TRUE(wantsKeyframe(outbox, later()));
 }
 
 TEST(Outbox, TakesLayersInTurn) {
@@ -443,11 +453,11 @@ TEST(Outbox, ANewcomerGetsTheNewestFrameOnceAndGoesOnWithTheNextDelta) {
   outbox.offerNewest(1, newest);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it does not watch the stream";
   outbox.setWatch(1, Watch{.max_rate_hz = 10.0, .is_first = true});
-  EXPECT_TRUE(outbox.demand(1, 0, now).is_newcomer);
-  EXPECT_TRUE(outbox.demand(1, 0, now).wants_keyframe);
+  EXPECT_TRUE(outbox.need(1)->is_newcomer);
+  EXPECT_TRUE(wantsKeyframe(outbox, now));
   EXPECT_TRUE(outbox.offerNewest(1, newest).wake);
-  EXPECT_FALSE(outbox.demand(1, 0, now).is_newcomer);
-  EXPECT_FALSE(outbox.demand(1, 0, now).wants_keyframe);
+  EXPECT_FALSE(outbox.need(1)->is_newcomer);
+  EXPECT_FALSE(wantsKeyframe(outbox, now));
   outbox.offerNewest(1, {.keyframe = shared("again"), .delta = nullptr});
   EXPECT_EQ(sentText(outbox), "newest");
   outbox.offerFrame(1, next, now);
@@ -462,7 +472,7 @@ TEST(Outbox, OnlyTheFirstWatchOfALayerMakesANewcomer) {
   Outbox outbox(8);
   const FrameBytes newest{.keyframe = shared("newest"), .delta = nullptr};
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_FALSE(outbox.demand(1, 0, later()).is_newcomer);
+  EXPECT_FALSE(outbox.need(1)->is_newcomer);
   outbox.offerNewest(1, newest);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kCoarse, .is_first = true});
@@ -472,8 +482,9 @@ TEST(Outbox, OnlyTheFirstWatchOfALayerMakesANewcomer) {
       1,
       {.keyframe = shared("coarse"), .delta = nullptr, .levels = {.level = core::Level::kCoarse, .reduced_count = 1}});
   EXPECT_EQ(sentText(outbox), "coarse");
+  outbox.enterRoom(std::make_shared<core::DemandTable>());
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
-  outbox.clearFrames();
+  outbox.enterRoom(nullptr);
   outbox.offerNewest(1, newest);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it is in another room now";
   outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
@@ -506,6 +517,32 @@ TEST(Outbox, KeepsNothingOnceClosed) {
   outbox.pushAnswer(message);
   EXPECT_EQ(message.use_count(), 1);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kShut);
+}
+
+TEST(Outbox, TheDemandOfItsRoomHasWhatItNeeds) {
+  Outbox outbox(8);
+  const auto room = std::make_shared<core::DemandTable>(), other = std::make_shared<core::DemandTable>();
+  const auto full = core::indexOf(core::Level::kFull);
+  const auto in = [&](const std::shared_ptr<core::DemandTable>& table) { return table->of(1, later())[full]; };
+  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  outbox.enterRoom(room);
+  EXPECT_EQ(room->sessionCount(), 1U);
+  EXPECT_EQ(in(room).watcher_count, 1U);
+  EXPECT_TRUE(in(room).wants_keyframe);
+  outbox.offerFrame(1, {shared("1"), {}}, later());
+  EXPECT_FALSE(in(room).wants_keyframe);
+  outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
+  EXPECT_FALSE(in(room).wants_keyframe) << "1 was lost, and the client does not read";
+  outbox.next();
+  EXPECT_TRUE(in(room).wants_keyframe) << "the writer is free again";
+  outbox.enterRoom(nullptr);
+  outbox.enterRoom(other);
+  EXPECT_EQ(in(room).watcher_count + room->sessionCount(), 0U);
+  EXPECT_TRUE(in(other).wants_keyframe);
+  outbox.requestClose(CloseCode::kNormal, "");
+  EXPECT_FALSE(in(other).wants_keyframe);
+  outbox.shut();
+  EXPECT_EQ(in(other).watcher_count, 0U);
 }
 
 }  // namespace

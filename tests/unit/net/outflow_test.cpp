@@ -19,7 +19,7 @@ using test::WsClient;
 /// More than the kernel buffers of a connection hold, so that a write to a client that does not read never ends.
 constexpr std::size_t kHugeFrameBytes = 16U << 20U;
 constexpr int kTinyReceiveBuffer = 4096;
-constexpr double kAnyRate_hz = 1e6;
+constexpr double kUnlimitedRate_hz = 1e6;
 
 TEST(Outflow, BringsAFrameToEveryWatcherWhole) {
   TestServer served;
@@ -38,7 +38,7 @@ TEST(Outflow, BringsAFrameToEveryWatcherWhole) {
 TEST(Outflow, SharesOneBufferAmongAllClients) {
   TestServer served;
   std::vector<WsClient> clients;
-  for (int k = 0; k < 6; ++k) clients.push_back(served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer));
+  for (int k = 0; k < 6; ++k) clients.push_back(served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer));
   const core::SharedBytes frame = core::share(core::Bytes(kHugeFrameBytes));
   served.server->hub().publish("pool", 1, {frame, {}});
   // No client reads, so each session holds one reference, in its slot or in the unfinished write.
@@ -49,7 +49,7 @@ TEST(Outflow, SharesOneBufferAmongAllClients) {
 
 TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
   TestServer served({.write_stall_timeout = 3 * test::kPatience});  // longer than the client needs to read at the end
-  WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  WsClient stuck = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
   WsClient lively = served.watcher(1);
   // The first frame can never be written to the stuck client; it is in flight before the small ones are published.
   std::vector<std::weak_ptr<const core::Bytes>> frames;
@@ -75,7 +75,7 @@ TEST(Outflow, DropsForAClientThatDoesNotReadAndServesTheOthers) {
 
 TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
   TestServer served;
-  WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  WsClient slow = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
   core::Bytes frame(kHugeFrameBytes);
   for (std::size_t k = 0; k < frame.size(); ++k) frame[k] = static_cast<std::uint8_t>(k * 13 + k / 65'521);
   served.server->hub().publish("pool", 1, {core::share(frame), {}});
@@ -91,7 +91,7 @@ TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
 
 TEST(Outflow, WritesTogetherWhatWaits) {
   TestServer served;
-  WsClient slow = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  WsClient slow = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
   constexpr StreamIndex kStreamCount = 7;
   for (StreamIndex stream = 2; stream <= kStreamCount; ++stream) {
     ASSERT_TRUE(slow.sendBinary(bytes("watch " + std::to_string(stream) + " 1000000")));
@@ -120,19 +120,19 @@ TEST(Outflow, WritesTogetherWhatWaits) {
 
 TEST(Outflow, EvictsAClientWhoseWriteStalls) {
   TestServer served({.write_stall_timeout = std::chrono::milliseconds(200)});
-  const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  const WsClient stuck = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
   served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
   EXPECT_EQ(served.application.closed()[0].end.code, 0);
   EXPECT_EQ(served.application.closed()[0].end.reason, "evicted: a write took longer than 200 ms");
   EXPECT_EQ(served.server->stats().evicted_session_count, 1U);
-  EXPECT_EQ(test::watcherCount(served.server->hub(), "pool", 1), 0U);
+  EXPECT_EQ(served.application.demands.watcherCount("pool", 1), 0U);
   EXPECT_TRUE(served.serves());
 }
 
 TEST(Outflow, DropsAStuckClientThatIsBeingClosed) {
   TestServer served({.close_timeout = std::chrono::milliseconds(200)});
-  const WsClient stuck = served.watcher(1, kAnyRate_hz, kTinyReceiveBuffer);
+  const WsClient stuck = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
   served.server->hub().publish("pool", 1, {core::share(core::Bytes(kHugeFrameBytes)), {}});
   served.server->hub().close(served.application.opened().at(0), CloseCode::kNormal, "enough");
   ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
@@ -141,7 +141,7 @@ TEST(Outflow, DropsAStuckClientThatIsBeingClosed) {
 
 TEST(Outflow, KeepsEachWatchToItsOwnRate) {
   TestServer served;
-  WsClient fast = served.watcher(1, kAnyRate_hz);
+  WsClient fast = served.watcher(1, kUnlimitedRate_hz);
   WsClient slow = served.watcher(1, 1e-3);
   for (int k = 0; k < 20; ++k) {
     served.server->hub().publish("pool", 1, {shared("frame " + std::to_string(k)), {}});
@@ -157,10 +157,10 @@ TEST(Outflow, KeepsEachWatchToItsOwnRate) {
 TEST(Outflow, StopsALayer) {
   TestServer served;
   WsClient client = served.watcher(1);
-  EXPECT_EQ(test::watcherCount(served.server->hub(), "pool", 1), 1U);
+  EXPECT_EQ(served.application.demands.watcherCount("pool", 1), 1U);
   ASSERT_TRUE(client.sendBinary(bytes("watch 1 0")));
   EXPECT_EQ(text(client.receive()), "watching");
-  EXPECT_EQ(test::watcherCount(served.server->hub(), "pool", 1), 0U);
+  EXPECT_EQ(served.application.demands.watcherCount("pool", 1), 0U);
   served.server->hub().publish("pool", 1, {shared("frame"), {}});
   ASSERT_TRUE(client.sendBinary(bytes("echo end")));
   EXPECT_EQ(text(client.receive()), "echo end");

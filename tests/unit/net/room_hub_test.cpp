@@ -18,11 +18,8 @@ struct RecordingLink final : SessionLink {
   int frame_count = 0;
   int wake_count = 0;
   int newest_count = 0;
-  int clear_count = 0;
-  bool wants_keyframe = false;
-  bool is_newcomer = false;
+  std::shared_ptr<core::DemandTable> demand;  ///< of its room
   std::optional<double> rate_hz;
-  core::Level level = core::Level::kFull;
   std::optional<CloseCode> closed;
   std::optional<CloseCode> closing_later;
 
@@ -34,20 +31,17 @@ struct RecordingLink final : SessionLink {
   }
   void wakeForFrames() override { ++wake_count; }
   void offerNewest(StreamIndex, const FrameBytes&) override { ++newest_count; }
-  Outbox::Demand demand(StreamIndex, std::uint32_t, Clock::duration) const override {
-    return {.level = level, .wants_keyframe = wants_keyframe, .is_newcomer = is_newcomer};
-  }
   void setWatch(StreamIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
-    if (watch) level = watch->level;
   }
-  void clearFrames() override { ++clear_count; }
+  void enterRoom(std::shared_ptr<core::DemandTable> of_room) override { demand = std::move(of_room); }
   Outbox::Waiting waiting() const override { return {1, 2}; }
   void close(CloseCode code, std::string) override { closed = code; }
   void closeAt(std::chrono::steady_clock::time_point, CloseCode code, std::string) override { closing_later = code; }
 };
 
 struct RoomHubTest : testing::Test {
+  test::DemandTables demands;
   RoomHub hub;
   std::shared_ptr<RecordingLink> ada = std::make_shared<RecordingLink>();
   std::shared_ptr<RecordingLink> bob = std::make_shared<RecordingLink>();
@@ -58,9 +52,9 @@ struct RoomHubTest : testing::Test {
   }
 };
 
-TEST_F(RoomHubTest, OffersTheNewestFrameToTheWatchersOfItsStreamAndReportsNewcomers) {
-  hub.join(1, "pool");
-  hub.join(2, "pool");
+TEST_F(RoomHubTest, OffersTheNewestFrameToTheWatchersOfItsStream) {
+  hub.join(1, "pool", demands.of("pool"));
+  hub.join(2, "pool", demands.of("pool"));
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.watch(2, 4, {.max_rate_hz = 30.0});
   hub.offerNewest("pool", 3, {.keyframe = shared("newest"), .delta = nullptr});
@@ -68,37 +62,11 @@ TEST_F(RoomHubTest, OffersTheNewestFrameToTheWatchersOfItsStreamAndReportsNewcom
   EXPECT_EQ(ada->newest_count, 1);
   EXPECT_EQ(bob->newest_count, 0);
   EXPECT_EQ(ada->frame_count, 0);
-  const auto hasNewcomer = [&] { return hub.demand("pool", 3, 0)[core::indexOf(core::Level::kFull)].has_newcomer; };
-  EXPECT_FALSE(hasNewcomer());
-  ada->is_newcomer = true;
-  EXPECT_TRUE(hasNewcomer());
-}
-
-TEST_F(RoomHubTest, ReportsTheDemandPerLevel) {
-  using core::Level;
-  hub.join(1, "pool");
-  hub.join(2, "pool");
-  hub.watch(1, 3, {.max_rate_hz = 30.0});
-  bob->wants_keyframe = true;
-  const auto at = [&](const char* room, StreamIndex stream, std::uint32_t reduced_count, Level level) {
-    return hub.demand(room, stream, reduced_count)[core::indexOf(level)];
-  };
-  EXPECT_EQ(at("pool", 3, 2, Level::kFull).watcher_count, 1U);
-  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_keyframe) << "he does not watch it";
-  hub.watch(2, 3, {.max_rate_hz = 30.0, .level = Level::kMedium});
-  EXPECT_FALSE(at("pool", 3, 2, Level::kFull).wants_keyframe) << "he watches another level";
-  EXPECT_EQ(at("pool", 3, 2, Level::kMedium).watcher_count, 1U);
-  EXPECT_TRUE(at("pool", 3, 2, Level::kMedium).wants_keyframe);
-  EXPECT_EQ(at("pool", 3, 2, Level::kCoarse).watcher_count, 0U);
-  // If the medium level leaves nothing out, its sessions still ask for it.
-  EXPECT_EQ(at("pool", 3, 1, Level::kMedium).watcher_count, 1U);
-  EXPECT_EQ(at("pool", 4, 2, Level::kFull).watcher_count, 0U);
-  EXPECT_EQ(at("pond", 3, 2, Level::kFull).watcher_count, 0U);
 }
 
 TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
-  hub.join(1, "pool");
-  hub.join(2, "sea");
+  hub.join(1, "pool", demands.of("pool"));
+  hub.join(2, "sea", demands.of("sea"));
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.watch(2, 3, {.max_rate_hz = 30.0});
   hub.publish("pool", 3, {shared("frame"), {}});
@@ -110,6 +78,7 @@ TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
 
 /// A hub whose delayed calls are made by the test.
 struct GatheringHub {
+  test::DemandTables demands;
   RoomHub hub;
   std::vector<std::function<void()>> later;
   std::vector<std::shared_ptr<RecordingLink>> links;
@@ -121,7 +90,7 @@ struct GatheringHub {
     for (std::size_t k = 0; k < count; ++k) {
       links.push_back(std::make_shared<RecordingLink>());
       hub.add(links.size(), links.back());
-      hub.join(links.size(), "pool");
+      hub.join(links.size(), "pool", demands.of("pool"));
       hub.watch(links.size(), 3, {.max_rate_hz = 30.0});
       hub.watch(links.size(), 4, {.max_rate_hz = 30.0});
     }
@@ -166,47 +135,40 @@ TEST(RoomHubGathers, ALateWakeUpFindsTheRoomGone) {
   EXPECT_TRUE(test.allWere(1, 0));
 }
 
-TEST_F(RoomHubTest, CountsWatchers) {
-  hub.join(1, "pool");
-  hub.join(2, "pool");
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
-  hub.watch(1, 3, {.max_rate_hz = 30.0});
-  hub.watch(2, 3, {.max_rate_hz = 10.0});
-  hub.watch(2, 3, {.max_rate_hz = 20.0});
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 2U);
-  EXPECT_EQ(bob->rate_hz, 20.0);
-  hub.watch(1, 3, {.max_rate_hz = 0.0});
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);
-  EXPECT_EQ(ada->rate_hz, std::nullopt);
-  hub.remove(2);
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
-  EXPECT_EQ(test::watcherCount(hub, "nowhere", 3), 0U);
-}
-
-TEST_F(RoomHubTest, TreatsAnInvalidRateAsStop) {
-  hub.join(1, "pool");
+TEST_F(RoomHubTest, ChangesAndStopsWatches) {
+  hub.join(1, "pool", demands.of("pool"));
+  hub.watch(1, 3, {.max_rate_hz = 10.0});
+  hub.watch(1, 3, {.max_rate_hz = 20.0});
+  hub.publish("pool", 3, {shared("frame"), {}});
+  EXPECT_EQ(ada->rate_hz, 20.0);
+  EXPECT_EQ(ada->frame_count, 1) << "it watches once";
   for (const double rate_hz :
        {-1.0, 0.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    hub.watch(1, 3, {.max_rate_hz = 20.0});
     hub.watch(1, 3, {.max_rate_hz = rate_hz});
-    EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U) << rate_hz;
+    hub.publish("pool", 3, {shared("frame"), {}});
+    EXPECT_EQ(ada->rate_hz, std::nullopt) << rate_hz;
+    EXPECT_EQ(ada->frame_count, 1) << rate_hz;
   }
 }
 
-TEST_F(RoomHubTest, MovesWatchesToAnotherRoomAndClearsFrames) {
+TEST_F(RoomHubTest, MovesWatchesToAnotherRoom) {
   hub.watch(1, 3, {.max_rate_hz = 30.0});
-  hub.join(1, "pool");
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 1U);
-  hub.join(1, "pool");
-  EXPECT_EQ(ada->clear_count, 0);
-  hub.join(1, "sea");
-  EXPECT_EQ(ada->clear_count, 1);
-  EXPECT_EQ(test::watcherCount(hub, "pool", 3), 0U);
-  EXPECT_EQ(test::watcherCount(hub, "sea", 3), 1U);
+  hub.join(1, "pool", demands.of("pool"));
+  EXPECT_EQ(ada->demand, demands.of("pool"));
+  hub.join(1, "sea", demands.of("sea"));
+  EXPECT_EQ(ada->demand, demands.of("sea"));
+  hub.publish("pool", 3, {shared("frame"), {}});
+  EXPECT_EQ(ada->frame_count, 0);
+  hub.publish("sea", 3, {shared("frame"), {}});
+  EXPECT_EQ(ada->frame_count, 1);
+  hub.remove(1);
+  EXPECT_EQ(ada->demand, nullptr);
 }
 
 TEST_F(RoomHubTest, ForgetsEmptyRooms) {
-  for (int k = 0; k < 100; ++k) hub.join(1, "room " + std::to_string(k));
-  hub.join(2, "room 99");
+  for (int k = 0; k < 100; ++k) hub.join(1, "room " + std::to_string(k), demands.of("room " + std::to_string(k)));
+  hub.join(2, "room 99", demands.of("room 99"));
   EXPECT_EQ(hub.roomCount(), 1U);
   hub.remove(1);
   EXPECT_EQ(hub.roomCount(), 1U);
@@ -215,11 +177,11 @@ TEST_F(RoomHubTest, ForgetsEmptyRooms) {
 }
 
 TEST_F(RoomHubTest, IgnoresSessionsThatAreGone) {
-  hub.join(1, "pool");
+  hub.join(1, "pool", demands.of("pool"));
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.remove(1);
   hub.remove(1);
-  hub.join(1, "pool");
+  hub.join(1, "pool", demands.of("pool"));
   hub.watch(1, 3, {.max_rate_hz = 30.0});
   hub.sendAnswer(1, shared("control"));
   hub.close(1, CloseCode::kNormal, "");

@@ -355,7 +355,7 @@ TEST(Session, CallbacksNeverOverlapAndCloseComesLastWhenManyComeAndGo) {
   EXPECT_EQ(served.application.overlap_count, 0);
   EXPECT_EQ(served.application.after_closed_count, 0);
   EXPECT_EQ(served.server->stats().open_session_count, 0U);
-  EXPECT_EQ(test::watcherCount(served.server->hub(), "pool", 1), 0U);
+  EXPECT_EQ(served.application.demands.watcherCount("pool", 1), 0U);
 }
 
 }  // namespace

@@ -41,13 +41,26 @@ inline bool eventually(const std::function<bool()>& holds) {
   return true;
 }
 
-/// Number of watchers of a stream at any level.
-inline std::size_t watcherCount(const net::Hub& hub, const std::string& room, net::StreamIndex stream) {
-  std::size_t count = 0;
-  const core::StreamDemand demand = hub.demand(room, stream, 0);
-  for (const core::LevelDemand& level : demand) count += level.watcher_count;
-  return count;
-}
+/// The demand tables of rooms, made when they are first asked for. Any thread.
+class DemandTables {
+ public:
+  std::shared_ptr<core::DemandTable> of(const std::string& room) {
+    const std::lock_guard lock(mutex_);
+    auto& table = tables_[room];
+    if (!table) table = std::make_shared<core::DemandTable>();
+    return table;
+  }
+  /// Number of watchers of a stream at any level.
+  std::size_t watcherCount(const std::string& room, net::StreamIndex stream) {
+    std::size_t count = 0;
+    for (const core::LevelDemand& level : of(room)->of(stream, {})) count += level.watcher_count;
+    return count;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::shared_ptr<core::DemandTable>> tables_;
+};
 
 /// Messages: "echo ..." is sent back; "watch L RATE" watches and answers "watching"; "flood N BYTES" sends N control
 /// messages "0 ...", "1 ..."; "throw" throws; "bye" closes with 1000. Rooms: "" and "pool"; each session joins the room
@@ -60,6 +73,7 @@ class TestApplication final : public net::Application {
   };
 
   net::Hub* hub = nullptr;
+  DemandTables demands;
 
   void serverStarts(net::Hub& served_by) override { hub = &served_by; }
 
@@ -77,7 +91,7 @@ class TestApplication final : public net::Application {
       opened_.push_back(session);
       peers_.push_back(peer);
     }
-    hub->join(session, room);
+    hub->join(session, room, demands.of(room));
     hub->sendAnswer(session, shared("hello " + room));
   }
 

@@ -1,10 +1,10 @@
 // Clients behind trusted proxies: who counts as the client, and what a peer that is not a proxy can claim.
 #include <gmock/gmock.h>
 
-#include <spindrift/net/network_text.h>
+#include <spindrift/http/network_text.h>
+#include <spindrift/http/trusted_networks.h>
 
 #include "test_application.h"
-#include "trusted_networks.h"
 
 namespace spindrift::net {
 namespace {

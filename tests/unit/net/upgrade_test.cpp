@@ -39,7 +39,7 @@ TEST(Upgrade, ReportsAWrongVersionAsTheFault) {
   EXPECT_EQ(httpExchange(served.server->port(), upgradeRequest(kKey)).body,
             "The upgrade has no Sec-WebSocket-Version: send version 13.\n");
   EXPECT_EQ(httpExchange(served.server->port(), upgradeRequest("Sec-WebSocket-Version: 8\r\n" + kKey)).body,
-            "Sec-WebSocket-Version 8 is not spoken here: send version 13.\n");
+            "Sec-WebSocket-Version 8 is not supported here: send version 13.\n");
 }
 
 TEST(Upgrade, RefusesSingleHeadersThatAreRepeated) {

@@ -31,7 +31,7 @@ class CommandQueueTest : public testing::Test {
     const auto full = queue.tryPush(std::move(command), at(ms));
     ASSERT_FALSE(full) << *full;
   }
-  /// The command ids of the next batch; empty if there is none.
+  /// The command ids of the next batch; empty without a batch.
   static std::vector<std::uint64_t> next(CommandQueue& queue, const CommandQueue::Allowed& allowed = {}) {
     return idsOf(queue.next(allowed).value_or(CommandQueue::Batch{}));
   }

@@ -19,12 +19,6 @@ using testing::ElementsAre;
 /// A receiver that holds the encoder thread at each published frame until the test lets it continue.
 class HeldOutlet final : public FrameOutlet {
  public:
-  core::StreamDemand demand(const std::string&, codec::Stream stream, std::uint32_t) const override {
-    core::StreamDemand out{};
-    const bool is_wanted = stream.layer == v1::LAYER_SURFACE && stream.packing == v1::PACKING_PLAIN;
-    out[core::indexOf(core::Level::kFull)].watcher_count = is_wanted ? 1 : 0;
-    return out;
-  }
   void publish(const std::string& room, codec::Stream, const codec::EncodedFrame&, const core::FrameLevels&) override {
     std::unique_lock lock(mutex_);
     published_.push_back(room);
@@ -65,18 +59,23 @@ core::FrameView frame() {
 
 struct EncoderThreadTest : testing::Test {
   HeldOutlet outlet;
+  const std::shared_ptr<core::DemandTable> demand = std::make_shared<core::DemandTable>();
   EncoderThread encoder{outlet};
 
+  void SetUp() override {
+    const codec::Stream surface = codec::streamOf(v1::LAYER_SURFACE, v1::PACKING_PLAIN);
+    demand->set(codec::indexOf(surface), this, core::DemandTable::Need{});
+  }
   void TearDown() override { outlet.permit(1'000'000); }
 };
 
 TEST_F(EncoderThreadTest, EveryRoomGetsItsShareWhenTheEncoderIsTooSlow) {
   const std::array<std::string, 3> rooms = {"a", "b", "c"};
   constexpr std::size_t kFrameCount = 30;
-  for (const std::string& room : rooms) encoder.submit(room, frame());
+  for (const std::string& room : rooms) encoder.submit(room, demand, frame());
   for (std::size_t count = 1; count <= kFrameCount; ++count) {
     ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(count));
-    for (const std::string& room : rooms) encoder.submit(room, frame());
+    for (const std::string& room : rooms) encoder.submit(room, demand, frame());
     if (count < kFrameCount) outlet.permit(count);
   }
   std::map<std::string, int> counts;
@@ -89,9 +88,9 @@ TEST_F(EncoderThreadTest, EveryRoomGetsItsShareWhenTheEncoderIsTooSlow) {
 }
 
 TEST_F(EncoderThreadTest, ANewerFrameTakesThePlaceOfItsRoomInTheQueue) {
-  encoder.submit("busy", frame());
+  encoder.submit("busy", demand, frame());
   ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(1));
-  for (const char* room : {"z", "m", "a", "z"}) encoder.submit(room, frame());
+  for (const char* room : {"z", "m", "a", "z"}) encoder.submit(room, demand, frame());
   outlet.permit(4);
   ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(4));
   EXPECT_THAT(outlet.published(), ElementsAre("busy", "z", "m", "a"));
@@ -100,10 +99,10 @@ TEST_F(EncoderThreadTest, ANewerFrameTakesThePlaceOfItsRoomInTheQueue) {
 }
 
 TEST_F(EncoderThreadTest, AForgottenRoomLeavesTheQueue) {
-  encoder.submit("busy", frame());
+  encoder.submit("busy", demand, frame());
   ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(1));
-  encoder.submit("closed", frame());
-  encoder.submit("open", frame());
+  encoder.submit("closed", demand, frame());
+  encoder.submit("open", demand, frame());
   encoder.forget("closed");
   outlet.permit(2);
   ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(2));

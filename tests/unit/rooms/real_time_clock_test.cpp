@@ -6,21 +6,21 @@ namespace spindrift::rooms {
 namespace {
 
 using namespace std::chrono_literals;
-const RealTimeClock::TimePoint kStart{1000s};
+const RealTimeClock::TimePoint kClockStart{1000s};
 
 TEST(RealTimeClock, IsDueOncePerTickAndMeasuresFullSpeedAsOne) {
   RealTimeClock clock(0.01);
-  clock.restart(kStart);
-  EXPECT_EQ(clock.due(), kStart);
+  clock.restart(kClockStart);
+  EXPECT_EQ(clock.due(), kClockStart);
   for (int i = 0; i < 200; ++i) clock.ticked(clock.due());
-  EXPECT_EQ(clock.due(), kStart + 2s);
+  EXPECT_EQ(clock.due(), kClockStart + 2s);
   EXPECT_NEAR(clock.realTimeFactor(), 1.0, 1e-9);
 }
 
 TEST(RealTimeClock, SlowsDownAndSaysSoWhenTicksTakeTooLong) {
   RealTimeClock clock(0.01);
-  clock.restart(kStart);
-  auto now = kStart;
+  clock.restart(kClockStart);
+  auto now = kClockStart;
   for (int i = 0; i < 300; ++i) {
     now += 20ms;
     clock.ticked(now);
@@ -31,14 +31,14 @@ TEST(RealTimeClock, SlowsDownAndSaysSoWhenTicksTakeTooLong) {
 
 TEST(RealTimeClock, CatchesUpAShortHiccup) {
   RealTimeClock clock(0.01);
-  clock.restart(kStart);
-  clock.ticked(kStart + 50ms);
-  EXPECT_EQ(clock.due(), kStart + 10ms);
+  clock.restart(kClockStart);
+  clock.ticked(kClockStart + 50ms);
+  EXPECT_EQ(clock.due(), kClockStart + 10ms);
 }
 
 TEST(RealTimeClock, FollowsTheWantedSpeed) {
   RealTimeClock clock(0.01);
-  clock.restart(kStart);
+  clock.restart(kClockStart);
   clock.setSpeed(2.0);
   for (int i = 0; i < 400; ++i) clock.ticked(clock.due());
   EXPECT_NEAR(clock.realTimeFactor(), 2.0, 1e-6);

@@ -8,48 +8,48 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr double kTick_s = 1.0 / 60.0;
-const RoomTime::TimePoint kStart = RoomTime::TimePoint{} + 1h;
+const RoomTime::TimePoint kRoomStart = RoomTime::TimePoint{} + 1h;
 
 RoomTime running() {
   RoomTime time(kTick_s);
-  time.start(kStart);
+  time.start(kRoomStart);
   return time;
 }
 
 TEST(RoomTime, SleepsTwoSecondsAfterTheLastClientLeftAndWakesWithTheNext) {
   RoomTime time = running();
-  EXPECT_FALSE(time.watchOver(true, kStart + 1s));
-  EXPECT_FALSE(time.watchOver(false, kStart + 2900ms));
+  EXPECT_FALSE(time.watchOver(true, kRoomStart + 1s));
+  EXPECT_FALSE(time.watchOver(false, kRoomStart + 2900ms));
   EXPECT_TRUE(time.runs());
-  EXPECT_TRUE(time.watchOver(false, kStart + 3s)) << "falls asleep now";
-  EXPECT_FALSE(time.watchOver(false, kStart + 4s)) << "told once";
+  EXPECT_TRUE(time.watchOver(false, kRoomStart + 3s)) << "falls asleep now";
+  EXPECT_FALSE(time.watchOver(false, kRoomStart + 4s)) << "told once";
   EXPECT_TRUE(time.isAsleep());
-  EXPECT_FALSE(time.watchOver(true, kStart + 60s));
+  EXPECT_FALSE(time.watchOver(true, kRoomStart + 60s));
   EXPECT_TRUE(time.runs());
-  EXPECT_EQ(time.due(), kStart + 60s) << "without lag";
+  EXPECT_EQ(time.due(), kRoomStart + 60s) << "without lag";
 }
 
 TEST(RoomTime, PausingEndsTheStepsThatWereStillToCome) {
   RoomTime time = running();
-  time.setPaused(true, kStart);
+  time.setPaused(true, kRoomStart);
   time.setSteps(2);
   EXPECT_FALSE(time.stepped());
   EXPECT_TRUE(time.stepped()) << "the last one";
   time.setSteps(5);
-  time.setPaused(true, kStart + 1s);
+  time.setPaused(true, kRoomStart + 1s);
   EXPECT_EQ(time.stepsToCome(), 0u);
 }
 
 TEST(RoomTime, ResumesWithoutLagAfterAPause) {
   RoomTime time = running();
-  time.setPaused(true, kStart);
-  time.setPaused(false, kStart + 1min);
-  EXPECT_EQ(time.due(), kStart + 1min);
+  time.setPaused(true, kRoomStart);
+  time.setPaused(false, kRoomStart + 1min);
+  EXPECT_EQ(time.due(), kRoomStart + 1min);
 }
 
 TEST(RoomTime, MeanFactorLeavesOutTheTimeInWhichTheRoomStoodStill) {
   RoomTime time = running();
-  auto now = kStart;
+  auto now = kRoomStart;
   for (int k = 0; k < 60; ++k) {
     time.beginRound(now);
     time.ticked(now, now + 5ms);
@@ -67,9 +67,9 @@ TEST(RoomTime, OtherWaterKeepsSpeedAndPauseAndStepsWhereTheyContinue) {
   for (const bool keeps_steps : {false, true}) {
     RoomTime time = running();
     time.setSpeed(2.0);
-    time.setPaused(true, kStart);
+    time.setPaused(true, kRoomStart);
     time.setSteps(3);
-    time.restart(2 * kTick_s, keeps_steps, kStart + 1s);
+    time.restart(2 * kTick_s, keeps_steps, kRoomStart + 1s);
     EXPECT_EQ(time.speed(), 2.0);
     EXPECT_TRUE(time.isPaused());
     EXPECT_EQ(time.stepsToCome(), keeps_steps ? 3u : 0u);

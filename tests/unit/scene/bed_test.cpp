@@ -14,20 +14,14 @@
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 
+#include "scene_error.h"
+
 namespace spindrift::scene {
 namespace {
 
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
-
-std::string errorOf(const core::Result<v1::Scene>& scene) {
-  return scene ? "(the scene loaded)" : scene.error().message;
-}
-
-std::string errorOf(const std::string& text) {
-  return errorOf(parseSceneText(text, "pool.textproto"));
-}
 
 TEST(Bed, LoadsRowsAsPointsFromTheSmallestZ) {
   const auto scene =
@@ -75,7 +69,7 @@ TEST(Bed, NeedsARestartToChange) {
 }
 
 TEST(Bed, IsRefusedWithPlaceValueAndRemedy) {
-  EXPECT_THAT(errorOf("particles {}\nbed {}"), HasSubstr("pool.textproto:2:1: bed: needs a wave"));
+  EXPECT_THAT(errorOf("particles {}\nbed {}"), HasSubstr("scene.textproto:2:1: bed: needs a wave"));
   EXPECT_THAT(errorOf("wave {} bed { shapes {} }"), HasSubstr("bed.shapes[0]: has no shape"));
   EXPECT_THAT(errorOf("wave {} bed { grid {} }"), HasSubstr("bed.grid: has no depths"));
   EXPECT_THAT(errorOf("wave {} bed { grid { rows { depth_m: [1, 2] } rows { depth_m: [1] } } }"),

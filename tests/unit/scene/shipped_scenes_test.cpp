@@ -49,6 +49,7 @@ TEST(ShippedScenes, ThatShowOneEventRepeatIt) {
   ASSERT_TRUE(scene) << scene.error().message;
   EXPECT_GT(scene->restart_after_s(), 0.0);
   for (const auto& entry : std::filesystem::directory_iterator(sceneFolder())) {
+    if (entry.path().extension() != ".textproto") continue;
     const auto shipped = loadSceneFile(entry.path());
     ASSERT_TRUE(shipped) << shipped.error().message;
     for (const v1::TimedEvent& event : shipped->events()) {

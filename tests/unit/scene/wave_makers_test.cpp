@@ -12,6 +12,8 @@
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 
+#include "scene_error.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -20,14 +22,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 const std::string kFlume = "wave { boundary_minus_x: WAVE_BOUNDARY_REFLECT boundary_plus_x: WAVE_BOUNDARY_REFLECT } ";
-
-std::string errorOf(const core::Result<v1::Scene>& scene) {
-  return scene ? "(the scene loaded)" : scene.error().message;
-}
-
-std::string errorOf(const std::string& text) {
-  return errorOf(parseSceneText(text, "flume.textproto"));
-}
 
 TEST(WaveMakers, ReachCoreWithTheirWavesAndDefaults) {
   const auto scene = parseSceneText(
@@ -64,7 +58,7 @@ TEST(WaveMakers, AreRefusedWithPlaceValueAndRemedy) {
   EXPECT_THAT(errorOf(kFlume + "wave_makers { side: SIDE_DIRECTION regular {} }"),
               HasSubstr("wave_makers[0].side: SIDE_DIRECTION is for effects"));
   EXPECT_THAT(errorOf(kFlume + "wave_makers { regular {} } wave_makers { solitary {} }"),
-              HasSubstr("wave_makers[1].side: SIDE_PLUS_X has wave_makers[0] already; one a side"));
+              HasSubstr("wave_makers[1].side: SIDE_PLUS_X has wave_makers[0] already; one per side"));
   EXPECT_THAT(errorOf(kFlume + "wave_makers { solitary { height_m: 1.2 } }"),
               HasSubstr("wave_makers[0].solitary.height_m: 1.2 m is more than 0.78 of the water's depth of 1.5 m"));
   EXPECT_THAT(errorOf(kFlume + "wave_makers { irregular { significant_height_m: 0.7 } }"),

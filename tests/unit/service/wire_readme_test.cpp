@@ -100,7 +100,7 @@ class WireReadme : public testing::Test {
   std::string text_;
 };
 
-TEST_F(WireReadme, FirstExchangeHasTheMessagesOfTheClientAsTheServerReadsThem) {
+TEST_F(WireReadme, FirstExchangeParsesAsTheServerDoes) {
   v1::ClientMessage hello;
   hello.mutable_hello()->mutable_version()->set_major(wire::kWireMajor);
   hello.mutable_hello()->mutable_version()->set_minor(wire::kWireMinor);
@@ -157,7 +157,7 @@ TEST_F(WireReadme, ShowsTheAnswerOfTheRestInterfaceWithItsStrings) {
   }
 }
 
-TEST_F(WireReadme, ListsEveryReasonOfARejectionWithItsHttpStatus) {
+TEST_F(WireReadme, ListsEveryReasonWithItsHttpStatus) {
   const auto rows = rowsOf("| `RejectReason` | HTTP status | when |");
   EXPECT_THAT(namesOf(rows), UnorderedElementsAreArray(valuesOf(*v1::RejectReason_descriptor(), "REJECT_REASON_")));
   for (const std::string& row : rows) {
@@ -202,7 +202,7 @@ TEST_F(WireReadme, ListsEveryCloseCodeThatTheServerSends) {
   }
 }
 
-TEST_F(WireReadme, HasASectionForEveryCodecAndNamesEveryFieldThatAClientNeeds) {
+TEST_F(WireReadme, DescribesEveryCodecAndField) {
   const auto* codec = v1::LayerFrame::descriptor()->FindOneofByName("codec");
   for (int i = 0; i < codec->field_count(); ++i) {
     EXPECT_THAT(text_, HasSubstr("\n### `" + codec->field(i)->name() + "`\n"));

@@ -22,7 +22,7 @@ constexpr double kSide_m = 20.0;
 constexpr double kDepth_m = 1.5;
 constexpr double kCell_m = kSide_m / kCells;
 
-/// As in shaders/shared/boats.h, of the boat in one place.
+/// As in shaders/shared/boats.h, of the boat in one slot.
 struct BoatState {
   double x_m, y_m, z_m, heading, pitch, roll, forward_mps, sideways_mps, yaw_rate, push_mps2;
 };
@@ -42,7 +42,7 @@ class BoatMotion : public OnDevice {
     scene.wave->side_m = kSide_m;
     scene.wave->depth_m = kDepth_m;
     scene.wave->damping_per_s = 0.0;
-    scene.wave->setBoundaries(sides);
+    setBoundaries(*scene.wave, sides);
     scene.wave->dispersion = dispersion;
     scene.boats.emplace();
     return scene;
@@ -81,7 +81,7 @@ class BoatMotion : public OnDevice {
     }
   }
 
-  /// Pressure of a settled hull at a place, across periodic sides, too. [m]
+  /// Pressure of a settled hull at a position, across periodic sides, too. [m]
   static double headAt(const core::Boat& boat, const BoatState& b, double x_m, double z_m) {
     const double dx_m = std::remainder(x_m - b.x_m, kSide_m);
     const double dz_m = std::remainder(z_m - b.z_m, kSide_m);
@@ -108,7 +108,7 @@ class BoatMotion : public OnDevice {
     return {b.x_m, b.y_m, b.z_m, b.heading, b.pitch, b.roll};
   }
 
-  /// Root mean square over the places, and over the angles, of a - b.
+  /// Root mean square over the positions, and over the angles, of a - b.
   static std::array<double, 2> distance(const std::array<double, 6>& a, const std::array<double, 6>& b) {
     std::array<double, 2> sum{};
     for (std::size_t k = 0; k < 6; ++k) sum[k / 3] += (a[k] - b[k]) * (a[k] - b[k]);
@@ -221,7 +221,7 @@ TEST_F(BoatMotion, WavesGainTheEnergyThatTheirResistanceTakesFromTheBoat) {
     // leapfrog conserves.
     std::vector<double> impulse_m2ps(std::size_t{kCells} * kCells, 0.0);
     std::vector<double> energy,
-        work;  // over the water's density [m^5/s^2]: of the waves and of the hull's place in them
+        work;  // over the water's density [m^5/s^2]: of the waves and of the hull's position in them
     StateCopy state = sim.copyState();
     for (int tick = 0; tick < 270; ++tick) {
       const BoatState b = boatOf(state);
@@ -243,7 +243,7 @@ TEST_F(BoatMotion, WavesGainTheEnergyThatTheirResistanceTakesFromTheBoat) {
       const double before_mps2 = b.push_mps2;
       sim.step();
       state = sim.copyState();
-      // The push belongs to the time of the place, the speed to half a tick later.
+      // The push belongs to the time of the position, the speed to half a tick later.
       work.push_back(-volume_m3 * 0.5 * (before_mps2 + boatOf(state).push_mps2) * b.forward_mps * dt_s);
     }
     double done = 0.0;

@@ -22,7 +22,7 @@ core::Scene boatScene() {
   scene.wave->resolution_count = 128;
   scene.wave->side_m = 20.0;
   scene.wave->depth_m = 1.5;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.boats.emplace();
   return scene;
 }
@@ -46,7 +46,7 @@ TEST_F(BoatsOnDevice, FloatsAtTheDraughtOfItsDensity) {
     scene.wave->damping_per_s = 1.0;
     scene.boats->boats = {core::Boat{.length_m = 3.0, .beam_m = 1.2, .height_m = 0.8, .density_ratio = density}};
     WaterSim& sim = make(scene);
-    for (int i = 0; i < 1200; ++i) sim.step();
+    for (int i = 0; i < 700; ++i) sim.step();
     const BoatPose b = pose(sim);
     const double keel_m = b.y_m - 0.4;
     // The walls keep the displaced water, so the level away from the hull is a little higher.
@@ -72,7 +72,7 @@ TEST_F(BoatsOnDevice, PressesADentOfItsOwnVolumeIntoTheWater) {
 
 TEST_F(BoatsOnDevice, ReachesItsFullSpeedAndTurnsWithItsRudder) {
   core::Scene scene = boatScene();
-  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
+  setBoundaries(*scene.wave, core::WaveBoundary::kPeriodic);
   scene.wave->damping_per_s = 0.5;
   scene.boats->boats = {core::Boat{.max_speed_mps = 2.0, .throttle_ratio = 1.0}};
   WaterSim& sim = make(scene);

@@ -15,7 +15,7 @@ namespace spindrift::sim {
 namespace {
 
 constexpr double kAmplitude_m = 0.05;
-constexpr double kSide_m = 12.0;
+constexpr double kPoolSide_m = 12.0;
 
 /// Walls all round; the lowest mode along x, from rest.
 core::Scene seicheScene() {
@@ -23,16 +23,16 @@ core::Scene seicheScene() {
   scene.name = "seiche";
   scene.wave.emplace();
   scene.wave->resolution_count = 64;
-  scene.wave->side_m = kSide_m;
+  scene.wave->side_m = kPoolSide_m;
   scene.wave->depth_m = 1.5;
   scene.wave->damping_per_s = 0.0;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   return scene;
 }
 
 class GaugesOnDevice : public OnDevice {
  protected:
-  static double wavenumber_radpm() { return std::numbers::pi / kSide_m; }
+  static double wavenumber_radpm() { return std::numbers::pi / kPoolSide_m; }
 
   /// The mode at rest: the flow is that of half a step before.
   static void startSeiche(WaterSim& sim) {
@@ -71,7 +71,7 @@ TEST_F(GaugesOnDevice, ReadTheElevationAndVelocityOfAStandingWave) {
   const double omega_radps = k_radpm * std::sqrt(scene.gravity_mps2 * scene.wave->depth_m);
   const double speed_mps = kAmplitude_m * scene.gravity_mps2 * k_radpm / omega_radps;
   for (std::size_t g = 0; g < scene.gauges.size(); ++g) {
-    const double from_wall_m = scene.gauges[g].x_m + kSide_m / 2;
+    const double from_wall_m = scene.gauges[g].x_m + kPoolSide_m / 2;
     const GaugeHistory::Series series = sim.gauges()->series(g);
     double worst_eta_m = 0.0, worst_u_mps = 0.0, worst_w_mps = 0.0;
     for (std::size_t k = 0; k < series.time_s.size(); ++k) {

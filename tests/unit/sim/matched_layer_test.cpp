@@ -26,7 +26,7 @@ core::Scene openWater(core::Dispersion dispersion) {
   scene.wave->depth_m = 0.9;
   scene.wave->damping_per_s = 0.0;
   scene.wave->sponge_width_m = 2.0;
-  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
   scene.wave->absorption = core::Absorption::kPml;
   scene.wave->dispersion = dispersion;
   return scene;
@@ -123,7 +123,7 @@ TEST_F(MatchedLayerOnDevice, AgreesWithTheReferenceAfterManySteps) {
     const DispersionReference operator_f(layOutDispersion(*sim.derived().wave, basin));
     const StateCopy start = stir(sim, basin, 0.02);
     ReferenceWater water{start.elevation_m, std::vector<double>(start.flow_m2ps.size()), {}};
-    for (int tick = 0; tick < 100; ++tick) {
+    for (int tick = 0; tick < 50; ++tick) {
       sim.step();
       for (std::uint32_t step = 0; step < sim.derived().wave->substeps_count; ++step)
         referenceFlowStep(scene, sim.derived(), bed, water,
@@ -149,7 +149,7 @@ TEST_F(MatchedLayerOnDevice, KeepsTheLedgerToTheUnitThroughSplashesAndBoats) {
     WaterSim& sim = make(scene);
     ASSERT_TRUE(sim.start(core::Splash{-4.8, 4.8, 1.0, 0.5, 0.2}));
     ASSERT_TRUE(sim.start(core::Splash{1.0, 0.0, 1.5, 0.6, 0.2}));
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < 150; ++i) {
       sim.step();
       ASSERT_EQ(sim.health().surface_units + sim.health().outflow_units, 0) << "tick " << sim.health().tick;
     }
@@ -160,9 +160,9 @@ TEST_F(MatchedLayerOnDevice, KeepsTheLedgerToTheUnitThroughSplashesAndBoats) {
 
 TEST_F(MatchedLayerOnDevice, ALevelSurfaceStaysStillToTheUnit) {
   WaterSim& sim = make(roughWater(core::Dispersion::kAiry));
-  const std::uint64_t before = sim.stateHash();
+  const StateCopy before = sim.copyState();
   for (int k = 0; k < 200; ++k) sim.step();
-  EXPECT_EQ(sim.stateHash(), before);
+  EXPECT_TRUE(sim.copyState() == before);
 }
 
 TEST_F(MatchedLayerOnDevice, NoiseLosesEnergyOverRocksBeachesAndCornersAlsoWhereWavesSteepen) {
@@ -206,10 +206,10 @@ TEST_F(MatchedLayerOnDevice, ACopyOfTheStateBringsTheLayerBack) {
   const StateCopy copy = sim.copyState();
   EXPECT_TRUE(std::ranges::any_of(copy.elevation_x_units, [](std::int32_t units) { return units != 0; }));
   for (int k = 0; k < 30; ++k) sim.step();
-  const std::uint64_t wanted = sim.stateHash();
+  const StateCopy wanted = sim.copyState();
   sim.setState(copy);
   for (int k = 0; k < 30; ++k) sim.step();
-  EXPECT_EQ(sim.stateHash(), wanted);
+  EXPECT_TRUE(sim.copyState() == wanted);
   sim.reset();
   EXPECT_TRUE(std::ranges::all_of(sim.copyState().elevation_x_units, [](std::int32_t units) { return units == 0; }));
 }
@@ -219,7 +219,7 @@ TEST_F(MatchedLayerOnDevice, WaterWithoutAbsorbingSidesIsUntouched) {
     std::uint64_t hash[2];
     for (int k = 0; k < 2; ++k) {
       core::Scene scene = openWater(core::Dispersion::kAiry);
-      scene.wave->setBoundaries(sides);
+      setBoundaries(*scene.wave, sides);
       scene.wave->absorption = k == 0 ? core::Absorption::kSponge : core::Absorption::kPml;
       WaterSim& sim = make(scene);
       ASSERT_TRUE(sim.start(core::Splash{1.0, 0.0, 1.0, 0.3, 0.05}));

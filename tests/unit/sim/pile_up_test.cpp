@@ -1,4 +1,4 @@
-// Particles in one place or without a finite position: a step stays bounded, and the watchdog is informed.
+// Particles at one position or without a finite position: a step stays bounded, and the watchdog is informed.
 #include <cmath>
 #include <limits>
 

@@ -84,10 +84,11 @@ TEST_F(SceneChange, ChangesAndAResetGiveTheStateOfAFreshStart) {
   ASSERT_TRUE(sim.setScene(scene));
   sim.reset();
   for (int i = 0; i < 30; ++i) sim.step();
-  const auto changed = sim.stateHash();
+  const StateCopy changed = sim.copyState();
   WaterSim& fresh = make(scene);
   for (int i = 0; i < 30; ++i) fresh.step();
-  EXPECT_EQ(changed, fresh.stateHash());
+  // Not the hash: the layout of the particles stays that of the first values (SavedState::particles).
+  EXPECT_TRUE(changed == fresh.copyState());
 }
 
 TEST_F(SceneChange, PreparationOnAnotherThreadGivesTheSameAsOneCall) {

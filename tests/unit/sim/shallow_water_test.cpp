@@ -31,7 +31,7 @@ core::Scene shore(bool disperses) {
   wave.damping_per_s = 0.0;
   wave.bulk = core::Bulk::kNonlinear;
   wave.dispersion = disperses ? core::Dispersion::kAiry : core::Dispersion::kNone;
-  wave.setBoundaries(WaveBoundary::kReflect);
+  setBoundaries(wave, WaveBoundary::kReflect);
   scene.beaches = {core::Beach{core::Side::kPlusX, 12.0, -1.0}};
   scene.obstacles = {
       core::Rock{.x_m = -5, .z_m = 6, .radius_m = 2.0, .height_m = 0.6},

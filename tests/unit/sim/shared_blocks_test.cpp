@@ -94,7 +94,7 @@ TEST_F(SharedBlocks, BoatControlsHaveTheLayoutOfTheDriver) {
 
 TEST_F(SharedBlocks, SeaUniformsHaveTheLayoutOfTheDriver) {
   core::Scene scene = smallScene();
-  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
   const gpu::BlockLayout sea = block("wave/incident_sea.comp", "SeaUniforms", scene);
   EXPECT_EQ(sea.binding, static_cast<std::uint32_t>(SEA_UNIFORMS));
   EXPECT_EQ(sea.size_bytes, sizeof(shared::SeaUniforms));
@@ -108,7 +108,7 @@ TEST_F(SharedBlocks, SeaUniformsHaveTheLayoutOfTheDriver) {
 
 TEST_F(SharedBlocks, MakerUniformsHaveTheLayoutOfTheDriver) {
   core::Scene scene = smallScene();
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.wave_makers = {core::WaveMaker{}};
   const gpu::BlockLayout maker = block("wave/maker.comp", "MakerUniforms", scene);
   EXPECT_EQ(maker.binding, static_cast<std::uint32_t>(MAKER_UNIFORMS));

@@ -273,9 +273,9 @@ TEST_F(Variants, EveryMixOfPartsRuns) {
         const bool has_foam = has_boats != (ground == Ground::kPeriodic);
         core::Scene scene = smallScene();
         scene.coupling->mode = mode;
-        if (ground == Ground::kSponge) scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+        if (ground == Ground::kSponge) setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
         if (ground == Ground::kRockAndBeach) {
-          scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+          setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
           scene.wave->steepening_ratio = 0.5;
           scene.obstacles.emplace_back(core::Rock{.x_m = 2.0, .z_m = 2.0, .radius_m = 0.8, .height_m = 0.5});
           scene.beaches.push_back({.side = core::Side::kMinusX, .width_m = 2.0, .shore_depth_m = 0.0});

@@ -33,7 +33,7 @@ core::Scene basinOf(Bulk bulk, Dispersion dispersion) {
   wave.damping_per_s = 0.0;
   wave.bulk = bulk;
   wave.dispersion = dispersion;
-  wave.setBoundaries(WaveBoundary::kReflect);
+  setBoundaries(wave, WaveBoundary::kReflect);
   return scene;
 }
 

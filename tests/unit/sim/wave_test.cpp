@@ -63,7 +63,7 @@ TEST_F(WaveOnDevice, AgreesWithTheReferenceStepForEachStencilAndBoundary) {
     for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
       core::Scene scene = waveScene();
       scene.wave->stencil = stencil;
-      scene.wave->setBoundaries(boundary);
+      setBoundaries(*scene.wave, boundary);
       scene.wave->damping_per_s = 0.7;
       WaterSim& sim = make(scene);
       ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
@@ -112,7 +112,7 @@ TEST_F(WaveOnDevice, ASplashPushesDownByItsDepthThenRingsOutAndKeepsTheVolume) {
 TEST_F(WaveOnDevice, ManySplashesDisplaceTheSumOfWhatEachDisplacesAlone) {
   for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
     core::Scene scene = waveScene();
-    scene.wave->setBoundaries(boundary);
+    setBoundaries(*scene.wave, boundary);
     // Surface at rest, plus these splashes in one step; in units, which the device adds without rounding.
     const auto displaced = [&](const std::vector<core::Splash>& splashes) {
       WaterSim& sim = make(scene);
@@ -145,7 +145,7 @@ TEST_F(WaveOnDevice, WhereWavesDisperseEffectsMoveNothingToWhereTheSurfaceStands
   for (const auto boundary : {core::WaveBoundary::kPeriodic, core::WaveBoundary::kReflect}) {
     core::Scene scene = waveScene(64);
     scene.wave->dispersion = core::Dispersion::kAiry;
-    scene.wave->setBoundaries(boundary);
+    setBoundaries(*scene.wave, boundary);
     // What a splash and a crest change in one step, at a level of so many depths. [units]
     const auto changed = [&](double level_depths) {
       WaterSim& sim = make(scene);
@@ -196,7 +196,7 @@ TEST_F(WaveOnDevice, RemovedWaterTakesItsMotionAndAddedWaterIsAtRest) {
 
 TEST_F(WaveOnDevice, ACrestTravelsOneWayAtTheWaveSpeed) {
   core::Scene scene = waveScene(96);
-  scene.wave->setBoundaries(core::WaveBoundary::kPeriodic);
+  setBoundaries(*scene.wave, core::WaveBoundary::kPeriodic);
   WaterSim& sim = make(scene);
   ASSERT_TRUE(sim.start(core::BreakingWave{core::Side::kMinusX, 0.3, 1.5, 0.2}));
   const auto crestAt = [&] {
@@ -250,7 +250,7 @@ core::Scene openScene(std::uint32_t n, double side_m, double sponge_width_m, cor
   scene.wave->side_m = side_m;
   scene.wave->sponge_width_m = sponge_width_m;
   scene.wave->stencil = stencil;
-  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
   return scene;
 }
 
@@ -286,7 +286,7 @@ core::Scene roughScene(core::Stencil stencil) {
   core::Scene scene = waveScene(64);
   scene.wave->stencil = stencil;
   scene.wave->damping_per_s = 0.3;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.wave->boundary_minus_x = core::WaveBoundary::kAbsorb;
   scene.wave->sponge_width_m = 1.5;
   scene.obstacles = {core::Rock{1.0, 1.0, 0.7, 0.5}, core::Breakwater{-1.0, -2.0, 3.0, 0.5, 30.0, 0.5}};

@@ -15,9 +15,9 @@ namespace {
 
 using testing::HasSubstr;
 
-TEST(Absorption, IsAMatchedLayerWithTheFivePointStencilUnlessTheSceneNamesIt) {
+TEST(Absorption, DefaultFollowsTheStencil) {
   core::Scene scene = smallScene();
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.wave->dispersion = core::Dispersion::kAiry;
   EXPECT_FALSE(hasMatchedLayer(scene)) << "no side absorbs";
   scene.wave->boundary_plus_x = core::WaveBoundary::kAbsorb;
@@ -30,7 +30,7 @@ TEST(Absorption, IsAMatchedLayerWithTheFivePointStencilUnlessTheSceneNamesIt) {
   const std::uint64_t cells = std::uint64_t{scene.wave->resolution_count} * scene.wave->resolution_count;
   EXPECT_EQ(matched->device_bytes, sponge->device_bytes + 4 * cells);
   scene.wave->dispersion = core::Dispersion::kNone;
-  scene.wave->absorption = core::Absorption::kByStencil;
+  scene.wave->absorption.reset();
   EXPECT_TRUE(hasMatchedLayer(scene)) << "without dispersion, too";
   scene.wave->stencil = core::Stencil::kNinePoint;
   EXPECT_FALSE(hasMatchedLayer(scene));
@@ -45,7 +45,7 @@ TEST(Absorption, HasMatchedLayersAlongAbsorbingSidesOnly) {
   scene.wave->resolution_count = 32;
   scene.wave->side_m = 16.0;
   scene.wave->sponge_width_m = 4.0;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.wave->boundary_plus_x = scene.wave->boundary_minus_z = core::WaveBoundary::kAbsorb;
   scene.wave->absorption = core::Absorption::kPml;
   const auto ratesOf = [&](std::size_t x, std::size_t z) {

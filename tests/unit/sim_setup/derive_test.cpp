@@ -66,7 +66,7 @@ TEST(Derive, CalibratesMassSoThatTheLatticeHasRestDensity) {
   }
 }
 
-TEST(Derive, RestingLayersLieAboveEachOtherAndCloserThanTheLattice) {
+TEST(Derive, RestingLayersLieCloserThanTheLattice) {
   const auto d = derive(smallScene());
   ASSERT_TRUE(d);
   const ParticleLayout& p = *d->particles;
@@ -87,7 +87,7 @@ TEST(Derive, LayersWithoutGravityLieAsInTheLattice) {
   }
 }
 
-TEST(Derive, RefusesAFixedStepThatBreaksARuleAndNamesFieldValueAndBound) {
+TEST(Derive, RefusesAFixedStepThatBreaksARule) {
   core::Scene scene = smallScene();
   scene.fixed_substeps_count = 1;
   scene.particles->sound_speed_mps = 100.0;
@@ -193,7 +193,7 @@ TEST(Derive, TilesOblongPeriodicBoxesOrSaysWhyNot) {
   EXPECT_THAT(refused.error().message, HasSubstr("particles.box_width_m"));
 }
 
-TEST(Derive, TaitWaterTakesSmallerStepsForItsFasterSound) {
+TEST(Derive, TaitWaterTakesSmallerSteps) {
   core::Scene scene = smallScene();
   const auto linear = derive(scene);
   scene.particles->equation_of_state = core::EquationOfState::kTait;
@@ -220,7 +220,7 @@ TEST(Derive, CountsUpToAMillionFitTheirDispatches) {
   EXPECT_GE(d->device_bytes, std::uint64_t{d->particles->count} * 7 * 16);
 }
 
-TEST(Derive, APoolOfAMillionParticlesHasRoomAtTheDefaultHeadroom) {
+TEST(Derive, MillionParticlesFitTheDefaultHeadroom) {
   core::Scene scene;
   scene.wave.emplace();
   scene.particles.emplace();
@@ -327,7 +327,7 @@ core::Scene weightlessScene() {
   return scene;
 }
 
-TEST(Derive, ABoxPeriodicInHeightIsAsHighAsItsLayers) {
+TEST(Derive, PeriodicBoxIsAsHighAsItsLayers) {
   core::Scene scene = weightlessScene();
   const auto whole = derive(scene);
   ASSERT_TRUE(whole) << whole.error().message;
@@ -339,7 +339,7 @@ TEST(Derive, ABoxPeriodicInHeightIsAsHighAsItsLayers) {
   EXPECT_NEAR(fuller->particles->mass_kg, 1.1 * l.mass_kg, 1e-9 * l.mass_kg);
 }
 
-TEST(Derive, ABoxPeriodicInHeightRefusesPartsThatNeedAFloor) {
+TEST(Derive, PeriodicBoxRefusesPartsThatNeedAFloor) {
   const auto refuses = [](const core::Scene& scene, const char* field) {
     const auto derived = derive(scene);
     ASSERT_FALSE(derived) << field;

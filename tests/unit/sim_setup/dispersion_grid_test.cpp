@@ -11,20 +11,20 @@
 namespace spindrift::sim {
 namespace {
 
-constexpr int kSide = 32;
+constexpr int kGridSide = 32;
 
 /// Water of depth 1 between four walls, dry where `is_dry` says so.
 DispersionGrid basinWith(const std::function<bool(int x, int z)>& is_dry) {
-  DispersionGrid grid({kSide, kSide}, {kSide, kSide});
-  for (int z = 0; z < kSide; ++z) {
-    for (int x = 0; x < kSide; ++x) {
+  DispersionGrid grid({kGridSide, kGridSide}, {kGridSide, kGridSide});
+  for (int z = 0; z < kGridSide; ++z) {
+    for (int x = 0; x < kGridSide; ++x) {
       if (is_dry(x, z)) continue;
       const std::size_t i = grid.at(x, z);
       grid.wet[i] = 1.0;
       for (std::size_t axis = 0; axis < 2; ++axis) {
         const int next_x = axis == 0 ? x + 1 : x;
         const int next_z = axis == 0 ? z : z + 1;
-        if (next_x == kSide || next_z == kSide || is_dry(next_x, next_z)) continue;
+        if (next_x == kGridSide || next_z == kGridSide || is_dry(next_x, next_z)) continue;
         grid.open[i][axis] = grid.resistance_pm[i][axis] = 1.0;
       }
     }
@@ -65,7 +65,7 @@ TEST(DispersionGrid, StandsForEveryWetCellBesideAStraightWall) {
   }
 }
 
-TEST(DispersionGrid, SpreadsACoarseFluxEvenlyOverTheCellsThatACoarseCellStandsFor) {
+TEST(DispersionGrid, SpreadsACoarseFluxEvenly) {
   for (const int column : {8, 9, 10, 11, 13}) {
     const Grids all(withWallAt(column));
     for (std::size_t k = 0; k < all.coarsened.size(); ++k) {
@@ -121,7 +121,7 @@ TEST(DispersionGrid, KeepsTheResistancesOfWaterWithoutWalls) {
   for (std::size_t k = 0; k < before.size(); ++k) EXPECT_EQ(all.grids[k].resistance_pm, before[k].resistance_pm);
 }
 
-TEST(DispersionGrid, LetsMorePassTheEndOfAWallAndLeavesTheRestAlone) {
+TEST(DispersionGrid, LowersResistanceAtTheEndOfAWall) {
   Grids all(withWallAt(16));
   const std::vector<DispersionGrid> before = all.grids;
   fitResistances(all.grids, all.owners);

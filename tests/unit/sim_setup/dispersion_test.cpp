@@ -20,7 +20,7 @@ core::Scene sea(std::uint32_t n, double cell_m, double depth_m, core::WaveBounda
   scene.wave->side_m = n * cell_m;
   scene.wave->depth_m = depth_m;
   scene.wave->dispersion = core::Dispersion::kAiry;
-  scene.wave->setBoundaries(sides);
+  setBoundaries(*scene.wave, sides);
   return scene;
 }
 
@@ -152,7 +152,7 @@ TEST(Dispersion, WavesAlongAChannelOverAnUnevenBedAreAsFastAsOverALevelOne) {
   }
 }
 
-TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
+TEST(Dispersion, IsSymmetricAndPositiveOverAnyBed) {
   const Laid laid(harborLike());
   for (std::uint32_t seed = 1; seed < 4; ++seed) {
     const auto a = noise(laid.basin.depth_m.size(), seed);
@@ -162,7 +162,7 @@ TEST(Dispersion, IsSymmetricAndPositiveOverAnyBedAndBesideAnyWall) {
   }
 }
 
-TEST(Dispersion, IsSymmetricAndPositiveBesideThinWallsThatDivideBlocksOfAllGrids) {
+TEST(Dispersion, IsSymmetricAndPositiveBesideThinWalls) {
   core::Scene scene = sea(96, 0.1, 4.0, core::WaveBoundary::kReflect);
   for (const int column : {23, 37, 50, 71}) {
     scene.obstacles.emplace_back(core::Breakwater{.x_m = (column + 0.5) * 0.1 - 4.8,
@@ -180,7 +180,7 @@ TEST(Dispersion, IsSymmetricAndPositiveBesideThinWallsThatDivideBlocksOfAllGrids
   }
 }
 
-TEST(Dispersion, LeavesALevelSurfaceAloneOnEachSideOfAWall) {
+TEST(Dispersion, LeavesLevelWaterBesideAWallAlone) {
   core::Scene scene = sea(64, 0.125, 1.2, core::WaveBoundary::kReflect);
   scene.obstacles.emplace_back(core::Breakwater{.x_m = 0.3, .length_m = 100, .width_m = 0.125, .heading_deg = 90});
   const Laid laid(scene);
@@ -257,7 +257,7 @@ TEST(Dispersion, HasTheSymbolOfTheReference) {
   }
 }
 
-TEST(Dispersion, HasTheGroupSpeedsOfAiryWavesInEveryDirection) {
+TEST(Dispersion, HasAirysGroupSpeedsInEveryDirection) {
   for (const double depth_cells : depthsCells()) {
     if (depth_cells < 0.9 || depth_cells > 45.0) continue;
     const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), kGridCount);
@@ -285,7 +285,7 @@ TEST(Dispersion, HasTheGroupSpeedsOfAiryWavesInEveryDirection) {
   }
 }
 
-TEST(Dispersion, KeepsBothStandingWavesOfTheLengthOfABlockNearAirysFrequency) {
+TEST(Dispersion, KeepsWavesOfABlockNearAirysFrequency) {
   for (const double depth_cells : depthsCells()) {
     if (depth_cells < 1.5 || depth_cells > 45.0) continue;
     const DispersionSymbol symbol(depth_cells, polesAt(depth_cells), kGridCount);

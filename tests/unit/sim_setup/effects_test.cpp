@@ -48,7 +48,7 @@ TEST(Effects, RefuseMoreThanTheirBound) {
   EXPECT_TRUE(effects.start(core::BreakingWave{.side = core::Side::kMinusX}, 0)) << "waves have their own places";
 }
 
-TEST(Effects, AShortCrestIsAsSlowAsTheWavesThatItConsistsOf) {
+TEST(Effects, ShortCrestHasTheSpeedOfItsWaves) {
   EffectDomain domain{.side_x_m = 40, .side_z_m = 40, .cell_m = 0.1, .speed_mps = std::sqrt(9.81 * 2), .dt_s = 0.01};
   const auto speed = [&](double length_m) {
     Effects effects;
@@ -64,7 +64,7 @@ TEST(Effects, AShortCrestIsAsSlowAsTheWavesThatItConsistsOf) {
   EXPECT_NEAR(speed(60.0) / domain.speed_mps, 1.0, 1e-3) << "long waves do not disperse";
 }
 
-TEST(Effects, ACrestStartsAtItsSideAndTravelsInwards) {
+TEST(Effects, CrestTravelsInwardsFromItsSide) {
   const WaveLayout wave = layout();
   Effects effects;
   ASSERT_TRUE(effects.start(core::BreakingWave{core::Side::kPlusX, 0.5, 1.0, 1.0}, 0.0));

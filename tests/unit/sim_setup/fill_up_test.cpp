@@ -21,7 +21,7 @@ TEST(FillUp, DoesNotChangeWaterAboveItsBed) {
   EXPECT_EQ(eta, before);
 }
 
-TEST(FillUp, RaisesCellsToTheirBedWithWaterOfTheOthersToTheLastUnit) {
+TEST(FillUp, RaisesCellsToTheirBedAndKeepsTheVolume) {
   std::vector<std::int64_t> bed(1000, 1'000'003);
   std::vector<std::int32_t> eta(1000);
   for (std::size_t i = 0; i < eta.size(); ++i) eta[i] = static_cast<std::int32_t>(i * 7919 % 4'000'000) - 2'000'000;
@@ -33,7 +33,7 @@ TEST(FillUp, RaisesCellsToTheirBedWithWaterOfTheOthersToTheLastUnit) {
   for (const std::int32_t units : eta) EXPECT_GE(units, -1'000'003);
 }
 
-TEST(FillUp, TakesMissingWaterFromOutsideOrLeavesCellsBelowTheirBed) {
+TEST(FillUp, TakesMissingWaterFromOutside) {
   const std::vector<std::int64_t> bed = {100, 100};
   std::vector<std::int32_t> eta = {-350, -20};  // 250 missing, 80 available
   std::vector<std::int32_t> closed = eta;

@@ -45,7 +45,7 @@ TEST(FloorAndWalls, AFlatFloorContinuesAnEvenShearThroughZero) {
   }
 }
 
-TEST(FloorAndWalls, PositionBasedWaterOnAWaveKeepsItsLowestLayerInTheLattice) {
+TEST(FloorAndWalls, LowestLayerStaysInTheLattice) {
   core::Scene scene = smallScene();
   const auto gapRatio = [&] {
     const auto d = derive(scene);

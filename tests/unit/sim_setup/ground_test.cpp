@@ -26,7 +26,7 @@ core::Scene waterOf(double side_m, double depth_m) {
   scene.wave->resolution_count = 64;
   scene.wave->side_m = side_m;
   scene.wave->depth_m = depth_m;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   return scene;
 }
 
@@ -51,7 +51,7 @@ TEST(Ground, IsTheDepthOfTheWaterWithoutBeachesAndBed) {
   EXPECT_FALSE(shoreSlope(scene, 3, -7));
 }
 
-TEST(Ground, OfABeachGoesOnAboveTheWaterUpToTheSide) {
+TEST(Ground, BeachRisesAboveTheWaterToTheSide) {
   core::Scene scene = waterOf(20, 2.0);
   scene.beaches = {{.side = core::Side::kPlusX, .width_m = 8, .shore_depth_m = -2.0}};
   EXPECT_NEAR(groundDepth(scene, 2, 0), 2.0, kExact);
@@ -61,7 +61,7 @@ TEST(Ground, OfABeachGoesOnAboveTheWaterUpToTheSide) {
   EXPECT_EQ(bedDepth(scene, 8, 0), 0.0) << "linear waves know no land height";
 }
 
-TEST(Ground, OfAGridIsBilinearBetweenItsPoints) {
+TEST(Ground, GridIsBilinear) {
   core::Scene scene = waterOf(10, 9.0);
   scene.bed.emplace();
   scene.bed->grid = gridOf(3, 2, {1, 2, 4, 5, 7, -3});
@@ -79,7 +79,7 @@ TEST(Ground, OfAGridIsBilinearBetweenItsPoints) {
   EXPECT_NEAR(groundDepth(scene, 4, 3), 0.2 * (0.2 * 2 + 0.8 * 4) + 0.8 * (0.2 * 7 + 0.8 * -3), kExact);
 }
 
-TEST(Ground, OfALongWaterHasItsGridAndBeachesAtItsOwnSides) {
+TEST(Ground, RectangleHasItsGridAndBeachesAtItsSides) {
   core::Scene scene = waterOf(32, 3.0);
   scene.wave->width_m = 4;
   scene.beaches = {{.side = core::Side::kPlusZ, .width_m = 1, .shore_depth_m = -1}};
@@ -92,7 +92,7 @@ TEST(Ground, OfALongWaterHasItsGridAndBeachesAtItsOwnSides) {
   EXPECT_NEAR(groundDepth(scene, 8, -2), 0.75, kExact);
 }
 
-TEST(Ground, OutsideOfAGridStaysWhatItWas) {
+TEST(Ground, GridChangesNothingOutside) {
   core::Scene scene = waterOf(10, 9.0);
   scene.bed.emplace();
   scene.bed->grid = gridOf(2, 2, {1, 1, 1, 1});
@@ -105,7 +105,7 @@ TEST(Ground, OutsideOfAGridStaysWhatItWas) {
 }
 
 /// The conical island of Briggs et al. 1995: 7.2 m across at the toe, 2.2 m at the crest, 1 on 4.
-TEST(Ground, OfATruncatedConeRisesFromToeToCrest) {
+TEST(Ground, TruncatedConeRisesFromToeToCrest) {
   const core::Scene scene = withShapes(
       waterOf(25, 0.32),
       {core::BedCone{.x_m = 0.46, .z_m = -0.3, .toe_radius_m = 3.6, .crest_radius_m = 1.1, .height_m = 0.625}});
@@ -117,7 +117,7 @@ TEST(Ground, OfATruncatedConeRisesFromToeToCrest) {
 }
 
 /// The plane beach of Synolakis 1987: cot(beta) = 19.85, from a depth of 1 m.
-TEST(Ground, OfASlopeRisesFromItsLine) {
+TEST(Ground, SlopeRisesFromItsLine) {
   const core::Scene scene =
       withShapes(waterOf(60, 1.0), {core::BedSlope{.x_m = 2, .z_m = 0, .gradient_ratio = 1 / 19.85}});
   EXPECT_NEAR(groundDepth(scene, 1.9, 7), 1.0, kExact);
@@ -125,7 +125,7 @@ TEST(Ground, OfASlopeRisesFromItsLine) {
   EXPECT_NEAR(groundDepth(scene, 2 + 1.2 * 19.85, 0), -0.2, kExact);
 }
 
-TEST(Ground, OfSlopesOneBehindTheOtherAddsUp) {
+TEST(Ground, SlopesAddUp) {
   const core::BedSlope first{.x_m = 0, .z_m = 0, .heading_deg = 90, .gradient_ratio = 0.1, .length_m = 4};
   const core::BedSlope second{.x_m = 0, .z_m = 4, .heading_deg = 90, .gradient_ratio = 0.5, .length_m = 2};
   const core::Scene scene = withShapes(waterOf(20, 2.0), {first, second});
@@ -135,7 +135,7 @@ TEST(Ground, OfSlopesOneBehindTheOtherAddsUp) {
   EXPECT_NEAR(groundDepth(scene, 3, 9), 0.6, kExact) << "level again behind its end";
 }
 
-TEST(Ground, OfSillAndChannelHasFlanksAllRound) {
+TEST(Ground, SillAndChannelHaveFlanks) {
   const core::BedSill sill{
       .x_m = 0, .z_m = 0, .heading_deg = 90, .length_m = 6, .crest_width_m = 2, .flank_width_m = 4, .height_m = 1};
   const core::Scene bar = withShapes(waterOf(20, 2.0), {sill});
@@ -155,7 +155,7 @@ TEST(Ground, OfSillAndChannelHasFlanksAllRound) {
   EXPECT_TRUE(derive(trench));
 }
 
-TEST(Ground, WithObstaclesHasThemAsHills) {
+TEST(Ground, ObstaclesAreHills) {
   core::Scene scene = waterOf(20, 2.0);
   scene.obstacles = {
       core::Rock{.x_m = 4, .z_m = 0, .radius_m = 2, .height_m = 1},
@@ -169,7 +169,7 @@ TEST(Ground, WithObstaclesHasThemAsHills) {
   EXPECT_EQ(groundDepth(scene, 4, 0), 2.0) << "the bed is what they stand on";
 }
 
-TEST(Ground, ThatIsTooDeepIsNamedWithItsPlaceAndTheRemedy) {
+TEST(Ground, TooDeepGroundIsReportedWithItsPosition) {
   const core::Scene scene = withShapes(waterOf(20, 2.0), {core::BedChannel{.x_m = 3, .z_m = -2, .cut_m = 0.5}});
   const auto derived = derive(scene);
   ASSERT_FALSE(derived);
@@ -177,7 +177,7 @@ TEST(Ground, ThatIsTooDeepIsNamedWithItsPlaceAndTheRemedy) {
   EXPECT_THAT(derived.error().message, HasSubstr("wave.depth_m of at least 2.5 m"));
 }
 
-TEST(Ground, ThatMissesTheDepthByTheRoundingOfItsNumbersCountsAsTheDepth) {
+TEST(Ground, RoundingErrorOfTheDepthIsAccepted) {
   // A bar whose slopes are written with five digits: it ends 0.8 um below the floor.
   const core::Scene scene =
       withShapes(waterOf(40, 0.8), {core::BedSlope{.x_m = -14, .gradient_ratio = 0.049875, .length_m = 12.03},
@@ -188,7 +188,7 @@ TEST(Ground, ThatMissesTheDepthByTheRoundingOfItsNumbersCountsAsTheDepth) {
   EXPECT_NEAR(groundDepth(scene, -1, 0), 0.8 - 0.049875 * 12.03, kExact);
 }
 
-TEST(Ground, OfNonlinearWaterIsNoHigherThanItsUnits) {
+TEST(Ground, NonlinearGroundIsLimitedByItsUnits) {
   core::Scene scene = withShapes(waterOf(40, 1.0), {core::BedSlope{.gradient_ratio = 10.0}});
   scene.wave->bulk = core::Bulk::kNonlinear;
   EXPECT_NEAR(groundDepth(scene, 19, 0), -189.0, kExact) << "what people and the page see";
@@ -197,7 +197,7 @@ TEST(Ground, OfNonlinearWaterIsNoHigherThanItsUnits) {
   EXPECT_EQ(std::ranges::max(restingElevation(basin)), bedUnits(kHighestLand_m));
 }
 
-TEST(Ground, WithoutPointsIsNoGrid) {
+TEST(Ground, GridWithoutPointsIsRefused) {
   core::Scene scene = waterOf(20, 2.0);
   scene.bed.emplace();
   scene.bed->grid = gridOf(3, 2, {1, 2, 3});
@@ -206,7 +206,7 @@ TEST(Ground, WithoutPointsIsNoGrid) {
   EXPECT_THAT(derived.error().message, HasSubstr("bed.grid: 3 x 2 points with 3 depths"));
 }
 
-TEST(Ground, LeadsToAShoreOnASlopeAndNotOnABar) {
+TEST(Ground, SlopeLeadsToAShoreAndABarDoesNot) {
   const core::Scene beach = withShapes(waterOf(40, 1.0), {core::BedSlope{.x_m = 0, .z_m = 0, .gradient_ratio = 0.1}});
   ASSERT_TRUE(shoreSlope(beach, 7, 0));
   EXPECT_NEAR(*shoreSlope(beach, 7, 0), 0.1, 1e-9);
@@ -217,7 +217,7 @@ TEST(Ground, LeadsToAShoreOnASlopeAndNotOnABar) {
   EXPECT_FALSE(shoreSlope(bar, 0, 1.5)) << "its crest is under water";
 }
 
-TEST(Basin, OfABedIsDryOnLandAndFadesOnItsShoreAlone) {
+TEST(Basin, BedIsDryOnLandAndFadesOnItsShore) {
   core::Scene scene = withShapes(waterOf(40, 1.0), {core::BedSlope{.x_m = 0, .z_m = 0, .gradient_ratio = 0.1}});
   const WaveLayout layout = *derive(scene)->wave;
   const Basin basin = layOutBasin(scene, layout);
@@ -235,7 +235,7 @@ TEST(Basin, OfABedIsDryOnLandAndFadesOnItsShoreAlone) {
 }
 
 /// A beach of the scene and the same slope as a bed make the same water.
-TEST(Basin, OfASlopeIsThatOfABeach) {
+TEST(Basin, SlopeEqualsABeach) {
   core::Scene beach = waterOf(40, 1.0);
   beach.beaches = {{.side = core::Side::kPlusX, .width_m = 10, .shore_depth_m = 0}};
   const core::Scene slope = withShapes(waterOf(40, 1.0), {core::BedSlope{.x_m = 10, .z_m = 0, .gradient_ratio = 0.1}});

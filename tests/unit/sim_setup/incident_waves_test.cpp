@@ -26,7 +26,7 @@ core::Scene flume(core::Bulk bulk, core::Dispersion dispersion) {
   scene.wave->depth_m = 1.0;
   scene.wave->bulk = bulk;
   scene.wave->dispersion = dispersion;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   return scene;
 }
 
@@ -37,7 +37,7 @@ IncidentWaves madeBy(core::Scene scene, core::WaveMaker maker) {
   return IncidentWaves::of(maker, scene, *derived->wave, scene.wave->depth_m);
 }
 
-TEST(SideAnswer, OfLongWavesIsTheirSpeed) {
+TEST(SideAnswer, LongWavesAnswerWithTheirSpeed) {
   constexpr double kCell_m = 0.05, kStep_s = 0.005;
   const SideResponse side(9.81, 1.0, kCell_m, kStep_s, false);
   const auto answer = side.at(2 * pi / 20.0);
@@ -52,7 +52,7 @@ TEST(SideAnswer, OfLongWavesIsTheirSpeed) {
   EXPECT_FALSE(side.at(1e4)) << "no such wave on this grid";
 }
 
-TEST(SideAnswer, OfDispersedWavesIsTheirGroupSpeed) {
+TEST(SideAnswer, DispersedWavesAnswerWithTheirGroupSpeed) {
   constexpr double kCell_m = 0.01, kStep_s = 0.0001;
   const SideResponse side(9.81, 1.0, kCell_m, kStep_s, true);
   for (const double kd : {0.3, 1.0, 3.0}) {
@@ -67,7 +67,7 @@ TEST(SideAnswer, OfDispersedWavesIsTheirGroupSpeed) {
   }
 }
 
-TEST(SideAnswer, OfAForcedWaveIsThatOfTheFreeOneWhenItIsNearlyFree) {
+TEST(SideAnswer, ForcedWaveTendsToTheFreeOne) {
   const SideResponse side(9.81, 1.0, 0.05, 0.005, true);
   const double omega = waveFrequency(1.0, 9.81, 1.0);
   const auto answer = side.at(omega);
@@ -78,7 +78,7 @@ TEST(SideAnswer, OfAForcedWaveIsThatOfTheFreeOneWhenItIsNearlyFree) {
   EXPECT_NEAR(shallow.forcedFlow_mps(omega, 0.5), omega / 0.5, 0.01 * omega / 0.5);
 }
 
-TEST(IncidentWaves, RegularOnesBringTheirSecondHarmonicIntoNonlinearWater) {
+TEST(IncidentWaves, RegularWavesHaveTheirSecondHarmonic) {
   const core::RegularWaves waves{.height_m = 0.04, .period_s = 2.857};
   const auto harmonicOf = [&](core::Bulk bulk, int n) {
     const IncidentWaves made = madeBy(flume(bulk, core::Dispersion::kAiry), {.waves = waves});
@@ -99,7 +99,7 @@ TEST(IncidentWaves, RegularOnesBringTheirSecondHarmonicIntoNonlinearWater) {
   EXPECT_NEAR(std::arg(second / (first * first)), 0.0, 1e-3);
 }
 
-TEST(IncidentWaves, OfNoHeightAreNothing) {
+TEST(IncidentWaves, ZeroHeightGivesNoFlow) {
   for (const auto bulk : {core::Bulk::kLinear, core::Bulk::kNonlinear}) {
     for (const auto& waves : std::vector<decltype(core::WaveMaker::waves)>{
              core::RegularWaves{.height_m = 0.0}, core::IrregularWaves{.significant_height_m = 0.0},
@@ -130,7 +130,7 @@ TEST(IncidentWaves, BeginWithoutAJumpAndEndAgain) {
   EXPECT_NEAR(highest_m, 0.05, 0.015) << "with the part that stays beside the maker and the second harmonic";
 }
 
-TEST(IncidentWaves, OfASpectrumHaveItsHeightAndRepeatBySeed) {
+TEST(IncidentWaves, SpectrumHasItsHeightAndRepeatsBySeed) {
   const core::Scene scene = flume(core::Bulk::kNonlinear, core::Dispersion::kNone);
   const auto of = [&](std::uint64_t seed) {
     return madeBy(scene,
@@ -148,7 +148,7 @@ TEST(IncidentWaves, OfASpectrumHaveItsHeightAndRepeatBySeed) {
   EXPECT_NE(made.at(77.7).elevation_m, of(4).at(77.7).elevation_m);
 }
 
-TEST(IncidentWaves, OfASolitaryWaveBringItsWholeVolumeOnce) {
+TEST(IncidentWaves, SolitaryWaveBringsItsVolumeOnce) {
   const core::Scene scene = flume(core::Bulk::kNonlinear, core::Dispersion::kAiry);
   for (const double height_m : {0.05, 0.3}) {
     const IncidentWaves made = madeBy(scene, {.waves = core::SolitaryWave{.height_m = height_m}});
@@ -163,7 +163,7 @@ TEST(IncidentWaves, OfASolitaryWaveBringItsWholeVolumeOnce) {
   }
 }
 
-TEST(IncidentWaves, OfASeriesFollowItWithoutDispersion) {
+TEST(IncidentWaves, SeriesIsFollowedWithoutDispersion) {
   const core::ElevationSeries series{{0, 1, 2, 4}, {0, 0.1, -0.05, 0}};
   const IncidentWaves made =
       madeBy(flume(core::Bulk::kNonlinear, core::Dispersion::kNone), {.begin_s = 3, .waves = series});

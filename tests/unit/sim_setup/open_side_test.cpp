@@ -13,7 +13,7 @@ core::Scene basin() {
   scene.wave.emplace();
   scene.wave->side_m = 16;
   scene.wave->depth_m = 1;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   return scene;
 }
 
@@ -25,12 +25,12 @@ core::Beach beachAt(Side side, double shore_depth_m) {
   return beach;
 }
 
-TEST(OpenSide, OfALevelBasinIsTheFirstOne) {
+TEST(OpenSide, LevelBasinTakesTheFirstSide) {
   EXPECT_EQ(openSide(core::Scene{}), Side::kPlusX) << "without a wave";
   EXPECT_EQ(openSide(basin()), Side::kPlusX);
 }
 
-TEST(OpenSide, IsNoBeachAndNoLand) {
+TEST(OpenSide, IsNeitherBeachNorLand) {
   for (const double shore_depth_m : {0.3, 0.0, -2.0}) {
     core::Scene scene = basin();
     scene.beaches = {beachAt(Side::kPlusX, shore_depth_m)};
@@ -40,7 +40,7 @@ TEST(OpenSide, IsNoBeachAndNoLand) {
   }
 }
 
-TEST(OpenSide, IsOpenToTheSeaWhereSidesAreEquallyDeep) {
+TEST(OpenSide, PrefersTheAbsorbingOneOfEquallyDeepSides) {
   core::Scene scene = basin();
   scene.wave->boundary_minus_z = core::WaveBoundary::kAbsorb;
   EXPECT_EQ(openSide(scene), Side::kMinusZ);
@@ -59,7 +59,7 @@ TEST(OpenSide, IsNotBehindAnIslandOrAWall) {
   EXPECT_EQ(openSide(scene), Side::kMinusX);
 }
 
-TEST(OpenSide, OfARectangleIsJudgedOverItsOwnLengths) {
+TEST(OpenSide, RectangleIsJudgedOverItsOwnLengths) {
   core::Scene scene = basin();
   scene.wave->resolution_count = 64;
   scene.wave->width_m = 4;

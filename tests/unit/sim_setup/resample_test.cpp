@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/sim_setup/random.h>
+#include <spindrift/core/random.h>
 #include <spindrift/sim_setup/resample.h>
 
 namespace spindrift::sim {
@@ -30,7 +30,7 @@ double integral(const Field& field) {
 
 /// Rough values, a dry block and a dry wall of one cell.
 Field roughWithWalls(std::uint32_t n) {
-  SplitMix64 random(7);
+  core::SplitMix64 random(7);
   Field out = allWet(n, [&](double, double) { return random.symmetric(); });
   for (std::uint32_t z = 0; z < n; ++z) {
     for (std::uint32_t x = 0; x < n; ++x) {
@@ -41,7 +41,7 @@ Field roughWithWalls(std::uint32_t n) {
   return out;
 }
 
-TEST(Resample, KeepsTheIntegralOverTheWetAreaAndMakesNoExtremes) {
+TEST(Resample, KeepsTheIntegralOverTheWetArea) {
   for (const auto& [from_count, to_count] : {std::pair{64u, 32u}, {32u, 80u}, {48u, 112u}, {160u, 96u}, {33u, 64u}}) {
     const Field from = roughWithWalls(from_count);
     for (const SampleAxis axis : {kPeriodic, kSides}) {
@@ -116,8 +116,8 @@ TEST(Resample, PoolsThatNoWaterReachesAreLevel) {
   EXPECT_EQ(field.mean, std::vector<double>(16, 0.0));
 }
 
-TEST(Resample, WholeNumbersHaveTheWantedSumAndStayWithinAUnit) {
-  SplitMix64 random(3);
+TEST(Resample, WholeNumbersKeepTheirSum) {
+  core::SplitMix64 random(3);
   std::vector<double> values(1000);
   std::vector<char> wet(1000);
   for (std::size_t i = 0; i < values.size(); ++i) {

@@ -23,7 +23,7 @@ core::Scene openSea() {
   scene.wave->side_m = 30.0;
   scene.wave->depth_m = 2.0;
   scene.wave->dispersion = core::Dispersion::kAiry;
-  scene.wave->setBoundaries(core::WaveBoundary::kAbsorb);
+  setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
   scene.storm.emplace();
   scene.storm->level_ratio = 1.0;
   scene.storm->wave_height_m = 1.0;
@@ -84,7 +84,7 @@ double moment(const WindSeaSpectrum& spectrum, int power) {
   return sum;
 }
 
-TEST(WindSeaSpectrum, HasTheHeightAndPeakOfJonswapInDeepWater) {
+TEST(WindSeaSpectrum, EqualsJonswapInDeepWater) {
   const double wind_mps = 15.0;
   const double fetch_m = 2000.0;
   const auto spectrum = WindSeaSpectrum::of(wind_mps, fetch_m, 9.81, 1000.0);
@@ -154,7 +154,7 @@ TEST(SeaState, TravelsWithTheWind) {
   }
 }
 
-TEST(SeaState, IsNoHigherThanTheSceneAndItsDepthAllow) {
+TEST(SeaState, HeightIsLimitedBySceneAndDepth) {
   core::Scene scene = openSea();
   scene.storm->wave_height_m = 0.2;
   EXPECT_NEAR(seaOf(scene).significant_height_m, 0.2, 1e-9);
@@ -197,7 +197,7 @@ TEST(SeaState, FitsAWholeNumberOfWavesBetweenPeriodicSides) {
   }
 }
 
-TEST(SeaState, IsCalmWithoutWindAndWhereWindWavesAreGusts) {
+TEST(SeaState, IsCalmWithoutWindOrWithGusts) {
   core::Scene scene = openSea();
   scene.storm->level_ratio = 0.0;
   EXPECT_TRUE(seaOf(scene).waves.empty());
@@ -208,7 +208,7 @@ TEST(SeaState, IsCalmWithoutWindAndWhereWindWavesAreGusts) {
   scene.wave->dispersion = core::Dispersion::kNone;
   EXPECT_TRUE(seaOf(scene).waves.empty());
   scene = openSea();
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   EXPECT_TRUE(seaOf(scene).waves.empty());
   scene = openSea();
   scene.gravity_mps2 = 0.0;

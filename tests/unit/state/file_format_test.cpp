@@ -111,8 +111,8 @@ TEST(StateFormat, AFileOfAnotherVersionIsNamedAsSuch) {
   EXPECT_THAT(parsedSnapshot(snapshot).fault->reason, HasSubstr("a newer version of the program"));
   log[7] = '0';
   EXPECT_THAT(parsedLog(log).fault->reason, HasSubstr("another version of the program"));
-  EXPECT_THAT(parsedLog(snapshot).fault->reason, HasSubstr("no log"));
-  EXPECT_THAT(parsedSnapshot("GIF89a").fault->reason, HasSubstr("no snapshot"));
+  EXPECT_THAT(parsedLog(snapshot).fault->reason, HasSubstr("not a log"));
+  EXPECT_THAT(parsedSnapshot("GIF89a").fault->reason, HasSubstr("not a snapshot"));
   EXPECT_THAT(parsedSnapshot("").fault->reason, HasSubstr("ends within its header"));
 }
 

@@ -98,7 +98,7 @@ TEST_F(RoomFailuresTest, AFailedAppendLeavesWholeRecords) {
   }
 }
 
-TEST_F(RoomFailuresTest, APartOfARecordThatCannotBeCutIsCutBeforeTheNext) {
+TEST_F(RoomFailuresTest, PartOfARecordIsCutBeforeTheNext) {
   const auto files = openRecovered();
   begin(*files);
   append(*files, "first");
@@ -121,7 +121,7 @@ TEST_F(RoomFailuresTest, APartOfARecordThatCannotBeCutIsCutBeforeTheNext) {
   EXPECT_THAT(found.notes, IsEmpty());
 }
 
-TEST_F(RoomFailuresTest, AFailedSnapshotLeavesAllFilesAsTheyWere) {
+TEST_F(RoomFailuresTest, FailedSnapshotChangesNoFile) {
   const auto files = openRecovered();
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
@@ -139,7 +139,7 @@ TEST_F(RoomFailuresTest, AFailedSnapshotLeavesAllFilesAsTheyWere) {
   EXPECT_EQ(summary(recovered()), "2=two | 2: b");
 }
 
-TEST_F(RoomFailuresTest, ASnapshotThatTheDiskRefusesDoesNotReplaceTheOlderOne) {
+TEST_F(RoomFailuresTest, RefusedSnapshotDoesNotReplaceTheOlderOne) {
   const auto files = openRecovered({.sync = Sync::kSnapshots, .kept_generation_count = 1});
   writeSnapshot(*files, begin(*files), "one");
   const StatePoint point = begin(*files);
@@ -149,7 +149,7 @@ TEST_F(RoomFailuresTest, ASnapshotThatTheDiskRefusesDoesNotReplaceTheOlderOne) {
   EXPECT_EQ(allFiles(), before);
 }
 
-TEST_F(RoomFailuresTest, AGenerationThatCannotBeginLeavesTheLogThatThereIs) {
+TEST_F(RoomFailuresTest, FailedGenerationKeepsThePresentLog) {
   const auto files = openRecovered();
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
@@ -163,7 +163,7 @@ TEST_F(RoomFailuresTest, AGenerationThatCannotBeginLeavesTheLogThatThereIs) {
   EXPECT_EQ(begin(*files).generation, 2U);
 }
 
-TEST_F(RoomFailuresTest, AfterTheDiskRefusedARecordOnlyASnapshotMakesFlushesSucceed) {
+TEST_F(RoomFailuresTest, FlushFailsAfterALostRecordUntilASnapshot) {
   const auto files = openRecovered({.sync = Sync::kAlways});
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
@@ -178,7 +178,7 @@ TEST_F(RoomFailuresTest, AfterTheDiskRefusedARecordOnlyASnapshotMakesFlushesSucc
   EXPECT_TRUE(files->flush());
 }
 
-TEST_F(RoomFailuresTest, AFlushForcesWhatTheOlderLogHoldsAsWell) {
+TEST_F(RoomFailuresTest, FlushForcesTheOlderLogToo) {
   const auto files = openRecovered({.sync = Sync::kAlways});
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
@@ -194,7 +194,7 @@ TEST_F(RoomFailuresTest, AFlushForcesWhatTheOlderLogHoldsAsWell) {
   EXPECT_TRUE(files->flush());
 }
 
-TEST_F(RoomFailuresTest, TheNameOfASnapshotIsForcedBeforeOlderFilesGo) {
+TEST_F(RoomFailuresTest, NameOfASnapshotIsForcedBeforeOlderFilesGo) {
   const auto files = openRecovered({.sync = Sync::kAlways});
   const StatePoint point = begin(*files);
   append(*files, "a");
@@ -204,7 +204,7 @@ TEST_F(RoomFailuresTest, TheNameOfASnapshotIsForcedBeforeOlderFilesGo) {
   EXPECT_EQ(folder_sync_count, before + 1);
 }
 
-TEST_F(RoomFailuresTest, ARecordThatWasLostIsSeenToBeMissing) {
+TEST_F(RoomFailuresTest, LostRecordIsReportedAsMissing) {
   {
     const auto files = openRecovered();
     writeSnapshot(*files, begin(*files), "one");
@@ -237,7 +237,7 @@ TEST_F(RoomFailuresTest, ARecordThatWasLostIsSeenToBeMissing) {
   }
 }
 
-TEST_F(RoomFailuresTest, AKilledProcessLosesNoRecordThatWasAppended) {
+TEST_F(RoomFailuresTest, KilledProcessLosesNoAppendedRecord) {
   void* shared = ::mmap(nullptr, sizeof(std::atomic<int>), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
   ASSERT_NE(shared, MAP_FAILED);
   auto& appended = *new (shared) std::atomic<int>(0);

@@ -26,7 +26,7 @@ TEST_F(RoomFilesTest, ANewRoomHasNoState) {
   EXPECT_THAT(found.notes, IsEmpty());
 }
 
-TEST_F(RoomFilesTest, FindsTheNewestSnapshotAndWhatHappenedAfterIt) {
+TEST_F(RoomFilesTest, FindsTheNewestSnapshotAndItsLog) {
   writeTwoGenerations();
   const auto found = recovered();
   EXPECT_EQ(summary(found), "2=two | 2: ccc d");
@@ -34,7 +34,7 @@ TEST_F(RoomFilesTest, FindsTheNewestSnapshotAndWhatHappenedAfterIt) {
   EXPECT_THAT(names(), ElementsAre(kLog1, kSnapshot1, kLog2, kSnapshot2));
 }
 
-TEST_F(RoomFilesTest, ASnapshotThatWasNeverWrittenLeavesTheOlderOneWithBothLogs) {
+TEST_F(RoomFilesTest, UnwrittenSnapshotLeavesTheOlderOneAndBothLogs) {
   {
     const auto files = openRecovered();
     writeSnapshot(*files, begin(*files), "one");
@@ -93,7 +93,7 @@ TEST_F(RoomFilesTest, KeepsEachLogThatAKeptSnapshotNeeds) {
   EXPECT_FALSE(fs::exists(room / kLog2));
 }
 
-TEST_F(RoomFilesTest, ASnapshotThatFailedIsTriedAgainInTheSameGeneration) {
+TEST_F(RoomFilesTest, FailedSnapshotIsRetriedInItsGeneration) {
   const auto files = openRecovered();
   writeSnapshot(*files, begin(*files), "one");
   append(*files, "a");
@@ -201,7 +201,7 @@ TEST_F(RoomFilesTest, AFolderThatCannotBeMadeIsNamed) {
 }
 
 /// Appends while snapshots are written and flushes run. The snapshot's content is the number of records before it.
-TEST_F(RoomFilesTest, LosesNoRecordWhileOtherThreadsWriteSnapshotsAndFlush) {
+TEST_F(RoomFilesTest, LosesNoRecordWhileSnapshotsAreWritten) {
   for (const Sync sync : {Sync::kNever, Sync::kSnapshots, Sync::kAlways}) {
     fs::remove_all(room);
     const int record_count = sync == Sync::kNever ? 4000 : 400;

@@ -36,7 +36,7 @@ TEST_F(RoomFoldersTest, ListsRoomsInOrder) {
   EXPECT_EQ(*roomFolder(folder.path(), "pool"), folder.path() / "rooms" / "pool");
 }
 
-TEST_F(RoomFoldersTest, FoldersWhoseNamesNoRoomCanHaveAreListedApart) {
+TEST_F(RoomFoldersTest, InvalidFolderNamesAreListedApart) {
   for (const char* name : {"quay", "quay (copy)", "q\"} 1", "two\nlines", ".removed.pool"})
     folder.write(std::string("rooms/") + name + "/000000000001.log", "x");
   const auto listed = listRooms(folder.path());

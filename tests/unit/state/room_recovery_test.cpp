@@ -73,7 +73,7 @@ TEST_F(RoomRecoveryTest, ALogCutAnywhereGivesItsWholeRecords) {
   }
 }
 
-TEST_F(RoomRecoveryTest, ASnapshotCutAnywhereGivesTheOneBeforeAndBothLogs) {
+TEST_F(RoomRecoveryTest, CutSnapshotGivesTheOneBeforeAndBothLogs) {
   writeTwoGenerations();
   const auto whole = allFiles();
   const std::string snapshot = content(kSnapshot2);
@@ -158,7 +158,7 @@ TEST_F(RoomRecoveryTest, AMissingLogEndsWhatIsUsed) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("what happened after the snapshot of generation 1 is lost")));
 }
 
-TEST_F(RoomRecoveryTest, LogsWithoutAnySnapshotBeforeThemAreSetAside) {
+TEST_F(RoomRecoveryTest, LogsWithoutASnapshotAreSetAside) {
   writeTwoGenerations();
   setContent(kSnapshot1, "x");
   setContent(kSnapshot2, "y");
@@ -169,7 +169,7 @@ TEST_F(RoomRecoveryTest, LogsWithoutAnySnapshotBeforeThemAreSetAside) {
   EXPECT_THAT(names(), ElementsAre(kLog1, kSnapshot1 + ".damaged", kLog2 + ".damaged", kSnapshot2 + ".damaged"));
 }
 
-TEST_F(RoomRecoveryTest, FilesThatAreNotItsOwnAreLeftAlone) {
+TEST_F(RoomRecoveryTest, ForeignFilesAreLeftAlone) {
   writeTwoGenerations();
   const std::vector<std::string> foreign{"000000000000.log", "000000000001.snapshot.bak", "1.log", "notes.txt"};
   for (const std::string& name : foreign) setContent(name, "mine");
@@ -191,7 +191,7 @@ TEST_F(RoomRecoveryTest, TheNumberOfNotesAboutForeignFilesIsBounded) {
   EXPECT_THAT(found.notes, Contains(HasSubstr("24 more files")));
 }
 
-TEST_F(RoomRecoveryTest, FoldersAndLinksInThePlaceOfItsFilesAreSetAside) {
+TEST_F(RoomRecoveryTest, FoldersAndLinksUnderItsNamesAreSetAside) {
   writeTwoGenerations();
   folder.write("elsewhere", content(kSnapshot2));
   fs::create_directory(room / "000000000007.snapshot");
@@ -226,7 +226,7 @@ std::vector<std::string> recordsOf(const std::string& file) {
   return out;
 }
 
-TEST_F(RoomRecoveryTest, RecordsThatAreDoubledDroppedOrExchangedEndWhatIsUsed) {
+TEST_F(RoomRecoveryTest, WrongRecordNumberEndsTheUsedPart) {
   writeLogs({"a b c"});
   const std::string log = content(kLog1), start = log.substr(0, kPoolLogBytes);
   const auto record = recordsOf(log);
@@ -245,7 +245,7 @@ TEST_F(RoomRecoveryTest, RecordsThatAreDoubledDroppedOrExchangedEndWhatIsUsed) {
   EXPECT_EQ(recoverWith(record[1] + record[2]), "1=one | 1:");
 }
 
-TEST_F(RoomRecoveryTest, AnOlderLogCutBetweenTwoRecordsIsSeenAndCounted) {
+TEST_F(RoomRecoveryTest, OlderLogCutBetweenRecordsIsReported) {
   writeLogs({"a b c", "d e"});
   const std::string log = content(kLog1), later = content(kLog2);
   setContent(kLog1, log.substr(0, log.size() - 2 * (kRecordHeaderBytes + 1)));
@@ -256,7 +256,7 @@ TEST_F(RoomRecoveryTest, AnOlderLogCutBetweenTwoRecordsIsSeenAndCounted) {
   EXPECT_EQ(content(kLog2 + ".damaged"), later);
 }
 
-TEST_F(RoomRecoveryTest, LogsThatAreNotUsedSayHowMuchTheyHold) {
+TEST_F(RoomRecoveryTest, UnusedLogsAreReportedWithTheirRecords) {
   writeLogs({"a", "b c", "d e f"});
   fs::remove(room / kLog2);
   EXPECT_THAT(recoverAndGoOn().notes, ElementsAre(AllOf(HasSubstr(kLog3), HasSubstr("its 3 records are not used"))));
@@ -291,7 +291,7 @@ TEST_F(RoomRecoveryTest, FilesOfAnotherRoomAreNotUsed) {
   EXPECT_EQ(content(kSnapshot1 + ".damaged"), contentOf(other / kSnapshot1)) << "it can be used under its old name";
 }
 
-TEST_F(RoomRecoveryTest, ARefusedSnapshotGivesTheOneBeforeAndStaysUntilTheRoomGoesOn) {
+TEST_F(RoomRecoveryTest, RefusedSnapshotGivesTheOneBefore) {
   writeTwoGenerations();
   const auto before = allFiles();
   {
@@ -314,7 +314,7 @@ TEST_F(RoomRecoveryTest, ARefusedSnapshotGivesTheOneBeforeAndStaysUntilTheRoomGo
   EXPECT_TRUE(fs::exists(room / (kSnapshot2 + ".damaged")));
 }
 
-TEST_F(RoomRecoveryTest, FilesOfTheVersionBeforeGoOnInThisOne) {
+TEST_F(RoomRecoveryTest, FilesOfTheVersionBeforeAreRead) {
   const auto old = [](const char* magic, char generation, const std::string& rest) {
     return magic + std::string(1, generation) + std::string(7, '\0') + rest;
   };
@@ -333,7 +333,7 @@ TEST_F(RoomRecoveryTest, FilesOfTheVersionBeforeGoOnInThisOne) {
   EXPECT_EQ(summary(recovered()), "1=123456789 | 1: 123456789 | 2: 123456789 123456789 | 3: new");
 }
 
-TEST_F(RoomRecoveryTest, WhatIsSetAsideNeverReplacesWhatWasSetAsideBefore) {
+TEST_F(RoomRecoveryTest, FilesSetAsideNeverReplaceEarlierOnes) {
   writeTwoGenerations();
   const auto whole = allFiles();
   setContent(kSnapshot2 + ".damaged", "first");
@@ -358,7 +358,7 @@ TEST_F(RoomRecoveryTest, TheNumberOfFilesSetAsideIsBounded) {
   EXPECT_EQ(content(kSnapshot1), "damaged");
 }
 
-TEST_F(RoomRecoveryTest, WhatAnInterruptedWriteLeftIsRemoved) {
+TEST_F(RoomRecoveryTest, TemporaryFilesAreRemoved) {
   writeTwoGenerations();
   const auto before = names();
   setContent("000000000003.log.tmp", "spin");

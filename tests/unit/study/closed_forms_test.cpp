@@ -55,7 +55,7 @@ TEST(AiryRings, StartAsTheHump) {
   }
 }
 
-TEST(AiryRings, OfVeryLongWavesFallAtTheMiddleByDawsonsIntegral) {
+TEST(AiryRings, FollowDawsonsIntegralForVeryLongWaves) {
   // Without dispersion eta(0, t) = 1 - 2 q D(q), q = c t/w, D(q) = Int_0^q exp(u^2 - q^2) du.
   constexpr double kWidth_m = 400.0;
   const AiryWater water{9.81, 1.0};
@@ -114,7 +114,7 @@ TEST(Diffraction, FresnelIntegralHasItsKnownValues) {
   EXPECT_NEAR(std::abs(fresnelIntegral(40.0) - std::complex(0.5, -0.5)), 0.0, 0.01) << "1/2 - i/2 far out";
 }
 
-TEST(Diffraction, SolvesTheWaveEquationAndMeetsTheBreakwaterWithoutFlowThroughIt) {
+TEST(Diffraction, SolvesTheWaveEquationWithoutFlowThroughTheWall) {
   const double k = 3.0;
   constexpr double kStep_m = 1e-3;
   const auto at = [&](double along_m, double behind_m) { return pastBreakwaterEnd(along_m, behind_m, k); };
@@ -136,7 +136,7 @@ TEST(Diffraction, SolvesTheWaveEquationAndMeetsTheBreakwaterWithoutFlowThroughIt
   EXPECT_NEAR(std::abs(at(1e-9, -2.0) - at(-1e-9, -2.0)), 0.0, 1e-4) << "edge of the reflection";
 }
 
-TEST(Diffraction, IsLightFarOutHalfAtTheEdgeOfTheShadowAndDarkBehind) {
+TEST(Diffraction, IsHalfAtTheEdgeOfTheShadow) {
   const double k = 2 * pi;
   EXPECT_NEAR(std::abs(pastBreakwaterEnd(-60.0, 4.0, k)), 1.0, 0.02);
   EXPECT_NEAR(std::abs(pastBreakwaterEnd(0.0, 200.0, k)), 0.5, 0.02);
@@ -178,7 +178,7 @@ TEST(MildSlope, KeepsTheEnergyFluxOnAGentleSlope) {
   }
 }
 
-TEST(MildSlope, HasTheBesselFunctionsOfLongWavesOnALinearSlope) {
+TEST(MildSlope, EqualsBesselFunctionsOnALinearSlope) {
   // (d eta')' + omega^2/g eta = 0, d = s y: eta = a J0(u) + b Y0(u), u = 2 omega sqrt(y/(g s)); eta' = 0 at the wall.
   const SlopeToWall slope{9.81, 1.0, 0.25, 300.0};
   const double omega = 0.08;
@@ -196,7 +196,7 @@ TEST(MildSlope, HasTheBesselFunctionsOfLongWavesOnALinearSlope) {
     EXPECT_NEAR(std::abs(slope.responseAt(x_m, omega).elevation), scale * std::abs(eta(x_m)), 5e-3) << x_m;
 }
 
-TEST(WavePacket, IsHighestAtItsMiddleAndTravelsAtItsGroupSpeed) {
+TEST(WavePacket, TravelsAtItsGroupSpeed) {
   const AiryWater water{9.81, 1.0};
   const WavePacket packet(water, 400.0, 2.0, 12.0);
   EXPECT_NEAR(packet.elevationAt(0.0, 0.0), 1.0, 1e-12);
@@ -215,12 +215,12 @@ std::pair<sim::WaveLayout, sim::Basin> basinOf(core::Scene& scene, std::uint32_t
   scene.wave.emplace();
   scene.wave->resolution_count = n;
   scene.wave->side_m = side_m;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   const sim::WaveLayout layout = *sim::derive(scene)->wave;
   return {layout, sim::layOutBasin(scene, layout)};
 }
 
-TEST(BasinModes, OfASquareAreThoseOfTheGrid) {
+TEST(BasinModes, SquareHasTheModesOfTheGrid) {
   core::Scene scene;
   const auto [layout, basin] = basinOf(scene, 32, 4.0);
   const auto modes = lowestModes(layout, basin, 6);
@@ -234,7 +234,7 @@ TEST(BasinModes, OfASquareAreThoseOfTheGrid) {
   }
 }
 
-TEST(BasinModes, OfAnLShapedBasinAreTheKnownOnes) {
+TEST(BasinModes, LShapedBasinHasTheKnownModes) {
   // The square [-1, 1]^2 without a quadrant, walls all around: k^2 = 1.47562, 3.53403, pi^2, pi^2, 11.38948
   // (M. Dauge's benchmark for Maxwell's equations, 2004).
   core::Scene scene;

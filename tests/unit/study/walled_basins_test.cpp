@@ -69,7 +69,7 @@ TEST(WalledBasins, HaveSlowModesOfAirysFrequency) {
       scene.wave->side_m = kSide * water.cell_m;
       scene.wave->depth_m = water.depth_m;
       scene.wave->dispersion = core::Dispersion::kAiry;
-      scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+      setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
       scene.obstacles = walls;
       EXPECT_LE(largestErrorPercent(scene), water.most_percent) << name << ", " << water.depth_m << " m deep";
     }

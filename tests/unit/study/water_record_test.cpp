@@ -167,7 +167,7 @@ TEST_F(OnSoftware, RectanglesAreComparedAndDryLandIsLevel) {
   scene.wave->resolution_count = 128;
   scene.wave->side_m = 16.0;
   scene.wave->width_m = 4.0;
-  scene.wave->setBoundaries(core::WaveBoundary::kReflect);
+  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
   scene.wave->bulk = core::Bulk::kNonlinear;
   scene.beaches = {core::Beach{core::Side::kPlusX, 8.0, -0.5}};
   const auto run = study::record(*ctx_, scene, {.seconds = 0.1, .frame_bytes = {}, .repeat_below_s = 0.0});

@@ -10,26 +10,12 @@
 #include <spindrift/wire/client_message.h>
 
 #include "commands.h"
+#include "parse_command.h"
 
 namespace spindrift::wire {
 namespace {
 
 using testing::HasSubstr;
-
-ClientMessage parseCommand(const std::function<void(v1::Command&)>& fill) {
-  v1::ClientMessage message;
-  message.mutable_command()->set_command_id(42);
-  fill(*message.mutable_command());
-  const std::string bytes = message.SerializeAsString();
-  return parseClientMessage({reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()});
-}
-
-v1::Command checkedCommand(const std::function<void(v1::Command&)>& fill) {
-  const ClientMessage message = parseCommand(fill);
-  if (const auto* command = std::get_if<v1::Command>(&message)) return *command;
-  ADD_FAILURE() << "no command";
-  return {};
-}
 
 CommandRejection rejectionOf(const std::function<void(v1::Command&)>& fill) {
   const ClientMessage message = parseCommand(fill);
@@ -39,7 +25,7 @@ CommandRejection rejectionOf(const std::function<void(v1::Command&)>& fill) {
 }
 
 TEST(BoatCommands, ArriveWithTheirValuesAndNoOthers) {
-  const v1::Boat boat = checkedCommand([](v1::Command& c) {
+  const v1::Boat boat = expectCommand([](v1::Command& c) {
                           c.mutable_spawn_boat()->mutable_boat()->set_x_m(-3);
                           c.mutable_spawn_boat()->mutable_boat()->set_rudder_ratio(0.5);
                         })
@@ -49,7 +35,7 @@ TEST(BoatCommands, ArriveWithTheirValuesAndNoOthers) {
   EXPECT_EQ(boat.rudder_ratio(), 0.5);
   EXPECT_FALSE(boat.has_length_m());
 
-  const v1::ControlBoat control = checkedCommand([](v1::Command& c) {
+  const v1::ControlBoat control = expectCommand([](v1::Command& c) {
                                     c.mutable_control_boat()->set_boat_id(7);
                                     c.mutable_control_boat()->set_throttle_ratio(-1);
                                     c.mutable_control_boat()->set_rudder_ratio(0.25);
@@ -57,11 +43,10 @@ TEST(BoatCommands, ArriveWithTheirValuesAndNoOthers) {
   EXPECT_EQ(control.boat_id(), 7u);
   EXPECT_EQ(control.throttle_ratio(), -1.0);
   EXPECT_EQ(control.rudder_ratio(), 0.25);
-  EXPECT_EQ(checkedCommand([](v1::Command& c) { c.mutable_remove_boat()->set_boat_id(9); }).remove_boat().boat_id(),
-            9u);
+  EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_remove_boat()->set_boat_id(9); }).remove_boat().boat_id(), 9u);
 }
 
-TEST(BoatCommands, OutOfRangeOrNotFiniteAreRejectedWithTheirField) {
+TEST(BoatCommands, OutOfRangeValueIsRejectedWithItsField) {
   const auto fast = rejectionOf([](v1::Command& c) { c.mutable_control_boat()->set_throttle_ratio(1.5); });
   EXPECT_EQ(fast.reason, v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_EQ(fast.field, "control_boat.throttle_ratio");
@@ -76,7 +61,7 @@ TEST(BoatCommands, OutOfRangeOrNotFiniteAreRejectedWithTheirField) {
 }
 
 TEST(StepCommands, TakeTheirRange) {
-  EXPECT_EQ(checkedCommand([](v1::Command& c) { c.mutable_step()->set_tick_count(600); }).step().tick_count(), 600u);
+  EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_step()->set_tick_count(600); }).step().tick_count(), 600u);
   for (const std::uint32_t count : {0u, 601u}) {
     const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_step()->set_tick_count(count); });
     EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
@@ -87,7 +72,7 @@ TEST(StepCommands, TakeTheirRange) {
 
 TEST(SceneCommands, AcceptNamesButNoPaths) {
   EXPECT_EQ(
-      checkedCommand([](v1::Command& c) { c.mutable_change_scene()->set_name("wave_only"); }).change_scene().name(),
+      expectCommand([](v1::Command& c) { c.mutable_change_scene()->set_name("wave_only"); }).change_scene().name(),
       "wave_only");
   for (const std::string& name : {std::string(), std::string("../etc/passwd"), std::string("a b"), std::string(65, 'a'),
                                   std::string("a\nb"), std::string(5000, 'x')}) {
@@ -99,16 +84,16 @@ TEST(SceneCommands, AcceptNamesButNoPaths) {
   }
 }
 
-TEST(SceneCommands, KeepALevelThatIsLeftOutApartFromEveryOther) {
+TEST(SceneCommands, OmittedLevelIsNotALevel) {
   const auto with = [](std::optional<int> fidelity) {
     return [fidelity](v1::Command& c) {
       c.mutable_change_scene()->set_name("harbor");
       if (fidelity) c.mutable_change_scene()->set_fidelity(static_cast<v1::Fidelity>(*fidelity));
     };
   };
-  EXPECT_FALSE(checkedCommand(with(std::nullopt)).change_scene().has_fidelity());
-  EXPECT_EQ(checkedCommand(with(0)).change_scene().fidelity(), v1::FIDELITY_UNSPECIFIED);
-  EXPECT_EQ(checkedCommand(with(3)).change_scene().fidelity(), v1::FIDELITY_FINE);
+  EXPECT_FALSE(expectCommand(with(std::nullopt)).change_scene().has_fidelity());
+  EXPECT_EQ(expectCommand(with(0)).change_scene().fidelity(), v1::FIDELITY_UNSPECIFIED);
+  EXPECT_EQ(expectCommand(with(3)).change_scene().fidelity(), v1::FIDELITY_FINE);
   const auto rejection = rejectionOf(with(7));
   EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_EQ(rejection.field, "change_scene.fidelity");

@@ -11,10 +11,12 @@
 #include <spindrift/wire/client_message.h>
 
 #include "commands.h"
+#include "parse_command.h"
 
 namespace spindrift::wire {
 namespace {
 
+using core::viewOf;
 using test::at;
 using test::breakingWave;
 using test::reset;
@@ -25,35 +27,6 @@ using test::splash;
 using testing::HasSubstr;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-core::ByteView viewOf(const std::string& bytes) {
-  return {reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()};
-}
-
-ClientMessage parse(const v1::ClientMessage& message) {
-  return parseClientMessage(viewOf(message.SerializeAsString()));
-}
-
-v1::ClientMessage commandMessage(const std::function<void(v1::Command&)>& fill) {
-  v1::ClientMessage message;
-  message.mutable_command()->set_command_id(42);
-  fill(*message.mutable_command());
-  return message;
-}
-
-ClientMessage parseCommand(const std::function<void(v1::Command&)>& fill) {
-  return parse(commandMessage(fill));
-}
-
-v1::Command expectCommand(const std::function<void(v1::Command&)>& fill) {
-  const ClientMessage message = parseCommand(fill);
-  if (const auto* command = std::get_if<v1::Command>(&message)) {
-    EXPECT_EQ(command->command_id(), 42u);
-    return *command;
-  }
-  ADD_FAILURE() << "no command";
-  return {};
-}
 
 CommandRejection expectRejection(const ClientMessage& message) {
   if (const auto* rejection = std::get_if<CommandRejection>(&message)) return *rejection;
@@ -79,7 +52,7 @@ TEST(ClientMessages, HelloKeepsVersionAndName) {
   EXPECT_FALSE(checkVersion(hello));
 }
 
-TEST(ClientMessages, AHelloWithAResumeKeyThatIsTooLongHasNone) {
+TEST(ClientMessages, TooLongResumeKeyIsDropped) {
   v1::ClientMessage message;
   std::string key;
   while (key.size() < kResumeKeyMaxBytes) key += "\xE2\x82\xAC";  // ends in the middle of a character at the limit
@@ -90,7 +63,7 @@ TEST(ClientMessages, AHelloWithAResumeKeyThatIsTooLongHasNone) {
   EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, key);
 }
 
-TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
+TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefused) {
   const auto refusal = checkVersion(Hello{2, 3, "later"});
   ASSERT_TRUE(refusal);
   EXPECT_THAT(*refusal, HasSubstr("wire version 2.3"));
@@ -98,7 +71,7 @@ TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefusedWithALineOfText) {
   EXPECT_TRUE(checkVersion(Hello{0, 0, ""})) << "a hello without a version";
 }
 
-TEST(ClientMessages, ClientsThatKnowSquaresOnlyAreRefusedWhereTheWaterIsNone) {
+TEST(ClientMessages, OldClientIsRefusedInARectangle) {
   const auto flume = scene::parseSceneText("wave { resolution_count: 400 side_m: 40 width_m: 1 }", "flume.textproto");
   ASSERT_TRUE(flume) << flume.error().message;
   const auto refusal = checkWater(0, *flume);
@@ -232,7 +205,7 @@ TEST(ClientMessages, CommandsArriveWithTheirValues) {
   EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_set_speed()->set_speed(0.5); }).set_speed().speed(), 0.5);
 }
 
-TEST(ClientMessages, CommandsOutOfRangeAreRejectedWithTheirFieldAndId) {
+TEST(ClientMessages, CommandOutOfRangeIsRejectedWithItsField) {
   const auto wide = expectRejection(parseCommand([](v1::Command& c) { c.mutable_splash()->set_radius_m(101); }));
   EXPECT_EQ(wide.command_id, 42u);
   EXPECT_EQ(wide.reason, v1::REJECT_REASON_OUT_OF_RANGE);
@@ -257,7 +230,7 @@ TEST(ClientMessages, CommandsOutOfRangeAreRejectedWithTheirFieldAndId) {
   }
 }
 
-TEST(ClientMessages, ParametersThatAreNoNumbersOrHaveNoNameAreRejected) {
+TEST(ClientMessages, ParameterWithoutNameOrNumberIsRejected) {
   const auto nan = expectRejection(parseCommand([](v1::Command& c) {
     c.mutable_set_parameter()->set_path("wave.depth_m");
     c.mutable_set_parameter()->set_value(kNaN);
@@ -318,7 +291,7 @@ const SceneLimit kSceneLimits[] = {
 INSTANTIATE_TEST_SUITE_P(ClientMessages, ForbiddenByTheScene, testing::ValuesIn(kSceneLimits),
                          [](const auto& parameter) { return std::string(parameter.param.name); });
 
-TEST(ClientMessages, WithoutAWaveTheBoxOfParticlesLimitsEffects) {
+TEST(ClientMessages, BoxOfParticlesLimitsEffects) {
   // 8,000 particles in 20 layers on 4 m x 2 m: a spacing of 0.141 m, 2.83 m deep.
   const auto scene =
       scene::parseSceneText("particles { count: 8000 layers_count: 20 box_side_m: 4 box_width_m: 2 }", "box.textproto");

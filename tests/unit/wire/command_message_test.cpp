@@ -147,7 +147,7 @@ TEST(ApiMessage, RefusesJsonThatRfc8259Forbids) {
   }
 }
 
-TEST(ApiMessage, ReportsThePlaceAndWhatIsExpected) {
+TEST(ApiMessage, ErrorNamesTheLocationAndWhatIsExpected) {
   EXPECT_EQ(whyNot(""), "it is empty; send a JSON object {...}");
   EXPECT_EQ(whyNot("[]"), "line 1, column 1: a JSON object {...} is expected, not [");
   EXPECT_EQ(whyNot("{\n  'reset': {}}"), "line 2, column 3: a name in double quotes is expected, not '");
@@ -176,7 +176,7 @@ TEST(ApiMessage, BoundsTheDepthOfJson) {
   EXPECT_EQ(whyNot(nested), "spawn_boat.spawn_boat: SpawnBoat has no such field");
 }
 
-TEST(ApiMessage, JsonHasTheNamesOfTheProtoFilesAndEveryField) {
+TEST(ApiMessage, JsonHasEveryFieldByItsProtoName) {
   v1::RoomInfo info;
   info.set_name("pond");
   info.set_tick(12);

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/core/effect.h>
+#include <spindrift/core/scene.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/wire/client_message.h>
@@ -29,7 +29,7 @@ std::optional<CommandRejection> send(v1::Command& command, const v1::Scene& scen
   return completeCommand(command, scene);
 }
 
-TEST(EmptyCommands, ArePermittedInEveryShippedSceneThatHasTheirPart) {
+TEST(EmptyCommands, ArePermittedInEveryShippedScene) {
   // Reasons that need something that only the sender can know: a path, a name.
   const std::set<v1::RejectReason> needed = {v1::REJECT_REASON_UNKNOWN_PARAMETER, v1::REJECT_REASON_UNKNOWN_SCENE};
   const google::protobuf::OneofDescriptor& actions = *v1::Command::descriptor()->FindOneofByName("action");
@@ -56,7 +56,7 @@ TEST(EmptyCommands, ArePermittedInEveryShippedSceneThatHasTheirPart) {
   EXPECT_GT(taken_count, 100);
 }
 
-TEST(EmptyCommands, TakeTheDefaultsOfTheProtoWhereTheSceneHasRoomForThem) {
+TEST(EmptyCommands, TakeTheDefaultsWhereTheyFit) {
   const v1::Scene wide = sceneOf("wave { side_m: 40 depth_m: 3 } boats {}");
   v1::Command splash, wave, boat, speed, step;
   splash.mutable_splash();
@@ -75,7 +75,7 @@ TEST(EmptyCommands, TakeTheDefaultsOfTheProtoWhereTheSceneHasRoomForThem) {
   EXPECT_EQ(step.step().tick_count(), 1u);
 }
 
-TEST(EmptyCommands, TakeTheNearestValuesThatASmallSceneHasRoomFor) {
+TEST(EmptyCommands, TakeTheNearestValuesInASmallScene) {
   const v1::Scene small = sceneOf("wave { resolution_count: 32 side_m: 2 depth_m: 0.2 } boats {}");
   v1::Command splash, wave, boat;
   splash.mutable_splash();

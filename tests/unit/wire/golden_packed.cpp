@@ -55,7 +55,7 @@ GoldenCase damagedCase(const std::string& name, const std::string& why, const co
   return {name, GoldenVerdict::kBadFrame, "\"why\": \"" + why + "\"", std::move(bytes)};
 }
 
-/// A lattice in a corner, many particles in one place, single drops, with various speeds.
+/// A lattice in a corner, many particles at one position, single drops, with various speeds.
 std::vector<std::uint32_t> particleWords() {
   std::vector<std::uint32_t> words;
   std::uint32_t noise = 1;

@@ -115,7 +115,7 @@ TEST(HostileBytes, RandomClientMessagesDoNoHarm) {
   for (int i = 0; i < kCaseCount; ++i) ASSERT_TRUE(isHarmless(parseClientMessage(random.bytes(200)))) << "case " << i;
 }
 
-TEST(HostileBytes, DamagedClientMessagesDoNoHarmAndGetEveryKindOfResult) {
+TEST(HostileBytes, DamagedClientMessagesDoNoHarm) {
   Random random(2);
   const std::vector<core::Bytes> valid = validClientMessages();
   const v1::Scene scene = fullScene();
@@ -147,7 +147,7 @@ TEST(HostileBytes, RandomServerMessagesDoNoHarm) {
   }
 }
 
-TEST(HostileBytes, DamagedFramesDecodeToFiniteValuesOrNotAtAll) {
+TEST(HostileBytes, DamagedFramesDecodeToFiniteValues) {
   Random random(4);
   const std::vector<GoldenCase> golden = goldenCases();
   int decoded_count = 0;

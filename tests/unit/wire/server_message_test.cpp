@@ -31,6 +31,7 @@ TEST(ServerMessages, GreetingHasAllThatAClientNeeds) {
   facts.speed = 0.5;
   facts.boats.add_boats()->set_boat_id(3);
   facts.scenes = {"harbour", "pool"};
+  facts.levels.add_levels()->set_cost_ms_per_s(250.0);
   const v1::Greeting out = read(greeting(facts, *scene)).greeting();
   EXPECT_EQ(out.version().major(), kWireMajor);
   EXPECT_EQ(out.version().minor(), kWireMinor);
@@ -52,6 +53,8 @@ TEST(ServerMessages, GreetingHasAllThatAClientNeeds) {
   EXPECT_EQ(out.boat_list().boats(0).boat_id(), 3u);
   ASSERT_EQ(out.scenes_size(), 2);
   EXPECT_EQ(out.scenes(0), "harbour");
+  ASSERT_EQ(out.fidelity_levels().levels_size(), 1);
+  EXPECT_EQ(out.fidelity_levels().levels(0).cost_ms_per_s(), 250.0);
 }
 
 TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
@@ -89,7 +92,7 @@ TEST(ServerMessages, StateMessagesHaveTheirValues) {
   EXPECT_EQ(read(refusal("wrong version")).refusal().message(), "wrong version");
 }
 
-TEST(ServerMessages, AMessageOfDefaultsOnlyIsStillOfItsKind) {
+TEST(ServerMessages, MessageOfDefaultsKeepsItsKind) {
   EXPECT_TRUE(read(roomState(false, 0.0)).has_room_state());
   EXPECT_TRUE(read(ack(0, 0)).has_ack());
   EXPECT_TRUE(read(boatList({})).has_boat_list()) << "the last boat left";

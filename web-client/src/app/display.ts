@@ -15,14 +15,14 @@ import { nowS } from "./picture_clock";
 
 const reducedMotion = (): boolean => window.matchMedia("(prefers-reduced-motion: reduce)").matches;
 
-export interface DisplayHooks {
+interface DisplayHooks {
   /** The frame was dropped from the ring. */
   release(frame: Frame): void;
   /** Called before each picture; returns the boat that the boat's view follows. */
   update(nowS: number): Followed | undefined;
   /** Called after each picture. */
   drawn(nowS: number): void;
-  /** Called twice a second. `delayS`: age of the water shown. */
+  /** Called twice per second. `delayS`: age of the water shown. */
   measured(framesPerS: number, delayS: number | undefined): void;
   /** The quality of the drawing has changed by itself. */
   qualityChanged(): void;

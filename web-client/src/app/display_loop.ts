@@ -5,7 +5,7 @@ import { showNotice } from "../ui/notice";
 
 const kMeasureEveryMs = 500;
 
-export interface LoopHooks {
+interface LoopHooks {
   /** Draws one picture; `frameMs`: time since the one before. */
   draw(frameMs: number): void;
   measured(framesPerS: number): void;

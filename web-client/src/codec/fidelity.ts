@@ -1,5 +1,6 @@
-// The fidelity levels of the simulation by name.
+// The fidelity levels of the simulation by name, with what the server says of them.
 import { Fidelity } from "../gen/spindrift/v1/scene_pb";
+import type { FidelityLevels } from "../gen/spindrift/v1/wire_pb";
 
 /** Coarsest first. */
 export const kFidelities = [
@@ -18,4 +19,26 @@ export function fidelityName(wire: Fidelity | undefined): FidelityName {
 
 export function wireFidelity(name: FidelityName): Fidelity {
   return kFidelities.find((level) => level.name === name)!.wire;
+}
+
+/** A level that the room's scene can take. */
+export interface FidelityLevelInfo {
+  name: FidelityName;
+  /** Time that a simulated second takes the server, milliseconds: measured at the present level, predicted at the others. */
+  costMsPerS: number;
+  /** Error of the water's height over that height; undefined where it was not measured. */
+  errorRatio: number | undefined;
+  /** Day (UTC) of that measurement. */
+  measuredOn: string;
+}
+
+/** Returns the known levels with a usable cost, in the order of kFidelities; none from a server that does not send them. */
+export function readFidelityLevels(message: FidelityLevels | undefined): FidelityLevelInfo[] {
+  const isFigure = (value: number | undefined): value is number => value !== undefined && value >= 0 && Number.isFinite(value);
+  return kFidelities.flatMap(({ name, wire }) => {
+    const level = message?.levels.find(({ fidelity }) => fidelity === wire);
+    if (!isFigure(level?.costMsPerS)) return [];
+    const errorRatio = isFigure(level.errorRatio) ? level.errorRatio : undefined;
+    return [{ name, costMsPerS: level.costMsPerS, errorRatio, measuredOn: message!.errorsMeasuredOn }];
+  });
 }

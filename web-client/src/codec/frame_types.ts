@@ -58,7 +58,7 @@ export interface ParticleHeader extends FrameHeader {
 /** One byte per sample, 0 none to 255 white; samples lie as those of the surface. */
 export interface FoamHeader extends FrameHeader, PlaneExtents {}
 
-export interface BodiesHeader extends FrameHeader {
+interface BodiesHeader extends FrameHeader {
   count: number;
 }
 

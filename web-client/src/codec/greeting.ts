@@ -1,7 +1,7 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
-import { fidelityName, type FidelityName } from "./fidelity";
+import { fidelityName, readFidelityLevels, type FidelityLevelInfo, type FidelityName } from "./fidelity";
 import type { GroundGrid } from "./ground";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
@@ -44,7 +44,7 @@ export interface BoatDetail {
 }
 
 /** Shorter and longer side and depth of the resting water, as in the server's rules. */
-export interface WaterExtents {
+interface WaterExtents {
   sideM: number;
   longM: number;
   depthM: number;
@@ -67,6 +67,8 @@ export interface GreetingInfo {
   description: string;
   /** Level at which the server simulates the scene. */
   fidelity: FidelityName;
+  /** Levels that the scene can take; empty where the server does not say. */
+  fidelityLevels: FidelityLevelInfo[];
   /** Where the water is. */
   setting: SettingName;
   /** Undefined in a scene without a heightfield. */
@@ -168,6 +170,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       title: scene?.title || scene?.name || greeting.room,
       description: scene?.description ?? "",
       fidelity: fidelityName(scene?.fidelity),
+      fidelityLevels: readFidelityLevels(greeting.fidelityLevels),
       setting: scene ? readSetting(scene) : "glassTank",
       wave,
       wind: scene && readWind(scene),

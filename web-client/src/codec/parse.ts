@@ -41,7 +41,7 @@ const kReaders = {
 } satisfies { [K in Kind]: ReaderOf<K> };
 
 /** A message of the server as read, frames apart. */
-export type ParsedEvent = { [K in Kind]: { kind: K } & Exclude<ReturnType<(typeof kReaders)[K]>, Malformed> }[Kind];
+type ParsedEvent = { [K in Kind]: { kind: K } & Exclude<ReturnType<(typeof kReaders)[K]>, Malformed> }[Kind];
 
 export type ParsedMessage = ParsedEvent | PlainFrame | PackedFrame | { kind: "unknown" } | Malformed;
 

@@ -97,7 +97,7 @@ export class Connection implements ConnectionCalls {
   introduce(name: string, token: string): void {
     this.identity = { ...this.identity, name, token };
     this.failedCount = 0;
-    this.failPending("the page connects anew under another name");
+    this.failPending("the page connects again under another name");
     this.connect();
   }
 

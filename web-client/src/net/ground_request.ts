@@ -2,7 +2,7 @@
 import { readGround, type GroundGrid } from "../codec/ground";
 import { isMalformed } from "../codec/malformed";
 
-/** Throws an Error with a line for people where there is none or it cannot be read. */
+/** Throws an Error with a line for people if the room has no ground or it cannot be read. */
 export async function requestGround(room: string, token: string): Promise<GroundGrid> {
   const answer = await fetch(`api/v1/rooms/${encodeURIComponent(room)}/ground`, token ? { headers: { Authorization: `Bearer ${token}` } } : {});
   if (!answer.ok) throw new Error(`the ground of ${room}: ${answer.status} ${answer.statusText}`);

@@ -35,7 +35,7 @@ export type ConnectionState =
 export type DetailChoice = "auto" | LevelName;
 
 /** A plain frame whose payload is in a buffer of its own, which may be longer than the payload. */
-export type FrameOf<L extends FrameLayer> = FrameHeaders[L] & { layer: L; buffer: ArrayBuffer };
+type FrameOf<L extends FrameLayer> = FrameHeaders[L] & { layer: L; buffer: ArrayBuffer };
 export type SurfaceFrame = FrameOf<"surface">;
 export type ParticleFrame = FrameOf<"particles">;
 export type FoamFrame = FrameOf<"foam">;

@@ -200,7 +200,7 @@ export class WaterScene {
     return this.greeting && diveWater(this.greeting, this.camera.near);
   }
 
-  /** Returns wetness and swash foam (0 to 1) of the ground at a place; undefined where the shore is fixed, and before the first picture. */
+  /** Returns wetness and swash foam (0 to 1) of the ground at a position; undefined where the shore is fixed, and before the first picture. */
   shoreAt(xM: number, zM: number): { wetness: number; foam: number } | undefined {
     if (!this.greeting) return undefined;
     const { sideM, widthM } = this.greeting;

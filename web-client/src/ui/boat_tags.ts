@@ -16,7 +16,7 @@ const kOverBoatLengths = 0.5;
 const kHalfWidthPx = 44;
 const kHeightPx = 26;
 
-export interface TagPlace {
+interface TagPlace {
   xPx: number;
   yPx: number;
   /** Distance along the view. */

@@ -7,7 +7,7 @@ import { BoatSchema, BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v
 import { ControlBoatSchema, SetSpeedSchema } from "../gen/spindrift/v1/wire_pb";
 import type { SliderRange } from "./slider_row";
 
-export interface EffectRange extends SliderRange {
+interface EffectRange extends SliderRange {
   default: number;
 }
 

@@ -1,10 +1,10 @@
 // The room's fidelity: the level, what each costs and how far off it is, and a note where the machine cannot keep up.
-import { type FidelityName, kFidelities, wireFidelity } from "../codec/fidelity";
+import { type FidelityLevelInfo, type FidelityName, kFidelities, wireFidelity } from "../codec/fidelity";
 import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
 import type { CommandAction } from "../net/messages";
 import { make, setText } from "./dom";
-import { describeCost, kMeasuredOn, shortCost } from "./fidelity_costs";
+import { describeLevel, levelTable } from "./fidelity_texts";
 import { PaceWatch } from "./pace_watch";
 import { SelectRow } from "./select_row";
 
@@ -16,9 +16,11 @@ export class FidelityRow {
   private readonly cost = make("p", { class: "hint", "data-testid": "fidelity-cost" });
   private readonly pace = make("p", { class: "hint trouble", "data-testid": "pace", role: "status", hidden: "" });
   private readonly table = make("table", { "data-testid": "fidelity-table" });
+  private readonly costs = make("details", { class: "costs" }, [make("summary", {}, ["What each level costs"]), this.table]);
   private readonly watch = new PaceWatch();
   private sceneName = "";
   private level: FidelityName = "balanced";
+  private levels: readonly FidelityLevelInfo[] = [];
   private speed = 1;
   private changeId = 0;
 
@@ -32,13 +34,13 @@ export class FidelityRow {
       kFidelities.map(({ name }) => ({ value: name, label: name })),
       this.level,
     );
-    const costs = make("details", { class: "costs" }, [make("summary", {}, [`What each level costs (measured ${kMeasuredOn})`]), this.table]);
-    this.element = make("div", {}, [this.row.element, this.cost, this.pace, costs]);
+    this.element = make("div", {}, [this.row.element, this.cost, this.pace, this.costs]);
   }
 
   enter(greeting: GreetingInfo): void {
     this.sceneName = greeting.sceneName;
     this.level = greeting.fidelity;
+    this.levels = greeting.fidelityLevels;
     this.speed = greeting.speed;
     this.changeId = 0;
     this.watch.forget();
@@ -76,13 +78,13 @@ export class FidelityRow {
 
   private show(): void {
     this.row.value = this.level;
-    setText(this.cost, describeCost(this.sceneName, this.level));
+    setText(this.cost, describeLevel(this.levels.find(({ name }) => name === this.level)));
   }
 
   private showTable(): void {
-    const rowOf = (tag: "th" | "td", cells: string[]) => make("tr", {}, cells.map((text) => make(tag, {}, [text])));
-    const rows = kFidelities.map(({ name }) => [name, ...Object.values(shortCost(this.sceneName, name))]);
-    this.table.replaceChildren(rowOf("th", ["level", "work per second", "error"]), ...rows.map((cells) => rowOf("td", cells)));
+    const rows = levelTable(this.levels).map((cells, row) => make("tr", {}, cells.map((text) => make(row === 0 ? "th" : "td", {}, [text]))));
+    this.table.replaceChildren(...rows);
+    this.costs.hidden = this.levels.length === 0;
   }
 
   private showPace(text: string): void {

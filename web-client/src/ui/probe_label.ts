@@ -1,10 +1,10 @@
-// The label of the probe: value, unit and place of the water under the pointer, the finger, or the middle of the picture.
+// The label of the probe: value, unit and position of the water under the pointer, the finger, or the middle of the picture.
 import type { Reading } from "../scene/looks/look_room";
 import { byId, formatBy, setText } from "./dom";
 
 const kPlaceStepM = 0.01;
 const kEdgePx = 8;
-/** Distance of the label from the place: beside a pointer, above a finger. */
+/** Distance of the label from the position: beside a pointer, above a finger. */
 const kBesidePx = 14;
 const kAbovePx = 48;
 
@@ -22,7 +22,7 @@ export function describeValue({ quantity, value, step, bound }: Pick<Reading, "q
   return `${sign}${Number(number) === 0 ? number.replace("-", "") : number}${quantity.unit ? ` ${quantity.unit}` : ""}`;
 }
 
-/** Returns the place with its unit; the height only of particles, which lie anywhere. */
+/** Returns the position with its unit; the height only of particles, which lie anywhere. */
 export function describePlace({ quantity, xM, yM, zM }: Pick<Reading, "quantity" | "xM" | "yM" | "zM">): string {
   const at = (valueM: number): string => formatBy(kPlaceStepM, valueM);
   return quantity.of === "particles" ? `x ${at(xM)} m, y ${at(yM)} m, z ${at(zM)} m` : `x ${at(xM)} m, z ${at(zM)} m`;
@@ -34,7 +34,7 @@ export class ProbeLabel {
   private readonly value = byId("probe-value");
   private readonly place = byId("probe-place");
 
-  /** `reading` undefined: there is no value at the place. */
+  /** `reading` undefined: there is no value at the position. */
   show(reading: Reading | undefined, { xPx, yPx, isTouch }: ProbePlace): void {
     this.root.hidden = !reading;
     if (!reading) return;

@@ -3,7 +3,7 @@
 
 export const kDebounceMs = 80;
 
-export interface SliderWorld {
+interface SliderWorld {
   /** Sends the value; returns the command id that ack or reject will carry. */
   send(value: number): number;
   setTimer(callback: () => void, ms: number): number;

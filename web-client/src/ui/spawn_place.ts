@@ -1,4 +1,4 @@
-// Finds a place for a new boat: deep enough, and clear of obstacles and other boats. Pure.
+// Finds a position for a new boat: deep enough, and clear of obstacles and other boats. Pure.
 import type { GreetingInfo } from "../codec/greeting";
 import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, depthAtM, type Bed } from "../scene/landscape/terrain";
@@ -7,7 +7,7 @@ const kTriesCount = 160;
 /** The golden angle: candidates fill the water evenly from the middle outward. */
 const kTurnRad = Math.PI * (3 - Math.sqrt(5));
 
-/** Returns the free place nearest to the middle for a hull of `lengthM`; if none is free, the candidate with the most room. */
+/** Returns the free position nearest to the middle for a hull of `lengthM`; if none is free, the candidate with the most room. */
 export function spawnPlace(
   greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "beaches" | "obstacles">,
   lengthM: number,

@@ -14,7 +14,7 @@ const kDetails: Record<"full" | "plain", Detail> = { full: { sidesCount: 14, isF
 /** Where a launch's cockpit ends and its foredeck begins. */
 const kBulkheadAt = 0.48;
 
-export interface BoatParts {
+interface BoatParts {
   hull: BufferGeometry;
   lid: BufferGeometry;
   lamps: BoatLamp[];

@@ -33,7 +33,7 @@ export function lampShare(kind: BoatLamp["kind"], bearingDeg: number): number {
 
 const scratchM = new Vector3();
 
-/** Adds the lights of one boat, which `placed` has moved to its place. */
+/** Adds the lights of one boat, which `placed` has moved to its position. */
 export function addBoatLamps(lamps: Lamps, boat: BoatDetail, placed: Object3D, own: readonly BoatLamp[], cameraM: Vector3): void {
   const seen = placed.worldToLocal(scratchM.copy(cameraM));
   const bearingDeg = (Math.atan2(seen.z, seen.x) * 180) / Math.PI;

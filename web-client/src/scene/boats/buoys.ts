@@ -1,5 +1,5 @@
 // Buoys off the ends of breakwaters, in an open sea. Decoration: the server does not know them; boats push them
-// aside. Their places follow from the scene alone; the vertex shader moves them with the drawn water (shaders/solid.vert, FLOATS).
+// aside. Their positions follow from the scene alone; the vertex shader moves them with the drawn water (shaders/solid.vert, FLOATS).
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
@@ -31,7 +31,7 @@ const kLampPaints: Record<BuoyPlace["kind"], Paint> = { red: [0.8, 0.08, 0.05, -
 const kWeed: Paint = [0.09, 0.11, 0.05, 0.6];
 const kSteel: Paint = [0.30, 0.31, 0.32, 0];
 
-export interface BuoyPlace {
+interface BuoyPlace {
   kind: "red" | "green";
   xM: number;
   zM: number;
@@ -40,7 +40,7 @@ export interface BuoyPlace {
 
 type BuoyScene = Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "beaches" | "obstacles" | "wave" | "setting">;
 
-/** Returns the places of the buoys: off both ends of each breakwater, where there is room and depth, and outside of absorbing layers. */
+/** Returns the positions of the buoys: off both ends of each breakwater, where there is room and depth, and outside of absorbing layers. */
 export function buoyPlaces(greeting: BuoyScene): BuoyPlace[] {
   const { wave, obstacles, setting } = greeting;
   if (!wave || setting !== "openSea") return [];
@@ -75,7 +75,7 @@ export interface HullPlan {
   beamM: number;
 }
 
-/** Returns where boats push a buoy: across each hull that reaches it, out of the ellipse around hull and buoy. Far from boats it is at its place. */
+/** Returns where boats push a buoy: across each hull that reaches it, out of the ellipse around hull and buoy. Far from boats it is at its position. */
 export function pushedAside({ xM, zM, radiusM }: Pick<BuoyPlace, "xM" | "zM" | "radiusM">, hulls: readonly HullPlan[]): [xM: number, zM: number] {
   let [x, z] = [xM, zM];
   for (const hull of hulls) {

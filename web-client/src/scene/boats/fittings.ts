@@ -4,7 +4,7 @@ import { addPlate, addRod, addTurned, addWindow } from "../meshes/shapes";
 import type { HullLines } from "./lines";
 import { kBlack, kCanvas, kGlass, kMetal, kSteel, type Livery } from "./livery";
 
-/** A navigation light: its place on the boat, and its kind, from which colour and sector follow (boat_lamps.ts). */
+/** A navigation light: its position on the boat, and its kind, from which colour and sector follow (boat_lamps.ts). */
 export interface BoatLamp {
   at: Point;
   kind: "port" | "starboard" | "masthead" | "stern" | "allRound";

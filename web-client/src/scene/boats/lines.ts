@@ -1,6 +1,6 @@
-// The lines plan of a boat: keel, sheer, half breadths and profile as functions of the place along the hull, all from the hull's length,
+// The lines plan of a boat: keel, sheer, half breadths and profile as functions of the position along the hull, all from the hull's length,
 // beam, height and draught. The keel touches half the height below the origin, the deck's lowest point half the height above it; the
-// widest place has the beam, and the hull reaches from transom to stem over the length. Bow along +x, starboard +z. Pure.
+// widest section has the beam, and the hull reaches from transom to stem over the length. Bow along +x, starboard +z. Pure.
 import type { BoatDetail } from "../../codec/greeting";
 import { clamp, smooth } from "../maths/interpolate";
 import type { Point } from "../meshes/mesh_builder";
@@ -12,11 +12,11 @@ const kLaunchFromM = 2.3;
 const kCutterFromM = 2.7;
 
 interface HullForm {
-  /** Place of the greatest beam, 0 at the transom, 1 at the stem. */
+  /** Position of the greatest beam, 0 at the transom, 1 at the stem. */
   widestAt: number;
   /** Breadth of the transom, as a share of the beam. */
   transom: number;
-  /** Exponent of the outline ahead of the widest place: the larger, the fuller the bow. */
+  /** Exponent of the outline ahead of the widest section: the larger, the fuller the bow. */
   entry: number;
   /** How far keel ends lie inside the ends of the sheer, in lengths. */
   stemRake: number;
@@ -45,7 +45,7 @@ const kForms: Record<HullKind, HullForm> = {
 const kStrakeBeams = 0.014;
 /** Thickness of the sides, as a share of the beam. */
 const kSideBeams = 0.034;
-/** Place of the deck's and the keel's lowest points. */
+/** Position of the deck's and the keel's lowest points. */
 export const kLowestAt = 0.36;
 
 export function hullKind({ lengthM }: Pick<BoatDetail, "lengthM">): HullKind {
@@ -111,7 +111,7 @@ export class HullLines {
     return this.sheerHalfM(along) * (middle + (bow - middle) * share);
   }
 
-  /** Place along the hull: stem and transom lean outward with the height. */
+  /** Position along the hull: stem and transom lean outward with the height. */
   xM(along: number, yM: number): number {
     const { stemRake, sternRake } = this.form;
     const { lengthM, heightM } = this.boat;

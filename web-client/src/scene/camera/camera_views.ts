@@ -140,7 +140,7 @@ export class CameraViews {
     };
   }
 
-  /** Leaves the view for another place of the camera, which may be nearer than the user can go. */
+  /** Leaves the view for another position of the camera, which may be nearer than the user can go. */
   place(eyeM: readonly [number, number, number], targetM: readonly [number, number, number]): void {
     this.framed = this.following = this.travel = undefined;
     this.controls.minDistance = 0;

@@ -41,12 +41,12 @@ export function diveWater(greeting: GreetingInfo, nearM: number): DiveWater | un
   return { sideM, widthM, depthM: wave.depthM, nearM, outsideM, obstacles, groundM };
 }
 
-/** Returns the distance from a place to the nearest side of the square; negative outside. */
+/** Returns the distance from a position to the nearest side of the square; negative outside. */
 function fromSidesM({ sideM, widthM }: DiveWater, xM: number, zM: number): number {
   return Math.min(sideM / 2 - Math.abs(xM), widthM / 2 - Math.abs(zM));
 }
 
-/** Moves a camera to the nearest place where it may be. Returns whether it was moved. */
+/** Moves a camera to the nearest position where it may be. Returns whether it was moved. */
 export function keepClear(water: DiveWater, positionM: Vector3): boolean {
   const { nearM, outsideM, sideM, widthM, groundM, obstacles } = water;
   const clearM = kClearNears * nearM;
@@ -78,9 +78,9 @@ export function keepClear(water: DiveWater, positionM: Vector3): boolean {
 /** The view from below: depth of the eye as a share of the water's, and how far ahead it looks, in sides. */
 const kEyeDepths = 0.62;
 const kAheadSides = 0.12;
-/** Places that are tried for it, in half sides of the square. */
+/** Positions that are tried for it, in half sides of the square. */
 const kTried = [-0.6, -0.4, -0.2, 0, 0.2, 0.4, 0.6];
-/** Clearance beyond which a place is not better, in sides. */
+/** Clearance beyond which a position is not better, in sides. */
 const kEnoughSides = 0.2;
 
 /**

@@ -21,7 +21,7 @@ export interface ViewedBox {
   widthM?: number;
   /** Share of the box's sides that has to be seen in a wide and in a tall free part; 1 if left out. The rest may lie outside the picture. */
   focus?: { wide: number; tall: number };
-  /** Place of that part's middle in sides of the box, along x and z; the middle of the box if left out. */
+  /** Position of that part's middle in sides of the box, along x and z; the middle of the box if left out. */
   lean?: { x: number; z: number };
   /** Middle of the box if it is not the y axis. */
   centreM?: { x: number; z: number };

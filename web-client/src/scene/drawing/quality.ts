@@ -21,7 +21,7 @@ export interface WhitewaterQuality {
 }
 
 /** Settings of a tier. */
-export interface Tier {
+interface Tier {
   /** Most drawn pixels per CSS pixel, along each axis. */
   maxPixelRatio: number;
   /** Frames per second, at most, that the page asks for; pictures between them are interpolated. */

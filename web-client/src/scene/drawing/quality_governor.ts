@@ -11,7 +11,7 @@ interface Rung {
 /** From the cheapest to the most expensive; within a tier resolution comes before everything else. */
 const kRungs: readonly Rung[] = kTierNames.flatMap((tier) => (tier === "minimal" ? [1] : [0.75, 1]).map((resolutionShare) => ({ tier, resolutionShare })));
 
-/** Time between pictures that is too slow: at least 28 pictures a second where hardware can be expected, 20 elsewhere. */
+/** Time between pictures that is too slow: at least 28 pictures per second where hardware can be expected, 20 elsewhere. */
 const kSlowMs: Record<TierName, number> = { minimal: 50, low: 50, medium: 36, high: 36, highest: 36 };
 const kFastMs = 20;
 const kSlowForMs = 1500;

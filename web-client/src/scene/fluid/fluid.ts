@@ -27,7 +27,7 @@ import { FluidTilesPass } from "./fluid_tiles_pass";
 const kColourSideM = 6;
 
 /** The passes of one room's particles, in the order in which they are drawn. */
-export interface FluidPasses {
+interface FluidPasses {
   /** Before the water. */
   before: Pass[];
   /** After the water. */

@@ -62,7 +62,7 @@ export class FluidParticles implements Pass {
     if (frames) this.show(frames.from, clamp(shownS! - frames.from.timeS, 0, kMaxAdvanceIntervals * this.clock.intervalS()));
   }
 
-  /** The particles of the last picture, for values on the CPU; undefined if there are none. */
+  /** The particles of the last picture, for values on the CPU; undefined without particles. */
   get values(): ShownParticles | undefined {
     return this.isEmpty ? undefined : { frame: this.shown!, words: this.words!.array as Uint16Array, advanceS: this.uniforms["u_advance_s"]!.value as number };
   }

@@ -13,7 +13,7 @@ import type { FluidTilesPass } from "./fluid_tiles_pass";
 import { viewRay } from "./view_ray";
 
 /** What the surface is shaded from. */
-export interface FluidSurfaceInputs {
+interface FluidSurfaceInputs {
   tiles: FluidTilesPass;
   smooth: FluidSmoothPass;
   normal: FluidNormalPass;

@@ -1,4 +1,4 @@
-// The view rays of a camera's pixels, for passes that find places from distances. Pure: no renderer.
+// The view rays of a camera's pixels, for passes that find positions from distances. Pure: no renderer.
 import type { PerspectiveCamera, Vector4 } from "three";
 
 /** Writes the scale (x, y) and the offset (z, w) that turn normalized device coordinates into the view ray (x, y, -1). */

@@ -52,7 +52,7 @@ export function placeM(shown: ShownParticles, index: number): [number, number, n
   return [0, 1, 2].map((axis) => wordMinM[axis]! + (wordMaxM[axis]! - wordMinM[axis]!) * share[axis]! + velocity[axis]! * shown.advanceS) as [number, number, number];
 }
 
-/** Returns the first particle whose sphere the ray meets within `farM`; undefined if there is none. */
+/** Returns the first particle whose sphere the ray meets within `farM`; undefined if it meets no sphere. */
 export function pickParticle({ originM, direction }: Ray, shown: ShownParticles, farM = Infinity): number | undefined {
   const { frame, words, advanceS } = shown;
   const { wordMinM, wordMaxM, radiusM } = frame;

@@ -54,7 +54,7 @@ export function timeWeights(times: Readonly<FrameTimes>, mix: number, out: Weigh
 
 /**
  * Writes the derivatives of these weights by time [1/s] into `out`. They sum to 0. At a single frame (`fromS` equal to `toS`) they are
- * those of the straight line to a neighbour; false where there is none, because the rate is not known.
+ * those of the straight line to a neighbour; false without one, because the rate is not known.
  */
 export function timeRateWeights(times: Readonly<FrameTimes>, mix: number, out: Weights): boolean {
   const { beforeS, fromS, toS, afterS } = times;

@@ -12,9 +12,9 @@ import { overgrown, shaded } from "./paints";
 /** The light at the end of a wall. */
 export type LightKind = "lighthouse" | "beacon";
 
-export interface Breakwater {
+interface Breakwater {
   geometry: BufferGeometry;
-  /** Place of the light's lamp in the wall's own axes (z = 0). */
+  /** Position of the light's lamp in the wall's own axes (z = 0). */
   lamp: { xM: number; yM: number };
 }
 

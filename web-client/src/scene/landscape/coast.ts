@@ -8,7 +8,7 @@ import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { bedPaint, mixPaint } from "./paints";
 import { depthAtM, insideM, isShoreDepth, longSideM, type Bed } from "./terrain";
 
-export interface Coast {
+interface Coast {
   bed: Bed;
   sides: Readonly<Record<SideName, SideKind>>;
 }

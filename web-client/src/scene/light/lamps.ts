@@ -1,4 +1,4 @@
-// The lamps that shine in the dark: places, colours and sizes of their glow for one picture, as instances of a quad.
+// The lamps that shine in the dark: positions, colours and sizes of their glow for one picture, as instances of a quad.
 import { BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from "three";
 
 /** More than a room has: 16 boats with 4 lamps, lights of breakwaters with their beams, buoys. The rest is not drawn. */
@@ -15,7 +15,7 @@ export const kLampColors = {
 export class Lamps {
   readonly geometry = new InstancedBufferGeometry();
   private count = 0;
-  /** Place (m), and radius of the glow (m). */
+  /** Position (m), and radius of the glow (m). */
   private readonly at = new InstancedBufferAttribute(new Float32Array(4 * kLampsMax), 4);
   /** Colour, and 1 if the lamp floats: its height is then over the water's surface. */
   private readonly color = new InstancedBufferAttribute(new Float32Array(4 * kLampsMax), 4);

@@ -127,7 +127,7 @@ export function lightAt(hour: number, storm: number): Light {
   const clear = clearSky(sunDirection[1]);
   const wild = smoothstep(kFairStorm, 1, storm);
   const sky = mixSky(clear, stormSky(clear), wild);
-  // The moon shines when the sun's light is gone, so that the direction of the light changes while there is none.
+  // The moon shines when the sun's light is gone, so that the direction of the light changes in the dark.
   const moonShare = smoothstep(-0.07, -0.16, sunDirection[1]) * smoothstep(0.02, 0.2, moonDirection[1]) * (1 - 0.92 * wild);
   const isMoon = moonShare > 0;
   const moon = scale(kMoonLight, moonShare);
@@ -180,7 +180,7 @@ export function darknessOf(light: Light): number {
 }
 
 /** What follows from a light for the shaders. */
-export interface DerivedLight {
+interface DerivedLight {
   /** The sky's colours with its clouds mixed in, for shaders that do not read the cube map. */
   veiled: readonly [zenith: Rgb, middle: Rgb, horizon: Rgb];
   /** Light that enters level water, relative to a clear noon: the colour of what water scatters. */

@@ -43,7 +43,7 @@ export interface Legend {
   follows: boolean;
 }
 
-/** What the probe reads at a place. */
+/** What the probe reads at a position. */
 export interface Reading {
   quantity: Quantity;
   value: number;
@@ -57,7 +57,7 @@ export interface Reading {
 }
 
 /** What the passes of a look are made from. `field` undefined: the room has no wave. */
-export interface LookInputs {
+interface LookInputs {
   frames: StreamedFrames;
   field: FieldPass | undefined;
   foam: FoamPass | undefined;

@@ -27,13 +27,13 @@ export interface Paint {
 export const kGreyPaint: Paint = { albedo: [0.16, 0.18, 0.2], shine: 0 };
 export const kBluePaint: Paint = { albedo: [0.04, 0.16, 0.28], shine: 0.5 };
 
-export interface SurfaceLookInputs {
+interface SurfaceLookInputs {
   sky: Sky;
   field: Texture;
   solids: SolidsPass;
   quality: Quality;
   paint: Paint;
-  /** How far below its place the surface is drawn. */
+  /** How far below its position the surface is drawn. */
   loweredM: number;
   /** Undefined: no value is shown. */
   colour?: SurfaceColour | undefined;

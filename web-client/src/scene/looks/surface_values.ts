@@ -1,4 +1,4 @@
-// Values of the water's surface at a place, from the samples of the frames: the same that look_value.frag and look_surface.frag draw,
+// Values of the water's surface at a position, from the samples of the frames: the same that look_value.frag and look_surface.frag draw,
 // without the rounding of textures. Pure.
 import type { FoamFrame } from "../../net/messages";
 import type { Between } from "../frames/frame_ring";
@@ -20,7 +20,7 @@ function samplesOf({ sideM, widthM, periodicX, periodicZ }: Rectangle, { resolut
   return { lengthXM: sideM, lengthZM: widthM, countX: resolutionCount, countZ, periodicX, periodicZ };
 }
 
-/** The surface of one picture, for evaluation at many places. Valid until the next frame arrives. */
+/** The surface of one picture, for evaluation at many positions. Valid until the next frame arrives. */
 export class ShownSurface {
   private readonly counts: PlaneCounts;
   private readonly planes: readonly Int16Array[];
@@ -79,7 +79,7 @@ export class ShownSurface {
 }
 
 /**
- * Returns the breaking criterion: the rate of rise, as the mean of four places half a sample away, which at a sample has the weights
+ * Returns the breaking criterion: the rate of rise, as the mean of four positions half a sample away, which at a sample has the weights
  * (1 2 1)^2 / 16 of the server's mean over 3 x 3 (shaders/wave/surface_rate.glsl), over sqrt(g d) with the still depth d.
  */
 export function breakingCriterion(surface: ShownSurface, bed: Bed, gravityMps2: number, xM: number, zM: number): number {

@@ -7,7 +7,7 @@ import { kLeastDepths, type ShownSurface } from "./surface_values";
 const kPerSide = 64;
 
 /**
- * Returns the magnitudes of elevation or rate at places spread over the water. Places on land, under a film of water (less than kLeastDepths
+ * Returns the magnitudes of elevation or rate at positions spread over the water. Positions on land, under a film of water (less than kLeastDepths
  * of the scene's depth) and in obstacles do not count: there the elevation is that of the ground.
  */
 export function waterMagnitudes(surface: ShownSurface, greeting: Parameters<typeof bedOf>[0] & Pick<GreetingInfo, "obstacles">, of: "elevation" | "rate"): Float64Array {

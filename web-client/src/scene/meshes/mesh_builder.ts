@@ -17,7 +17,7 @@ export class MeshBuilder {
   private readonly positions: number[] = [];
   private readonly colors: number[] = [];
   private readonly index: number[] = [];
-  /** Vertices at one place that share a normal. */
+  /** Vertices at one position that share a normal. */
   private readonly welds: [number, number][] = [];
 
   /**

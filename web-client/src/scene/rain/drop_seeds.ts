@@ -1,4 +1,4 @@
-// Random places of the drops of rain, for the vertex shaders. Pure.
+// Random positions of the drops of rain, for the vertex shaders. Pure.
 
 /** Returns `count` times `copies` vertices of four floats: three random numbers of the drop (0..1), and the copy's number. */
 export function makeDropSeeds(count: number, copies: number, random: () => number): Float32Array<ArrayBuffer> {

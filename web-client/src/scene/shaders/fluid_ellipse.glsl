@@ -1,4 +1,4 @@
-// Include: the place of this pixel in the particle's ellipse.
+// Include: the position of this pixel in the particle's ellipse.
 flat in float v_ahead_m;
 flat in float v_radius_m;
 flat in vec3 v_flight;

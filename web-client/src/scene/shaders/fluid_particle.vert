@@ -4,7 +4,7 @@
 // A particle among others is drawn wider than it is, so that neighbours overlap. A single one is a drop, drawn smaller, because it
 // stands for many, and stretched along its flight. Under the wave's surface (u_has_water) a particle is the wave's water and is not
 // drawn; where many of them are white, their foam floats on the surface. TILES: the target's pixels are tiles of the screen. SHADOW: seen along
-// the sunlight, at the place of the floor that it shades.
+// the sunlight, at the position of the floor that it shades.
 in vec3 position;  // x, z, y as fractions of the bounds
 in vec3 a_packed;  // u16 / 65535
 

@@ -1,7 +1,7 @@
 // The glow of a lamp: a quad that faces the camera, at least a few pixels wide. A beam: a ribbon from its lamp, turned to the camera.
 // A glow is as bright as the share of its lamp that no solid hides; what a beam passes behind is found per pixel (lamp.frag).
 in vec3 position;  // corner, -1..1
-in vec4 a_at;      // place and radius (m)
+in vec4 a_at;      // position and radius (m)
 in vec4 a_color;   // colour; 1: the height is over the water's surface
 in vec3 a_reach;   // end of the beam from its lamp (m); 0: a glow
 uniform mat4 viewMatrix;

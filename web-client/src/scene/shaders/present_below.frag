@@ -17,7 +17,7 @@ void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
   vec3 ray = normalize(v_direction);
   float ahead = dot(ray, u_camera_ahead);
-  // The nearest place that can be drawn.
+  // The nearest position that can be drawn.
   vec3 begin = u_camera_m + ray * (u_near_far_m.x / ahead);
   vec3 light = texture(u_behind, uv).rgb;
   float over_m = begin.y - waterLevel(begin.xz);

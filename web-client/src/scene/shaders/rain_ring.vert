@@ -17,7 +17,7 @@ void main() {
   float life_s = 0.55 + 0.35 * position.z;
   float turns = u_time_s / life_s + position.x * 7.0;
   v_age = fract(turns);
-  // Every fall has a place of its own.
+  // Every fall has a position of its own.
   float fall = mod(floor(turns), 512.0);
   vec2 center = fract(position.xy + vec2(hash(fall + 17.0 * position.z), hash(fall + 31.0 * position.x)));
   int vertex = int(position.w);

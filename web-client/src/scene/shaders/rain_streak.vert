@@ -13,7 +13,7 @@ const vec3 kBoxM = vec3(18.0, 12.0, 18.0);
 const float kExposureS = 0.028;
 
 void main() {
-  // Drops are not equally fast, or all would come back to their places at the same time.
+  // Drops are not equally fast, or all would come back to their positions at the same time.
   vec3 velocity = u_velocity_mps * (0.85 + 0.3 * position.x);
   vec3 fallen = position.xyz * kBoxM + mod(velocity * u_time_s, kBoxM);
   vec3 from_camera = mod(fallen - u_camera_m, kBoxM) - 0.5 * kBoxM;

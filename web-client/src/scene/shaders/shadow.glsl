@@ -5,7 +5,7 @@ uniform vec2 u_shadow_texel_m;
 
 const int kShadowSamples = 12;
 
-// Share of the direct light that arrives at a point of a surface, averaged over a disc of radius `soft_m` across the light. Places outside
+// Share of the direct light that arrives at a point of a surface, averaged over a disc of radius `soft_m` across the light. Positions outside
 // the map are lit, and clouds leave no shadow.
 float sunShare(vec3 world, vec3 normal, float soft_m) {
   vec2 size = vec2(textureSize(u_shadow, 0));

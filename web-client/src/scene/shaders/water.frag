@@ -153,7 +153,7 @@ void main() {
   if (inner < 1.0) deep_m = mix(v_top_m + bedDepth(v_world.xz, u_extent_m, u_depth_m), deep_m, inner);
   if (deep_m <= 0.0) discard;
   if (behind_depth < gl_FragCoord.z) {
-    // Ground and thin water are two meshes at nearly the same place: which is in front says nothing there.
+    // Ground and thin water are two meshes at nearly the same position: which is in front says nothing there.
     float under_m = viewZ(behind_depth) - v_view_z;
     if (under_m > u_lift_m / max((u_camera_m.y - v_world.y) / length(u_camera_m - v_world), 0.05) || deep_m > 4.0 * u_lift_m) discard;
   }

@@ -62,7 +62,7 @@ float foamCover() {
   return smoothstep(1.0 - strength, 1.16 - 0.7 * strength, texture(u_noise, v_world.xz / u_lace_m).r) * smoothstep(0.0, 0.35, foam);
 }
 
-// Place on the screen, and whether it is there.
+// Position on the screen, and whether it is there.
 bool onScreen(vec3 at, out vec2 uv, out float view_z) {
   vec4 view = viewMatrix * vec4(at, 1.0);
   vec4 clip = projectionMatrix * view;

@@ -1,6 +1,6 @@
 // One point per drop, patch of foam or bubble (whitewater/diffuse_particles.ts). Draws those of one kind:
 // SPRAY: drops, stretched along their flight, and mist. BUBBLES: below the surface. FROTH: foam, seen from above.
-in vec4 position;  // place (m), kind + share of its life that has passed
+in vec4 position;  // position (m), kind + share of its life that has passed
 in vec4 a_motion;  // velocity (m/s), radius (m)
 
 uniform mat4 viewMatrix;

@@ -11,7 +11,7 @@ export interface ShadowBox {
 const kUp = new Vector3(0, 1, 0);
 
 /**
- * Returns the matrix from world places to the map, 0..1 along each axis: columns, rows, and distance from the light. It depends on the box and
+ * Returns the matrix from world positions to the map, 0..1 along each axis: columns, rows, and distance from the light. It depends on the box and
  * the light only, so that the edges of a shadow do not move with the camera. `towardLight`: a unit vector that points above the horizon.
  */
 export function shadowMatrix({ halfM, lowM, highM }: ShadowBox, towardLight: Vector3): Matrix4 {

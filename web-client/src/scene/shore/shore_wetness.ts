@@ -12,9 +12,9 @@ export const kDryingS = 45;
 /** Foam fades by a factor of e within this time: on water, and as lace on the ground. */
 const kFoamOnWaterS = 1.6;
 const kFoamOnGroundS = 5;
-/** Water that came to a place within this time belongs to the front. */
+/** Water that came to a position within this time belongs to the front. */
 const kFrontS = 0.5;
-/** A front is white by the speed at which it fills a place: none below the first, all above the second. */
+/** A front is white by the speed at which it floods the ground: none below the first, all above the second. */
 const kFillMps = [0.03, 0.14] as const;
 /** Streamed foam on water shallower than this is left on the ground. */
 const kThinM = 0.06;
@@ -28,7 +28,7 @@ export function wetnessAfter(sinceS: number): number {
   return 1 - ramp(0, kDryingS, sinceS);
 }
 
-/** Returns the foam (0 to 1) of a front that has filled a place with `depthM` of water within `sinceS`. */
+/** Returns the foam (0 to 1) of a front that has flooded a point with `depthM` of water within `sinceS`. */
 export function frontFoam(depthM: number, sinceS: number): number {
   if (sinceS > kFrontS || depthM < 2 * kFilmM) return 0;
   return 0.95 * ramp(kFillMps[0], kFillMps[1], (depthM - kFilmM) / sinceS);
@@ -83,7 +83,7 @@ export class ShoreWetness {
     this.timeS = timeS;
   }
 
-  /** Returns wetness and foam (0 to 1) of the sample at a place; undefined before the first frame. */
+  /** Returns wetness and foam (0 to 1) of the sample at a position; undefined before the first frame. */
   at(shareX: number, shareZ: number): { wetness: number; foam: number } | undefined {
     if (this.timeS === undefined) return undefined;
     const { resolutionCount, countZ } = this.counts;

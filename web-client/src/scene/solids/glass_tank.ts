@@ -28,7 +28,7 @@ const kBase: Paint = [0.20, 0.22, 0.24, 0.1];
 const kGlassPaint: Paint = [1, 1, 1, 0];
 const kGlassEdge: Paint = [1, 1, 1, 1];
 
-export interface TankSize {
+interface TankSize {
   sideM: number;
   widthM: number;
   /** From the floor to the rim. */

@@ -29,7 +29,7 @@ const kDeck: Paint = [0.56, 0.47, 0.37, 1 / kSlabsPerSide];
 const kLawn: Paint = [0.13, 0.21, 0.06, 1];
 const kHedge: Paint = [0.05, 0.1, 0.03, 1.6];
 
-export interface BasinGeometries {
+interface BasinGeometries {
   tiled: BufferGeometry;
   planted: BufferGeometry;
 }

@@ -40,7 +40,7 @@ export class SolidsPass implements Pass {
   readonly darkness = { value: 0 };
   private readonly haze = { value: 0 };
   readonly scene = new Scene();
-  /** Uniforms of caustics.glsl, shadow.glsl and shore.glsl; undefined: there is none. */
+  /** Uniforms of caustics.glsl, shadow.glsl and shore.glsl; undefined where the scene does not have them. */
   readonly sunlight: LitBy;
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;

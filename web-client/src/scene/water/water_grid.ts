@@ -12,7 +12,7 @@ const kNearCount = 6;
 const kFarGrowth = 2.2;
 
 /**
- * Returns the places of the grid's lines along one axis: `cellsCount` equal cells over -1/2..1/2, and beyond the ends that are open
+ * Returns the positions of the grid's lines along one axis: `cellsCount` equal cells over -1/2..1/2, and beyond the ends that are open
  * cells that grow toward the horizon.
  */
 export function gridLines(cellsCount: number, openBelow: boolean, openAbove: boolean): number[] {

@@ -25,13 +25,13 @@ function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingIn
 /** Thin water is drawn although the ground is in front of it by this share of a cell of the drawn surface: both are triangles, over a sloping bed. */
 const kLiftPerCell = 0.1;
 
-export interface WaterTools {
+interface WaterTools {
   sky: Sky;
   noise: Texture;
   quality: Quality;
 }
 
-export interface WaterInputs {
+interface WaterInputs {
   field: Texture;
   /** Undefined: the room sends none. */
   foam: Uniforms | undefined;

@@ -26,7 +26,7 @@ export interface Birth {
   lifeS: number;
 }
 
-/** Floats of one particle for the GPU: place (m), kind + share of its life that has passed, velocity (m/s), radius (m). */
+/** Floats of one particle for the GPU: position (m), kind + share of its life that has passed, velocity (m/s), radius (m). */
 export const kFloatsPerParticle = 8;
 
 /** A drop loses speed against the air at this rate (1/s) per m/s, scaled to a drop of 1 cm: drag grows as the drop becomes smaller. */
@@ -63,7 +63,7 @@ export class DiffuseParticles {
     this.kindOf = new Uint8Array(capacityCount);
   }
 
-  /** Adds a particle. When all places are taken the new one is left out: the oldest ones vanish soon by themselves. */
+  /** Adds a particle. When all slots are taken the new one is left out: the oldest ones vanish soon by themselves. */
   add(birth: Birth): void {
     if (this.count >= this.capacityCount) return;
     const n = this.count++;

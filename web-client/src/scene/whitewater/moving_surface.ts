@@ -2,7 +2,7 @@
 import type { SurfaceFrame } from "../../net/messages";
 import type { Between } from "../frames/frame_ring";
 
-export interface SurfaceMotion {
+interface SurfaceMotion {
   elevationM: number;
   /** Vertical speed of the surface. */
   riseMps: number;
@@ -63,7 +63,7 @@ export class MovingSurface {
     return motion;
   }
 
-  /** Returns the index of the sample nearest to a place, or -1. */
+  /** Returns the index of the sample nearest to a position, or -1. */
   private sampleAt(xM: number, zM: number): number {
     const n = this.resolutionCount;
     const i = Math.floor((xM / this.sideM + 0.5) * n);

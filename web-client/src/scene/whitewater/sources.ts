@@ -126,7 +126,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
   }
 }
 
-/** A place at the water line of an obstacle; the normal points to the water, and each stands for `lengthM` of the line. */
+/** A position at the water line of an obstacle; the normal points to the water, and each stands for `lengthM` of the line. */
 export interface RimPoint {
   xM: number;
   zM: number;
@@ -137,10 +137,10 @@ export interface RimPoint {
 
 const kRimSpacingM = 0.4;
 const kMostRimPoints = 4000;
-/** Distance of the places from the obstacle, where the surface is that of the water. */
+/** Distance of the positions from the obstacle, where the surface is that of the water. */
 const kRimAwayM = 0.15;
 
-/** Returns the places along the water lines of rocks and breakwaters. */
+/** Returns the positions along the water lines of rocks and breakwaters. */
 export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
   const rim: RimPoint[] = [];
   for (const obstacle of obstacles) {

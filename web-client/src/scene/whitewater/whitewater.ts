@@ -15,7 +15,7 @@ import { FrothPass } from "./froth_pass";
 import { SprayPass } from "./spray_pass";
 import { WhitewaterPass } from "./whitewater_pass";
 
-export interface WhitewaterPasses {
+interface WhitewaterPasses {
   /** Before the water. */
   before: Pass[];
   /** After the water. */

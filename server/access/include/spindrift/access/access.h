@@ -20,7 +20,7 @@ namespace spindrift::access {
 /// Immutable after construction; any thread.
 class Access {
  public:
-  /// Without tokens, clients are operators: a server for one user.
+  /// Makes an access without tokens, in which clients are operators: a server for one user.
   Access() = default;
 
   /// Parses the text of the token file: one token per line,
@@ -35,7 +35,7 @@ class Access {
   /// Returns what a token allows; the empty token is that of a client without one. The error gives the reason of a
   /// refusal and never contains the token.
   [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::chrono::system_clock::time_point now) const;
-  /// The same for one room: also refuses tokens of other rooms.
+  /// Returns the same for one room: also refuses tokens of other rooms.
   [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::string_view room,
                                             std::chrono::system_clock::time_point now) const;
   /// Returns the token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other
@@ -57,10 +57,10 @@ class Access {
   std::optional<core::Role> guest_ = core::Role::kOperator;
 };
 
-/// The line for a client whose token is not for this room.
+/// Returns the line for a client whose token is not for this room.
 std::string otherRoom(std::string_view room);
 
-/// Error of a token that nothing here knows: another place may know it.
+/// Error of a token that nothing here knows: another list of tokens may know it.
 inline constexpr std::string_view kUnknownToken = "this server does not know that token";
 
 /// The access control of a running server: can be replaced, when files of tokens and keys are read again. Any thread.

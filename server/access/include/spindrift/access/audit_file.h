@@ -23,7 +23,7 @@ class AuditFile {
 
   /// Opens the file for appending, or creates it with mode 0600. Error kUnavailable names it and the reason.
   static core::Result<std::unique_ptr<AuditFile>> open(std::filesystem::path file);
-  /// As finish().
+  /// Does what finish() does.
   ~AuditFile();
   AuditFile(const AuditFile&) = delete;
   AuditFile& operator=(const AuditFile&) = delete;

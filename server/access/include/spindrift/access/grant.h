@@ -24,7 +24,7 @@ inline constexpr std::size_t kNameMaxBytes = 256;  ///< of a JWT; the room cuts 
 struct Grant {
   core::Role role = core::Role::kViewer;
   std::optional<std::chrono::system_clock::time_point> expires{};  ///< never if not set
-  /// The person in the audit log: `sub` of a JWT or of a line of the token file, else the place of the token, as
+  /// The person in the audit log: `sub` of a JWT or of a line of the token file, else the location of the token, as
   /// "tokens:3". Empty: a guest. Arbitrary UTF-8 of at most kSubjectMaxBytes.
   std::string subject{};
   /// The subject is one person: all sessions and requests of it share one limit. False for guests and for tokens that

@@ -18,7 +18,7 @@ namespace spindrift::access {
 
 enum class JwtAlgorithm : std::uint8_t { kHs256, kRs256, kEdDsa };
 
-/// "HS256", "RS256", "EdDSA".
+/// Returns "HS256", "RS256" or "EdDSA".
 std::string_view nameOf(JwtAlgorithm algorithm);
 
 /// A key that verifies. Its algorithm belongs to it, so that a token cannot choose another one for it.
@@ -46,7 +46,7 @@ core::Result<JwtKey> parseSecret(std::string_view text, const std::string& label
 /// kInvalidInput: no JWK set, a private key, a key that is malformed or too small, no usable key.
 core::Result<std::vector<JwtKey>> parseKeySet(std::string_view json, const std::string& label);
 
-/// What tokens have to say besides a valid signature.
+/// Claims that tokens need besides a valid signature.
 struct JwtRules {
   std::string issuer{};    ///< `iss`; empty: not checked
   std::string audience{};  ///< has to be in `aud`; empty: not checked

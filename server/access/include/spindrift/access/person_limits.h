@@ -21,7 +21,7 @@ class PersonLimits {
   PersonLimits(double commands_per_s, double burst_count)
       : commands_per_s_(commands_per_s), burst_count_(burst_count) {}
 
-  /// Takes one command of this person; returns false, and counts it, if there is none left.
+  /// Takes one command of this person; returns false, and counts it, if the bucket is empty.
   bool take(const std::string& subject, TimePoint now);
 
   [[nodiscard]] std::size_t personCount() const;

@@ -13,7 +13,7 @@ namespace spindrift::access {
 inline constexpr std::size_t kRoomTokenMaxCount = 16;
 inline constexpr std::size_t kRoomTokenSaltBytes = 16;
 
-/// What is kept of a token: neither the token nor anything from which it can be found.
+/// Digest of a token, from which the token cannot be found.
 struct RoomToken {
   core::Role role = core::Role::kViewer;
   std::string salt;  ///< kRoomTokenSaltBytes random bytes

@@ -23,10 +23,6 @@ struct BusOptions {
 
 struct BusStats {
   bool is_connected = false;
-  std::uint64_t sent_message_count = 0;
-  std::uint64_t sent_bytes_count = 0;
-  std::uint64_t received_message_count = 0;
-  std::uint64_t received_bytes_count = 0;
   std::uint64_t dropped_message_count = 0;  ///< not sent while disconnected, incomplete, or more than a receiver took
   std::uint64_t reconnect_count = 0;
 };
@@ -50,14 +46,14 @@ class Bus {
   void publish(const std::string& subject, core::ByteView message) { publish(subject, message, {}); }
 
   using Handler = std::function<void(core::ByteView message)>;
-  /// At most `waiting_max_bytes` of messages wait for the handler; further ones are dropped and counted.
-  /// Null if the subject is not valid or the connection was closed for good.
+  /// Subscribes to a subject. At most `waiting_max_bytes` of messages wait for the handler; further ones are dropped
+  /// and counted. Null if the subject is not valid or the connection was closed for good.
   virtual std::unique_ptr<Subscription> subscribe(const std::string& subject, std::size_t waiting_max_bytes,
                                                   Handler handler) = 0;
 
   [[nodiscard]] virtual bool isConnected() const = 0;
   [[nodiscard]] virtual BusStats stats() const = 0;
-  /// The connection's own handle, for KeyValues.
+  /// Returns the connection's own handle, for KeyValues.
   [[nodiscard]] virtual void* connection() const = 0;
 };
 

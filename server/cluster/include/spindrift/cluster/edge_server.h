@@ -21,15 +21,15 @@ struct EdgeOptions {
 
 class EdgeServer final : public net::Application {
  public:
-  /// Errors: those of Node::connect() and of the port.
+  /// Starts the edge. Errors: those of Node::connect() and of the port.
   static core::Result<std::unique_ptr<EdgeServer>> start(EdgeOptions options);
   ~EdgeServer() override;
   EdgeServer(const EdgeServer&) = delete;
   EdgeServer& operator=(const EdgeServer&) = delete;
 
-  /// As WaterServer::drain().
+  /// Does for an edge what WaterServer::drain() does.
   void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
-  /// See net::Server::reloadCertificate().
+  /// Calls net::Server::reloadCertificate().
   void reloadCertificate() { network_->reloadCertificate(); }
   /// Closes the sessions with 1001. Idempotent.
   void stop();

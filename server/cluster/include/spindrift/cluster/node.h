@@ -42,7 +42,7 @@ class Node : public service::Cluster {
 
   /// See RestApi::answer().
   using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder, const std::optional<access::Grant>&)>;
-  /// What a server has and an edge has not.
+  /// Parts that a server has and an edge has not.
   struct ServerParts {
     rooms::SimulationThread* simulation = nullptr;
     rooms::RoomOutlets* outlets = nullptr;  ///< of the rooms
@@ -50,12 +50,12 @@ class Node : public service::Cluster {
   };
   /// Starts the work. `sessions` and the parts outlive the node.
   virtual void serve(service::Sessions& sessions, const ServerParts& server) = 0;
-  /// Whether rooms of other servers can be served: NATS is connected and, for an edge, a server is alive. kUnavailable
-  /// says in one line why not.
+  /// Returns success when rooms of other servers can be served: NATS is connected and, for an edge, a server is alive.
+  /// kUnavailable says in one line why not.
   [[nodiscard]] virtual core::Result<void> ready() const = 0;
   /// Takes no rooms any more. The rooms continue.
   virtual void leave() = 0;
-  /// The rooms have ended and their state is saved: lets others take them at once.
+  /// Lets others take the rooms at once. Call it when they have ended and their state is saved.
   virtual void release() = 0;
 };
 

@@ -102,7 +102,7 @@ class PlaneKeeper : public PackedPlaneDecoder {
   /// Takes the next message of the stream, a packed surface or packed foam. False: it is neither, is damaged, or builds
   /// on a frame that is not here; only a keyframe can be taken then.
   bool take(core::ByteView message);
-  /// Null if the last take() failed, or there was none.
+  /// Returns the frame as a keyframe; null if the last take() failed, or there was none.
   [[nodiscard]] core::SharedBytes keyframe();
 
  private:

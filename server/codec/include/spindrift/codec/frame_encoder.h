@@ -16,7 +16,7 @@ class LayerCodec;
 /// Serialized ServerMessages of one frame of a layer. Both null if the frame lacks the layer.
 struct EncodedFrame {
   core::SharedBytes keyframe;  ///< can be decoded alone
-  core::SharedBytes delta;     ///< for clients that have the previously encoded frame; null if there is none
+  core::SharedBytes delta;     ///< for clients that have the previously encoded frame; null for a keyframe alone
 };
 
 /// The codecs of one room: one per stream and level, made at the first use. Call the methods on one thread, the

@@ -6,7 +6,7 @@
 
 namespace spindrift::core {
 
-/// Castagnoli's polynomial, reflected; the checksum of "123456789" is 0xE3069283.
+/// Returns the CRC of Castagnoli's polynomial, reflected; the checksum of "123456789" is 0xE3069283.
 std::uint32_t crc32cByTables(const std::uint8_t* bytes, std::size_t byte_count);
 
 }  // namespace spindrift::core

@@ -79,7 +79,7 @@ struct DiagnosticsView {
     double ms = 0.0;   ///< mean per tick
   };
   std::vector<PassTime> passes;
-  /// What a gauge of the scene reads; as v1::GaugeReading.
+  /// Reading of a gauge of the scene; as v1::GaugeReading.
   struct GaugeNow {
     std::string name;
     double elevation_m = 0.0;

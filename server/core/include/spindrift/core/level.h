@@ -31,7 +31,7 @@ class LevelSet {
   constexpr void insert(Level level) { bits_ |= 1U << indexOf(level); }
   constexpr void erase(Level level) { bits_ &= ~(1U << indexOf(level)); }
   [[nodiscard]] constexpr bool contains(Level level) const { return (bits_ >> indexOf(level) & 1U) != 0; }
-  /// A bit per level: bit indexOf(level). Bits of unknown levels are ignored.
+  /// Returns a bit per level: bit indexOf(level).
   [[nodiscard]] constexpr std::uint32_t bits() const { return bits_; }
   [[nodiscard]] static constexpr LevelSet fromBits(std::uint32_t bits) { return LevelSet(bits & all().bits_); }
 
@@ -80,6 +80,7 @@ constexpr CellCounts foamSamples(CellCounts surface) {
 struct ReducedCounts {
   std::uint32_t planes = 0;  ///< surface and foam
   std::uint32_t particles = 0;
+  bool operator==(const ReducedCounts&) const = default;
 };
 
 /// Returns the counts for a surface of this many cells and at most this many particles.
@@ -110,7 +111,7 @@ constexpr bool takesFrameAfter(Level level, double since_last_s) {
   return since_last_s * budgetOf(level).rate_hz >= 1.0 - kTolerance;
 }
 
-/// Which data a frame of one layer has, and the sessions of which levels take it.
+/// Data of a frame of one layer, and levels whose sessions take it.
 struct FrameLevels {
   Level level = Level::kFull;       ///< of its data
   std::uint32_t reduced_count = 0;  ///< number of levels that downsample the layer; others equal kFull

@@ -24,6 +24,11 @@ struct Error {
   std::string message;
 };
 
+/// Returns the error of a wrong input.
+inline Error invalid(std::string message) {
+  return {ErrorCode::kInvalidInput, std::move(message)};
+}
+
 /// Returns the program's exit code for this category; never 0.
 int exitCode(ErrorCode code);
 

@@ -12,7 +12,7 @@ namespace spindrift::core {
 /// Permissions of a sender; each role includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
-/// "viewer", "player", "operator".
+/// Returns "viewer", "player" or "operator".
 std::string_view roleName(Role role);
 /// Returns nullopt for a name that is not a role.
 std::optional<Role> parseRole(std::string_view name);
@@ -20,7 +20,7 @@ std::optional<Role> parseRole(std::string_view name);
 /// Identifies one connection for the life of the process; never 0, never reused.
 using SessionId = std::uint64_t;
 
-/// Who sent a command, in words: for the audit log.
+/// Sender of a command in words, for the audit log.
 struct SenderDetails {
   std::string room{};
   std::string subject{};  ///< the token's; empty: a guest

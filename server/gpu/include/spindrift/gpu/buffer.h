@@ -18,7 +18,7 @@ namespace spindrift::gpu {
 
 struct BufferAccess;
 
-/// Where the driver may keep a buffer.
+/// Memory in which the driver may keep a buffer.
 enum class BufferUse {
   /// In device memory: storage, texels, indirect arguments. Uploads and downloads go through a copy on the device.
   kDeviceOnly,
@@ -27,7 +27,7 @@ enum class BufferUse {
   kUpdatable,
 };
 
-/// What a buffer holds before anything is written to it.
+/// Content of a buffer before anything is written to it.
 enum class BufferContent {
   kZero,
   /// Zero too, but no code may rely on it: each tick writes every word before it reads it. Filled with set bits when
@@ -41,7 +41,7 @@ enum class BufferContent {
 /// by OpenGL and counted in Context::debugErrorCount().
 class Buffer {
  public:
-  /// Error kInternal when the device has no memory for it or the size is 0.
+  /// Creates a buffer. Error kInternal when the device has no memory for it or the size is 0.
   static core::Result<Buffer> create(Context& ctx, std::string_view name, std::size_t size_bytes,
                                      BufferUse use = BufferUse::kDeviceOnly,
                                      BufferContent content = BufferContent::kZero);
@@ -85,7 +85,7 @@ class Buffer {
 
   /// Sets every whole 32-bit word to `word`; a tail of 1 to 3 bytes takes the low bytes of `word`.
   void clear(std::uint32_t word = 0);
-  /// The same for a part of the buffer; offset and size must be multiples of 4.
+  /// Clears a part of the buffer; offset and size must be multiples of 4.
   void clearRange(std::uint32_t word, std::size_t offset_bytes, std::size_t size_bytes);
   /// Copies on the device, without waiting.
   void copyFrom(const Buffer& source, std::size_t source_offset_bytes, std::size_t size_bytes,
@@ -99,7 +99,7 @@ class Buffer {
   /// Tells the barrier checker that consecutive dispatches write different parts of this buffer and none reads the
   /// writes of another, so that no barrier is needed between them.
   void declareDisjointWrites();
-  /// For the other classes of this module: the accesses to this buffer so far. Null when empty.
+  /// Returns the accesses to this buffer so far, for the other classes of this module. Null when empty.
   [[nodiscard]] BufferAccess* access() const { return access_.get(); }
 
  protected:
@@ -122,7 +122,8 @@ enum class TexelFormat { kR32F, kRG32F, kRGBA32F, kR32UI, kRG32UI, kRGBA32UI, kR
 /// faster.
 class TexelBuffer : public Buffer {
  public:
-  /// As Buffer::create(), for `texel_count` texels; also refused beyond `max_texel_buffer_elements`.
+  /// Creates a buffer as Buffer::create() does, of `texel_count` texels; also refused beyond
+  /// `max_texel_buffer_elements`.
   static core::Result<TexelBuffer> create(Context& ctx, std::string_view name, std::size_t texel_count,
                                           TexelFormat format, BufferContent content = BufferContent::kZero);
   TexelBuffer();  ///< empty; only to be assigned to

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -57,13 +58,13 @@ class FenceDelay {
   /// Sets how many fences the device lags behind; 0: no lag. A wait for a fence lets the device catch up to that fence.
   void set(std::uint64_t fence_count) { fence_count_ = fence_count; }
 
-  /// Called by Fence. Returns the number of the new fence, counted from 1.
+  /// Returns the number of the new fence, counted from 1. Called by Fence.
   std::uint64_t insert() {
     ++inserted_;
     if (fence_count_ <= inserted_) reached_ = std::max(reached_, inserted_ - fence_count_);
     return inserted_;
   }
-  /// Called by Fence. Returns whether the fence may pass. `waits`: the caller waits for it with a timeout.
+  /// Returns whether the fence may pass. Called by Fence. `waits`: the caller waits for it with a timeout.
   bool passes(std::uint64_t number, bool waits) {
     if (fence_count_ == 0 || (waits && fence_count_ != kForever)) reached_ = std::max(reached_, number);
     return number <= reached_;
@@ -81,7 +82,7 @@ class Context {
   /// Makes a context on the chosen device and makes it current on the calling thread. Errors: kNoDevice, listing the
   /// devices tried and what to install, when none works; kInvalidInput when SPINDRIFT_GPU_CHECKS cannot be parsed.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice);
-  /// The same with the given test modes in place of those of the environment.
+  /// Creates the same with the given test modes in place of those of the environment.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice, const Checks& checks);
   /// Ends the process if takeFaults() was not called after the barrier checker found faults, so that no test overlooks
   /// them.
@@ -99,7 +100,7 @@ class Context {
 
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
   [[nodiscard]] const DeviceLimits& limits() const { return device_.limits; }
-  /// One line: which device was chosen and why.
+  /// Returns one line: which device was chosen and why.
   [[nodiscard]] const std::string& why() const { return why_; }
 
   /// Makes earlier shader writes visible to the kinds of access named in `readers`. The caller issues the barriers
@@ -113,7 +114,7 @@ class Context {
   /// downloads return zeros, and all objects have to be destroyed and made again in a new context. Always false if the
   /// driver does not report resets (DeviceInfo::tells_of_resets). Costs a driver call; call it once per tick.
   [[nodiscard]] bool isLost();
-  /// For tests: isLost() is true from now on, as after a reset by the driver.
+  /// Makes isLost() true from now on, as after a reset by the driver. For tests.
   void simulateLoss() { is_lost_.store(true); }
   /// Returns the last result of isLost() without asking the driver. Any thread.
   [[nodiscard]] bool wasLost() const { return is_lost_.load(); }
@@ -123,7 +124,7 @@ class Context {
   /// use. Headers in shared/ are also C++: changes there need a build.
   void reloadChangedShaders();
 
-  /// OpenGL errors seen by the debug callback, and refused dispatches. 0 in a healthy program.
+  /// Returns the number of OpenGL errors seen by the debug callback, and of refused dispatches. 0 in a healthy program.
   [[nodiscard]] std::uint64_t debugErrorCount() const { return debug_error_count_.load(); }
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
 
@@ -135,18 +136,21 @@ class Context {
   /// Fills every scratch buffer (BufferContent::kScratch) with set bits, as Checks::poison does at creation. For tests:
   /// the result of a tick must not depend on the earlier contents of scratch buffers.
   void poisonScratch();
+  /// Returns id and name of the live buffers that a shader has written, without scratch buffers: their content may last
+  /// beyond a tick.
+  [[nodiscard]] std::vector<std::pair<std::uint32_t, std::string>> lastingBuffers() const;
   /// Makes the device appear slow or hanging to all users of fences. Starts with Checks::lag_fences_count.
   FenceDelay& fenceDelay() { return fence_delay_; }
 
   // For the other classes of this module ---------------------------------------------------------------------------
 
-  /// For Buffer and Program, which update it.
+  /// Returns the ledger of this context, which Buffer and Program update.
   Ledger& ledgerEntry() { return ledger_; }
   void countError() { debug_error_count_.fetch_add(1); }
   AccessTracker& accesses() { return *accesses_; }
   Staging& staging() { return *staging_; }
   ProgramCache& programs() { return *programs_; }
-  /// Null: the embedded shaders are used.
+  /// Returns the folder of shaders; null: the embedded shaders are used.
   [[nodiscard]] const ShaderFolder* shaderFolder() const { return shader_folder_.get(); }
   /// Issues the barrier with these OpenGL bits; nothing for 0.
   void barrierBits(std::uint32_t bits);

@@ -26,8 +26,8 @@ struct DeviceChoice {
   std::string shader_folder{};
 };
 
-/// "auto", "software", a device index (0…1023), a DRM file (/dev/dri/renderD128, or a link to it), or a UUID with or
-/// without "GPU-". Error kInvalidInput otherwise.
+/// Reads "auto", "software", a device index (0…1023), a DRM file (/dev/dri/renderD128, or a link to it), or a UUID with
+/// or without "GPU-". Error kInvalidInput otherwise.
 core::Result<DeviceChoice> parseDeviceChoice(std::string_view text);
 
 /// Limits of a device's context; all zero for a device that does not work.

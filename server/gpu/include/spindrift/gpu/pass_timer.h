@@ -51,7 +51,7 @@ class PassTimers {
   /// Returns means since the last take(), in the order in which names first appeared; names without a new result are
   /// left out.
   [[nodiscard]] std::vector<PassCost> take();
-  /// Number of scopes that were not measured because the ring was full.
+  /// Returns the number of scopes that were not measured because the ring was full.
   [[nodiscard]] std::uint64_t droppedCount() const { return dropped_count_; }
 
  private:

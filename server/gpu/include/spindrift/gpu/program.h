@@ -54,7 +54,7 @@ class Program {
   [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when empty
   explicit operator bool() const { return compiled_ != nullptr; }
 
-  /// The local size from the linked program; host code takes it from nowhere else.
+  /// Returns the local size from the linked program; host code takes it from nowhere else.
   [[nodiscard]] std::array<std::uint32_t, 3> groupSize() const;
 
   /// Runs at least this many invocations: the item count divided by the local size, rounded up. Shaders guard the

@@ -34,7 +34,7 @@ class ReadbackRing {
     [[nodiscard]] std::uint64_t tag() const { return tag_; }
     /// Bytes of the slot up to the end of the last copied range.
     [[nodiscard]] std::span<const std::byte> bytes() const { return bytes_; }
-    /// The same as 32-bit words; a tail of 1 to 3 bytes is left out.
+    /// Returns the same as 32-bit words; a tail of 1 to 3 bytes is left out.
     [[nodiscard]] std::span<const std::uint32_t> words() const;
 
    private:
@@ -68,7 +68,8 @@ class ReadbackRing {
     std::size_t used_bytes_ = 0;
   };
 
-  /// Error kInvalidInput for a slot of 0 bytes or a ring of 0 slots, kInternal when it cannot be mapped.
+  /// Creates a ring. Error kInvalidInput for a slot of 0 bytes or a ring of 0 slots, kInternal when it cannot be
+  /// mapped.
   static core::Result<std::unique_ptr<ReadbackRing>> create(Context& ctx, std::string_view name, std::size_t slot_bytes,
                                                             std::size_t slot_count);
   ~ReadbackRing();
@@ -81,15 +82,15 @@ class ReadbackRing {
   /// Returns slots whose fence has been passed, in the order of submit(). Never waits. Slots that were in flight when
   /// the device was lost become free, are counted in lostCount() and are not returned.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> poll();
-  /// As poll(), but first waits at most `limit` for all slots in flight. On an asynchronous driver a fence may not be
-  /// seen as passed at once, even when a later one is.
+  /// Returns what poll() does, but first waits at most `limit` for all slots in flight. On an asynchronous driver a
+  /// fence may not be seen as passed at once, even when a later one is.
   [[nodiscard]] std::vector<std::shared_ptr<const Slot>> wait(std::chrono::nanoseconds limit);
 
-  /// Number of slots that are not free.
+  /// Returns the number of slots that are not free.
   [[nodiscard]] std::size_t usedCount() const;
-  /// Number of times that begin() returned nullopt.
+  /// Returns the number of times that begin() returned nullopt.
   [[nodiscard]] std::uint64_t refusedCount() const { return refused_count_; }
-  /// Number of submitted slots whose data was lost with the device.
+  /// Returns the number of submitted slots whose data was lost with the device.
   [[nodiscard]] std::uint64_t lostCount() const { return lost_count_; }
 
  private:

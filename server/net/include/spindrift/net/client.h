@@ -38,7 +38,7 @@ struct ClientOptions {
 struct ClientEvents {
   std::function<void()> opened;
   std::function<void(core::ByteView)> message;
-  /// Called once, last: the peer's close code (0 without one) and a line of text.
+  /// Takes the end of the session, called once and last: the peer's close code (0 without one) and a line of text.
   std::function<void(std::uint16_t code, const std::string& reason)> closed;
 };
 
@@ -59,14 +59,14 @@ inline constexpr std::size_t kClientQueueMaxCount = 4096;
 /// Owns the threads of the clients. Without threads, the caller runs the callbacks with runFor().
 class ClientPool {
  public:
-  /// With 0 threads callbacks come from runFor() only.
+  /// Makes a pool. With 0 threads callbacks come from runFor() only.
   /// For wss:// the server's certificate must come from an authority of the system or of `ca_file` (PEM; read at the
   /// first such connection), and must have the URL's host.
   static std::unique_ptr<ClientPool> create(std::size_t thread_count, const std::string& ca_file = "");
   virtual ~ClientPool() = default;  ///< closes open connections at once; no callback comes after it
 
   virtual std::shared_ptr<Client> connect(const ClientUrl& url, const ClientOptions& options, ClientEvents events) = 0;
-  /// Without threads: runs callbacks for about this long, or until `done` returns true.
+  /// Runs callbacks, of a pool without threads, for about this long, or until `done` returns true.
   virtual void runFor(std::chrono::milliseconds duration, const std::function<bool()>& done) = 0;
 };
 

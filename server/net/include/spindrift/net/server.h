@@ -16,10 +16,11 @@
 #include <vector>
 
 #include <spindrift/core/bytes.h>
+#include <spindrift/core/demand_table.h>
 #include <spindrift/core/level.h>
-#include <spindrift/core/level_demand.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/sender.h>
+#include <spindrift/http/message.h>
 
 namespace spindrift::net {
 
@@ -27,7 +28,7 @@ using core::SessionId;
 
 /// A stream of frames: one layer in one packing. The number indexes the newest-frame slots of an outbox.
 using StreamIndex = std::uint32_t;
-inline constexpr StreamIndex kMaxStreamCount = 16;
+inline constexpr StreamIndex kMaxStreamCount = core::DemandTable::kStreamMaxCount;
 
 /// One frame of a stream in the forms that its sessions need; one of the two may be null.
 struct FrameBytes {
@@ -47,7 +48,7 @@ struct StateTopic {
   Scope scope = Scope::kAlone;
 };
 
-/// How a session watches a stream.
+/// A session's way of watching a stream.
 struct Watch {
   double max_rate_hz = 0.0;  ///< 0 stops the stream
   core::Level level = core::Level::kFull;
@@ -71,28 +72,6 @@ enum class CloseCode : std::uint16_t {
   kResumedElsewhere = 4409  ///< another connection resumed this person
 };
 
-/// Reply to a plain HTTP request to a path under /api/ or a probe.
-struct HttpReply {
-  unsigned status = 200;
-  std::string content_type = "application/json";
-  std::string body;
-  std::vector<std::pair<std::string, std::string>> headers{};  ///< in addition to Content-Type: "Allow", ...
-};
-
-struct HttpRequest {
-  std::string method;           ///< "GET", "POST", ...; a HEAD request arrives as "GET"; its reply is sent without body
-  std::string path;             ///< percent-decoded, without the query
-  std::string query;            ///< undecoded, without the question mark
-  core::ByteView body;          ///< at most ServerOptions::request_body_max_bytes; valid during the call
-  std::string authorization{};  ///< the Authorization header, unparsed
-  std::string content_type{};   ///< the Content-Type header, unparsed
-  std::string peer{};           ///< for logs: the client's address, and the proxy if a trusted one passed it on
-};
-
-/// Answers one request; nullopt = 404. Call it at most once, from any thread; if every copy is dropped without a call,
-/// the answer is 500. An answer after ServerOptions::answer_timeout is ignored: 504 was sent.
-using HttpResponder = std::function<void(std::optional<HttpReply>)>;
-
 /// Reason of the end of a session, for the log: code (0 if the connection broke) and one line.
 struct SessionEnd {
   std::uint16_t code = 0;
@@ -105,24 +84,24 @@ class Hub {
  public:
   virtual ~Hub() = default;
 
-  /// Control plane, answers to the session's own requests: ordered, never dropped. While
+  /// Sends an answer to the session's own request. Control plane: ordered, never dropped. While
   /// ServerOptions::answer_pause_count of them wait, the session is not read; beyond answer_max_count it is closed with
   /// kTryAgainLater.
   virtual void sendAnswer(SessionId session, core::SharedBytes message) = 0;
 
-  /// Control plane, state: only the newest message of a topic waits; it takes the place of the older one. Never closes
-  /// a session.
+  /// Sends a state message. Control plane: only the newest message of a topic waits; it takes the place of the older
+  /// one. Never closes a session.
   virtual void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) = 0;
 
-  /// The same for every session of the room.
+  /// Sends a state message to every session of the room.
   virtual void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) = 0;
 
-  /// Data plane: one write in flight and one newest slot per stream; an unsent older frame in the slot is dropped and
-  /// counted. `room` is the group that the sessions joined. Only sessions that watch `stream` get the frame, at most at
-  /// their requested rate (with 10 % tolerance; a frame that comes too early for a session is skipped and not counted).
-  /// A session that has the previous frame gets the delta if there is one, any other session the keyframe. If the
-  /// keyframe is missing, it gets nothing, and demand() reports the need. Each level is published by itself; a session
-  /// gets its own level.
+  /// Publishes a frame. Data plane: one write in flight and one newest slot per stream; an unsent older frame in the
+  /// slot is dropped and counted. `room` is the group that the sessions joined. Only sessions that watch `stream` get
+  /// the frame, at most at their requested rate (with 10 % tolerance; a frame that comes too early for a session is
+  /// skipped and not counted). A session that has the previous frame gets the delta if there is one, any other session
+  /// the keyframe. If the keyframe is missing, it gets nothing, and its DemandTable has the need. Each level is
+  /// published by itself; a session gets its own level.
   virtual void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
   /// Gives the newest frame of the stream at this level, as a keyframe, to the sessions that have just begun to watch
@@ -130,19 +109,9 @@ class Hub {
   /// may be published between that one and this call. It does not count for the rate.
   virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
 
-  /// Returns who watches the stream now and who needs a keyframe, by the level that sessions ask for.
-  /// core::demandOfFrame() gives the same by the data that has to be encoded. `reduced_count`: number of levels that
-  /// downsample the layer. `ahead`: how long from now the frame will come.
-  virtual core::StreamDemand demand(const std::string& room, StreamIndex stream, std::uint32_t reduced_count,
-                                    std::chrono::steady_clock::duration ahead = {}) const = 0;
-
-  /// Moves the session into a room. It leaves its previous room; its watches stay, unsent frames are dropped.
-  virtual void join(SessionId session, const std::string& room) = 0;
-
-  /// Number of sessions in the room.
-  virtual std::size_t sessionCount(const std::string& room) const = 0;
-  /// Number of sessions in all rooms.
-  virtual std::size_t sessionCount() const = 0;
+  /// Moves the session into a room. It leaves its previous room; its watches stay, unsent frames are dropped. While it
+  /// is there, `demand` says what it needs of the room's frames.
+  virtual void join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) = 0;
 
   /// Starts, changes or stops a stream for a session.
   virtual void watch(SessionId session, StreamIndex stream, const Watch& watch) = 0;
@@ -150,7 +119,7 @@ class Hub {
   /// Sends all queued control messages, then closes. The socket is closed after close_timeout in any case.
   virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
 
-  /// As close(), at a later time; the latest call counts. time_point::max() means never.
+  /// Closes the session as close() does, at a later time; the latest call counts. time_point::max() means never.
   virtual void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
                        std::string reason) = 0;
 };
@@ -161,20 +130,20 @@ class Application {
  public:
   virtual ~Application() = default;
 
-  /// Called once by Server::start(), before any other call. The hub is valid as long as the Server.
+  /// Takes the hub. Called once by Server::start(), before any other call. The hub is valid as long as the Server.
   virtual void serverStarts(Hub& /*hub*/) {}
   /// Checks a WebSocket handshake on `/ws/{room}` (or `/ws` = the default room, empty name). An Error refuses the
   /// upgrade with the error's line as the body: kUnavailable with HTTP 503 and Retry-After, all others with 404.
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
-  /// The session is open; the application sends the greeting.
+  /// Takes a session that was opened; the application sends the greeting.
   virtual void sessionOpened(SessionId session, const std::string& room, const std::string& peer) = 0;
-  /// The highest level for the session's adapting watches changed, down or up, to what its link can carry.
+  /// Takes a change of the highest level for the session's adapting watches, down or up, to what its link can carry.
   virtual void sessionLevelChanged(SessionId /*session*/, core::Level /*level*/) {}
-  /// One whole binary message.
+  /// Takes one whole binary message.
   virtual void sessionMessage(SessionId session, core::ByteView message) = 0;
-  /// The session ended; last call for this id.
+  /// Takes the end of a session; last call for this id.
   virtual void sessionClosed(SessionId session, const SessionEnd& end) = 0;
-  /// A request under /api/, or /healthz, /readyz, /metrics. Call `respond` at once or later.
+  /// Takes a request under /api/, or /healthz, /readyz, /metrics. Call `respond` at once or later.
   virtual void httpRequest(const HttpRequest& request, HttpResponder respond) = 0;
 };
 
@@ -282,10 +251,10 @@ class Server {
   virtual std::uint16_t port() const = 0;
   virtual Hub& hub() = 0;
   virtual ServerStats stats() const = 0;
-  /// From now on refuses new sessions with 503 and Retry-After, and ends HTTP connections after their next reply. Open
+  /// Refuses new sessions from now on, with 503 and Retry-After, and ends HTTP connections after their next reply. Open
   /// sessions continue. Thread-safe.
   virtual void drain(std::chrono::seconds retry_after) = 0;
-  /// With TLS: reads certificate and key again, in the background. Thread-safe.
+  /// Reads certificate and key again, in the background; only with TLS. Thread-safe.
   virtual void reloadCertificate() = 0;
   /// Stops accepting, answers waiting requests with 503, closes every session with 1001, waits at most close_timeout +
   /// 1 s, closes the remaining sockets and joins the threads. sessionClosed has been called for every open session when

@@ -10,7 +10,7 @@ namespace spindrift::rooms {
 
 struct Command {
   core::Sender sender{};
-  v1::Command message{};  ///< accepted by wire::checkCommand(), and from Room::admit() on completed
+  v1::Command message{};  ///< accepted by wire::checkCommand(), and from CommandDesk::admit() on completed
   /// RoomWater::sceneVersion() of the scene that the message was checked against; 0: none.
   std::uint64_t scene_version = 0;
 

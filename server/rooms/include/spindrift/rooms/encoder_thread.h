@@ -13,6 +13,7 @@
 #include <thread>
 
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/core/demand_table.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/rooms/frame_outlet.h>
 
@@ -27,8 +28,8 @@ class EncoderThread {
   EncoderThread(const EncoderThread&) = delete;
   EncoderThread& operator=(const EncoderThread&) = delete;
 
-  /// Any thread; never waits for encoding.
-  void submit(const std::string& room, core::FrameView frame);
+  /// Any thread; never waits for encoding. Encodes what `demand` asks for at that time.
+  void submit(const std::string& room, std::shared_ptr<const core::DemandTable> demand, core::FrameView frame);
   /// Call it when the room was closed.
   void forget(const std::string& room);
   /// Ends the thread. Waiting frames and those submitted later are dropped. Idempotent.
@@ -55,6 +56,7 @@ class EncoderThread {
  private:
   struct Waiting {
     std::string room;
+    std::shared_ptr<const core::DemandTable> demand;
     core::FrameView frame;
   };
   struct KnownRoom {
@@ -64,7 +66,7 @@ class EncoderThread {
 
   void loop();
   /// Encodes the watched streams and levels of a frame and publishes them.
-  Costs encode(const std::string& room, const core::FrameView& frame, codec::FrameEncoder& encoder);
+  Costs encode(const Waiting& job, codec::FrameEncoder& encoder);
 
   FrameOutlet& outlet_;
   mutable std::mutex mutex_;

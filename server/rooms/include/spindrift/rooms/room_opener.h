@@ -9,7 +9,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/rooms/room.h>
-#include <spindrift/rooms/water_builder.h>
+#include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
 
@@ -18,15 +18,15 @@ class RoomOpener {
   using TimePoint = Room::TimePoint;
 
   /// The arguments outlive this.
-  RoomOpener(const RoomRules& rules, WaterBuilder& builder, RoomOutlets& outlets)
+  RoomOpener(const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets)
       : rules_(rules), builder_(builder), outlets_(outlets) {}
 
   /// A room whose water is being built, and which then goes from its snapshot to where it was.
   struct Opening {
     RoomSetup setup;               ///< how it begins if it cannot continue from any snapshot
-    RoomPlace place{};             ///< until the room is there
+    history::RoomPlace place{};    ///< until the room is there
     std::uint64_t generation = 0;  ///< of the snapshot from which it continues; 0: from the start of the scene
-    std::future<WaterBuilder::Built> water{};
+    std::future<water::WaterBuilder::Built> water{};
     std::shared_ptr<Room> room{};  ///< null while the water is built
   };
 
@@ -48,7 +48,7 @@ class RoomOpener {
   core::Result<bool> tryRestore(Opening& opening, TimePoint deadline);
 
   const RoomRules& rules_;
-  WaterBuilder& builder_;
+  water::WaterBuilder& builder_;
   RoomOutlets& outlets_;
   std::string device_line_;
 };

@@ -2,12 +2,10 @@
 // messages.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 
 #include <spindrift/core/frame_view.h>
-#include <spindrift/core/level.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/wire.pb.h>
@@ -16,13 +14,6 @@
 namespace spindrift::rooms {
 
 class Room;
-
-/// The layers that sessions watch, in any packing.
-struct WatchedLayers {
-  std::array<sim::LayerRequest, core::kLevelCount> levels{};  ///< by core::indexOf()
-  bool bodies = false;
-  bool diagnostics = false;
-};
 
 /// Called on the simulation thread; must not block. Changes are reported once per round, before the answers to the
 /// commands that caused them.
@@ -50,15 +41,8 @@ class RoomOutlets {
   /// The rejection contains the command's number.
   virtual void commandRejected(const Command& command, const wire::CommandRejection& rejection) = 0;
 
-  /// A frame with the levels that watched() returned. It occupies a slot of device memory until it is dropped.
+  /// A frame that the room's demand() asked for. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
-  /// Returns the layers that the next frame needs. `counts`: those of the room's present scene. `due`: the levels that
-  /// take the frame; what only sessions of other levels watch is left out.
-  [[nodiscard]] virtual WatchedLayers watched(const Room& room, const core::ReducedCounts& counts,
-                                              core::LevelSet due) const = 0;
-  /// Sessions in the room; in all rooms.
-  [[nodiscard]] virtual std::size_t sessionCount(const Room& room) const = 0;
-  [[nodiscard]] virtual std::size_t sessionCount() const = 0;
 };
 
 }  // namespace spindrift::rooms

@@ -21,7 +21,7 @@ class RoomTime {
   /// Other water at the same speed; awake, and paused as before. `keeps_steps`: with the steps that were still to come.
   void restart(double tick_s, bool keeps_steps, TimePoint now);
   /// Continues with what was kept. `speed`: 0 for the usual one.
-  void restore(double tick_s, double speed, bool is_paused);
+  void restore(double tick_s, double speed, bool is_paused, std::uint32_t steps_to_come);
 
   [[nodiscard]] bool isPaused() const { return is_paused_; }
   [[nodiscard]] bool isAsleep() const { return is_asleep_; }

@@ -20,7 +20,7 @@
 #include <spindrift/rooms/clock_watch.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/room_opener.h>
-#include <spindrift/rooms/water_builder.h>
+#include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
 
@@ -46,7 +46,7 @@ class SimulationThread {
 
   /// Returns the rooms in the order of opening; the first is the default room.
   [[nodiscard]] std::vector<std::shared_ptr<Room>> rooms() const;
-  /// Returns the room, or null if there is none; the empty name is the default room.
+  /// Returns the room, or null if it does not exist; the empty name is the default room.
   [[nodiscard]] std::shared_ptr<Room> find(const std::string& name) const;
 
   /// Called on this thread when a room was opened or closed, or with the error.
@@ -109,7 +109,7 @@ class SimulationThread {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   bool is_woken_ = false;  ///< since the last round: a room may be due, or the builder has finished a piece of work
-  std::unique_ptr<WaterBuilder> builder_;
+  std::unique_ptr<water::WaterBuilder> builder_;
   std::unique_ptr<RoomOpener> opener_;  ///< used by the thread only
   std::vector<Opening> openings_;       ///< used by the thread only
   mutable std::mutex rooms_mutex_;

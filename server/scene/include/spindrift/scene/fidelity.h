@@ -14,7 +14,7 @@ namespace spindrift::scene {
 /// The levels, coarsest first.
 inline constexpr std::array kFidelities = {v1::FIDELITY_DRAFT, v1::FIDELITY_BALANCED, v1::FIDELITY_FINE,
                                            v1::FIDELITY_REFERENCE};
-/// Returns the level's place in kFidelities; that of BALANCED for UNSPECIFIED.
+/// Returns the level's index in kFidelities; that of BALANCED for UNSPECIFIED.
 std::size_t rankOf(v1::Fidelity fidelity);
 /// Returns the next level; nullopt beyond the last one.
 std::optional<v1::Fidelity> coarserThan(v1::Fidelity fidelity);

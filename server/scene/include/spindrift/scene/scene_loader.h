@@ -52,7 +52,7 @@ v1::Scene forClients(const v1::Scene& scene);
 /// UNSPECIFIED enums become their documented default, seed 0 becomes 1. Idempotent.
 void fillDefaults(v1::Scene& scene);
 
-/// Converts to the simulation's form, field for field. Fields left out get their defaults.
+/// Converts to the simulation's form. Fields left out get their defaults.
 core::Scene toCore(const v1::Scene& scene);
 
 }  // namespace spindrift::scene

@@ -6,11 +6,15 @@
 #include <vector>
 
 #include <spindrift/core/cell_counts.h>
-#include <spindrift/core/effect.h>
+#include <spindrift/core/scene.h>
 #include <spindrift/scene/fields.h>
+#include <spindrift/scene/to_core.h>
 #include <spindrift/v1/scene.pb.h>
 
 namespace spindrift::scene {
+
+/// Share of a side that allows for rounding of positions exactly on an edge.
+inline constexpr double kEdgeToleranceRatio = 1e-9;
 
 /// Size of the water, which limits effects and boats: of the wave, or of the resting water in a box of particles.
 struct WaterExtents {
@@ -22,7 +26,7 @@ struct WaterExtents {
 };
 WaterExtents waterExtentsOf(const v1::Scene& scene);
 
-/// The cells of a wave; fields that are left out have their defaults.
+/// Returns the cells of a wave; fields that are left out have their defaults.
 core::WaveCells waveCellsOf(const v1::WaveScene& wave);
 
 /// Returns what waves do at a side; at that toward +x for SIDE_UNSPECIFIED and SIDE_DIRECTION.
@@ -38,8 +42,8 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
-/// Fill in the fields that were left out: with their defaults, or where the scene does not permit those, with the
-/// nearest values that it permits. Without a position, a boat is put at the free place nearest to the middle of the
+/// Fills in the fields that were left out: with their defaults, or where the scene does not permit those, with the
+/// nearest values that it permits. Without a position, a boat is put at the free position nearest to the middle of the
 /// water. `scene` has its defaults filled in; with a boat it has boats and a wave.
 void completeEffect(v1::Splash& splash, const v1::Scene& scene);
 void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene);
@@ -54,12 +58,5 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene);
 
 /// Checks rules between numbers, for a scene with defaults filled in and every single field valid.
 std::vector<FieldIssue> checkNumbers(const v1::Scene& scene);
-
-core::Side toCore(v1::Side side);
-
-/// Convert effects, with defaults for fields left out.
-core::Splash toCore(const v1::Splash& splash);
-core::BreakingWave toCore(const v1::BreakingWave& wave);
-core::Boat toCore(const v1::Boat& boat);
 
 }  // namespace spindrift::scene

@@ -12,8 +12,8 @@ namespace spindrift::script {
 inline constexpr int kScriptClientMaxCount = 256;
 inline constexpr int kScriptStepMaxCount = 10'000;
 
-/// kUnavailable for a file that cannot be read, kInvalidInput with `FILE:LINE:COLUMN: what` or `FILE: steps[3]: what`.
-/// The result has at least one client, and every step names one.
+/// Loads a script. Errors: kUnavailable for a file that cannot be read, kInvalidInput with `FILE:LINE:COLUMN: what` or
+/// `FILE: steps[3]: what`. The result has at least one client, and every step names one.
 core::Result<v1::Script> loadScript(const std::filesystem::path& file);
 core::Result<v1::Script> parseScript(const std::string& text, const std::string& label);
 

@@ -44,8 +44,8 @@ struct ScriptReport {
   [[nodiscard]] bool passed() const;
 };
 
-/// `script` comes from loadScript(). If no server answers at the URL, the first step fails. `ca_file`: that of
-/// ClientPool.
+/// Runs a script that comes from loadScript(). If no server answers at the URL, the first step fails. `ca_file`: that
+/// of ClientPool.
 ScriptReport runScript(const v1::Script& script, const net::ClientUrl& url, const std::string& ca_file = "");
 
 }  // namespace spindrift::script

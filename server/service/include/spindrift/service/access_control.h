@@ -40,8 +40,8 @@ class AccessControl {
   /// error never contains the token.
   [[nodiscard]] core::Result<access::Grant> resolve(std::string_view token, const std::vector<RoomTokens>& rooms,
                                                     std::chrono::system_clock::time_point now) const;
-  /// The same for a request that another server shall answer, by the tokens of this one; nullopt for a token that only
-  /// the other server may know.
+  /// Returns the same for a request that another server shall answer, by the tokens of this one; nullopt for a token
+  /// that only the other server may know.
   [[nodiscard]] core::Result<std::optional<access::Grant>> resolveForwarded(
       std::string_view authorization, std::chrono::system_clock::time_point now) const;
   /// Replaces the server's tokens and keys. Sessions that are open keep what they have.

@@ -23,16 +23,17 @@ class Audit {
  public:
   explicit Audit(std::shared_ptr<access::AuditFile> file);
 
-  /// Outcome of a command. Written are the commands that take the role of operator, and the boats that an operator
-  /// takes or removes; of those who may not send them, and of those that are BUSY, only as many as the rate allows.
+  /// Notes the outcome of a command. Written are the commands that take the role of operator, and the boats that an
+  /// operator takes or removes; of those who may not send them, and of those that are BUSY, only as many as the rate
+  /// allows.
   void applied(const rooms::Command& command, std::uint64_t tick);
   void rejected(const rooms::Command& command, const wire::CommandRejection& rejection);
 
-  /// A request that changes the server: "room_opened", "room_closed", "snapshot_asked". `content` is a JSON object or
-  /// empty, `error` why it failed or empty.
+  /// Notes a request that changes the server: "room_opened", "room_closed", "snapshot_asked". `content` is a JSON
+  /// object or empty, `error` why it failed or empty.
   void request(std::string_view event, const core::SenderDetails& who, core::Role role, std::string content,
                const std::string& error);
-  /// A token was refused; as many lines as the rate allows.
+  /// Notes that a token was refused; as many lines as the rate allows.
   void refused(const core::SenderDetails& who, const std::string& why);
 
   [[nodiscard]] bool isOn() const { return file_ != nullptr; }

@@ -7,33 +7,28 @@
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/bytes.h>
-#include <spindrift/core/level_demand.h>
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/venue.h>
 
 namespace spindrift::service {
 
-/// Those who follow this server's rooms from other processes. Thread-safe; no call blocks.
+/// Those who follow this server's rooms from other processes; they are in the demand of the rooms. Thread-safe; no call
+/// blocks.
 class RemoteAudience {
  public:
   virtual ~RemoteAudience() = default;
-  /// The scene was replaced.
+  /// Takes a change of the room's scene.
   virtual void sceneChanged(const rooms::Room& room) = 0;
-  /// The same message goes to the sessions of this process.
+  /// Takes a state message, which the sessions of this process get too.
   virtual void stateChanged(const rooms::Room& room, const net::StateTopic& topic,
                             const core::SharedBytes& message) = 0;
   virtual void closed(const rooms::Room& room) = 0;
-  /// Return whether the command came from another process; it gets the answer.
+  /// Returns whether the command came from another process; it gets the answer.
   virtual bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
   virtual bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) = 0;
-  /// Adds what they watch.
-  virtual void addDemand(const std::string& room, codec::Stream stream, std::uint32_t reduced_count,
-                         core::StreamDemand& demand) const = 0;
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                        const core::FrameLevels& levels) = 0;
-  /// Sessions in other processes; with an empty name in all rooms.
-  [[nodiscard]] virtual std::size_t sessionCount(const std::string& room) const = 0;
 };
 
 /// The other servers and their rooms. Thread-safe; no call blocks.
@@ -42,7 +37,7 @@ class Cluster {
   virtual ~Cluster() = default;
   /// Returns the room of that name, wherever it runs, or null. The empty name is the default room.
   virtual std::shared_ptr<Venue> find(const std::string& room) = 0;
-  /// As net::Application::acceptSession(), for a room of another server.
+  /// Decides as net::Application::acceptSession() does, for a room of another server.
   virtual core::Result<void> accept(const std::string& room) = 0;
   /// Takes a request that another server has to answer, or several together; returns false if this process should.
   virtual bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) = 0;

@@ -36,7 +36,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   /// Tells every client that knows the message, and refuses new rooms from now on. /readyz answers 503.
   void drain(const v1::Draining& draining);
 
-  void serverStarts(net::Hub& served) override;
+  void serverStarts(net::Hub& served) override { sessions_.serve(served); }
   core::Result<void> acceptSession(const std::string& room) override;
   void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
@@ -58,25 +58,19 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
-  [[nodiscard]] rooms::WatchedLayers watched(const rooms::Room& room, const core::ReducedCounts& counts,
-                                             core::LevelSet due) const override;
-  [[nodiscard]] std::size_t sessionCount(const rooms::Room& room) const override;
-  [[nodiscard]] std::size_t sessionCount() const override;
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
 
   // FrameOutlet interface
-  [[nodiscard]] core::StreamDemand demand(const std::string& room, codec::Stream stream,
-                                          std::uint32_t reduced_count) const override;
   void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
 
  private:
   [[nodiscard]] net::Hub& hub() const { return sessions_.hub(); }
   [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
-  /// The room of that name, here or in the cluster; null: there is none.
+  /// Returns the room of that name, here or in the cluster; null if it does not exist.
   [[nodiscard]] std::shared_ptr<Venue> find(const std::string& room);
-  /// To all sessions of the room, in this process and in others.
+  /// Sends a state message to all sessions of the room, in this process and in others.
   void tell(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message);
 
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists

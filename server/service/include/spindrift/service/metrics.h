@@ -38,11 +38,11 @@ struct MetricsSources {
 /// Returns the page of a process without rooms: its network and the answers to commands that it passed on.
 std::string metricsText(const net::ServerStats& network, const CommandCounters& commands);
 
-/// One line of a metric without labels, with its head; `type`: "counter" or "gauge".
+/// Returns one line of a metric without labels, with its head; `type`: "counter" or "gauge".
 std::string metric(const char* name, const char* type, const char* help, double value);
 
 /// Returns the whole page. Times in seconds, sizes in bytes; names of counters end in _total.
-std::string metricsText(const rooms::SimulationThread& rooms, const net::Hub& hub, const CommandCounters& commands,
+std::string metricsText(const rooms::SimulationThread& rooms, const CommandCounters& commands,
                         const AccessControl& access, const MetricsSources& sources);
 
 }  // namespace spindrift::service

@@ -26,7 +26,7 @@ unsigned httpStatusOf(v1::RejectReason reason);
 
 class RestApi {
  public:
-  /// What it asks of the server around it.
+  /// Requests to the server around it.
   struct Requests {
     std::function<void(const rooms::Room&)> dismiss;  ///< closes a room's sessions before the room closes
     std::function<void()> drain{};                    ///< ends the server, called once; empty: refused
@@ -38,8 +38,7 @@ class RestApi {
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
   /// Makes the server part of a cluster; call it before the network starts.
   void join(const ClusterHooks& cluster) { cluster_ = cluster; }
-  void serverStarts(net::Hub& hub) { hub_ = &hub; }
-  /// From now on /readyz answers 503 and rooms are not opened. Thread-safe.
+  /// Makes /readyz answer 503 from now on, and opens no more rooms. Thread-safe.
   void drain() { is_draining_ = true; }
   /// Answers any request that net passes to the application. `decided`: what the client may, where the process to which
   /// it is connected has decided that.
@@ -57,7 +56,7 @@ class RestApi {
     access::Grant grant;
 
     [[nodiscard]] bool isOperator() const { return grant.role >= core::Role::kOperator; }
-    /// For the audit log.
+    /// Returns the details for the audit log.
     [[nodiscard]] core::SenderDetails details(const std::string& room) const {
       return {.room = room, .subject = grant.subject, .name = "", .peer = request.peer};
     }
@@ -81,7 +80,6 @@ class RestApi {
   const Requests requests_;
   std::atomic<bool> is_draining_{false};
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
-  net::Hub* hub_ = nullptr;                   ///< set before any request arrives
   ClusterHooks cluster_;                      ///< set before any request arrives
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};

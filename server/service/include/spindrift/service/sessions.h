@@ -32,7 +32,7 @@ class Sessions {
   /// `access` and `counters` outlive it.
   Sessions(const SessionRules& rules, AccessControl& access, CommandCounters& counters)
       : rules_(rules), access_(access), counters_(counters) {}
-  /// Call it before the first session.
+  /// Takes the hub. Call it before the first session.
   void serve(net::Hub& hub) { hub_ = &hub; }
   [[nodiscard]] net::Hub& hub() const { return *hub_; }
   [[nodiscard]] AccessControl& access() const { return access_; }
@@ -44,19 +44,19 @@ class Sessions {
   void closed(net::SessionId session, const net::SessionEnd& end);
 
   // From the rooms.
-  /// The room has another scene, or can be reached again: sends a new greeting to its sessions. Their subscriptions
-  /// stay valid.
+  /// Sends a new greeting to the sessions of a room that has another scene, or can be reached again. Their
+  /// subscriptions stay valid.
   void roomChanged(const Venue& venue);
-  /// The same, and the session may now be another person, or have another key.
+  /// Sends the same to a session that may now be another person, or have another key.
   void readmitted(net::SessionId session, const rooms::Admission& admission);
   /// Closes all sessions of a room that is about to close. `why`: one line.
   void dismiss(const std::string& room, net::CloseCode code = net::CloseCode::kRoomClosed,
                const std::string& why = "the room was closed");
   /// Sends the answer to the session that sent the command; counts and the audit log are the caller's.
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
-  /// The same; counts the rejection, and enters it into the audit log.
+  /// Sends the rejection, counts it, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
-  /// Another connection continues in the session's place.
+  /// Closes a session in whose place another connection continues.
   void displace(net::SessionId session);
   /// Tells every client that knows the message.
   void drain(const v1::Draining& draining);
@@ -85,8 +85,8 @@ class Sessions {
     std::shared_ptr<const core::SenderDetails> details{};  ///< once it has said hello
   };
 
-  /// Sends a greeting with the room's present state and stores that state. Does nothing while the room cannot be
-  /// reached.
+  /// Sends a greeting with the room's present state and stores that state. Does nothing if the last greeting had the
+  /// same state, or while the room cannot be reached.
   void greet(net::SessionId session, const Venue& venue);
   void handle(net::SessionId session, const State& state, core::ByteView message);
   void hello(net::SessionId session, const State& state, const wire::Hello& hello);
@@ -99,13 +99,16 @@ class Sessions {
   void command(net::SessionId session, const State& state, v1::Command message);
   /// Notes that the session watches the layer; true: for the first time.
   bool noteWatched(net::SessionId session, v1::Layer layer);
-  /// Takes a token of the session's command rate; returns false if there is none.
+  /// Takes a token of the session's command rate; returns false if the bucket is empty.
   bool takeCommand(net::SessionId session);
 
   const SessionRules rules_;
   AccessControl& access_;
   CommandCounters& counters_;
   net::Hub* hub_ = nullptr;  ///< set before any session exists
+  /// Held from reading a room's state until the greeting is sent, so that no older greeting follows a newer one. Lock
+  /// it before mutex_.
+  std::mutex greeting_mutex_;
   std::mutex mutex_;
   std::map<net::SessionId, State> sessions_;
 };

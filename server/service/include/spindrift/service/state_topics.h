@@ -11,7 +11,7 @@ namespace spindrift::service::topic {
 inline const net::StateTopic kGreeting{.name = "greeting", .scope = net::StateTopic::Scope::kWhole};
 inline const net::StateTopic kRoomState{.name = "room_state", .scope = net::StateTopic::Scope::kPart};
 inline const net::StateTopic kBoats{.name = "boats", .scope = net::StateTopic::Scope::kPart};
-/// One per live parameter of the scene.
+/// Returns the topic of a live parameter of the scene.
 inline net::StateTopic ofParameter(const std::string& path) {
   return {.name = "parameter:" + path, .scope = net::StateTopic::Scope::kPart};
 }

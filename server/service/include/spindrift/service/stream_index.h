@@ -15,13 +15,7 @@ inline net::StreamIndex streamIndex(codec::Stream stream) {
   return static_cast<net::StreamIndex>(codec::indexOf(stream));
 }
 
-/// FrameOutlet::demand(), forwarded to a hub.
-inline core::StreamDemand demandOf(const net::Hub& hub, const std::string& room, codec::Stream stream,
-                                   std::uint32_t reduced_count) {
-  return hub.demand(room, streamIndex(stream), reduced_count);
-}
-
-/// FrameOutlet::publish(), forwarded to a hub.
+/// Publishes on a hub, for FrameOutlet::publish().
 inline void publishTo(net::Hub& hub, const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                       const core::FrameLevels& levels) {
   hub.publish(room, streamIndex(stream), {.keyframe = frame.keyframe, .delta = frame.delta, .levels = levels});

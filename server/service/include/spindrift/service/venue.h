@@ -14,9 +14,10 @@
 
 namespace spindrift::service {
 
-/// What a greeting says of a room. Immutable.
+/// The part of a room that a greeting describes. Immutable.
 struct VenueView {
   std::shared_ptr<const rooms::RoomSnapshot> room;
+  v1::FidelityLevels levels;
   std::string device;               ///< one line: the device of the simulation
   std::vector<std::string> scenes;  ///< names that ChangeScene accepts
   v1::RoomAccess room_access;       ///< digests of tokens that were made for the room
@@ -30,20 +31,23 @@ class Venue {
   virtual ~Venue() = default;
 
   [[nodiscard]] virtual const std::string& name() const = 0;
-  /// Null while the room cannot be reached; Sessions::roomChanged() is called when it can.
+  /// Returns the room's present view; null while the room cannot be reached; Sessions::roomChanged() is called when it
+  /// can.
   [[nodiscard]] virtual std::shared_ptr<const VenueView> view() const = 0;
   [[nodiscard]] virtual v1::People people() const = 0;
-  /// Whether new sessions may still come in: false once the room was closed.
+  /// Returns what the sessions of the room need of its frames; never null.
+  [[nodiscard]] virtual std::shared_ptr<core::DemandTable> demand() const = 0;
+  /// Returns whether new sessions may still come in: false once the room was closed.
   [[nodiscard]] virtual bool isOpen() const = 0;
 
   /// Called once, from any thread, perhaps before arrive() returns. The error is one line for the client.
   using Arrived = std::function<void(core::Result<rooms::Admission>)>;
   virtual void arrive(const rooms::Arrival& arrival, Arrived arrived) = 0;
-  /// The session ended. Ignored for sessions that never arrived.
+  /// Removes a session that ended. Ignored for sessions that never arrived.
   virtual void leave(core::SessionId session) = 0;
   /// Sessions joined the room in the hub, or what they watch has changed.
   virtual void watchesChanged() = 0;
-  /// The outcome goes to Sessions::commandApplied() or commandRejected().
+  /// Passes the command on; the outcome goes to Sessions::commandApplied() or commandRejected().
   virtual void command(const rooms::Command& command) = 0;
 };
 

@@ -30,7 +30,7 @@ struct WaterServerOptions {
 
 class WaterServer {
  public:
-  /// Errors: those of the device, the rooms and the port.
+  /// Starts the server. Errors: those of the device, the rooms and the port.
   static core::Result<std::unique_ptr<WaterServer>> start(WaterServerOptions options);
   ~WaterServer();
   WaterServer(const WaterServer&) = delete;
@@ -41,20 +41,20 @@ class WaterServer {
   void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
-  /// After stop(): returns whether water of a room that was being opened is still built. The destructor waits for it.
+  /// Returns whether, after stop(), water of a room that was being opened is still built. The destructor waits for it.
   [[nodiscard]] bool isBuilding() const { return simulation_->isBuilding(); }
 
-  /// See net::Server::reloadCertificate().
+  /// Calls net::Server::reloadCertificate().
   void reloadCertificate() { network_->reloadCertificate(); }
 
   [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Real-time factor of the default room over the last second.
+  /// Returns the real-time factor of the default room over the last second.
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
   [[nodiscard]] Gateway& gateway() { return *gateway_; }
   [[nodiscard]] rooms::SimulationThread& simulation() { return *simulation_; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
-  /// One line per room; filled by stop().
+  /// Returns one line per room; filled by stop().
   [[nodiscard]] const std::vector<std::string>& summary() const { return simulation_->summary(); }
 
  private:

@@ -9,8 +9,8 @@
 
 namespace spindrift::sim {
 
-/// Of one gauge at the end of one tick; shaders/diagnostics/gauges.comp. On dry ground without flow, at the ground's
-/// elevation with BULK_NONLINEAR and at 0 with BULK_LINEAR.
+/// Values of one gauge at the end of one tick; shaders/diagnostics/gauges.comp. On dry ground without flow, at the
+/// ground's elevation with BULK_NONLINEAR and at 0 with BULK_LINEAR.
 struct GaugeReading {
   float elevation_m = 0.0F;     ///< over the rest level
   float velocity_x_mps = 0.0F;  ///< of the flow over the depth
@@ -37,15 +37,15 @@ class GaugeHistory {
   explicit GaugeHistory(std::size_t gauge_count);
 
   // Simulation thread.
-  /// One reading per gauge. Overwrites the oldest tick when the ring is full.
+  /// Adds one reading per gauge. Overwrites the oldest tick when the ring is full.
   void add(double time_s, std::span<const GaugeReading> readings);
   void clear();
 
   // Any thread.
   [[nodiscard]] std::size_t gaugeCount() const { return gauge_count_; }
-  /// One per gauge; zeros before the first reading.
+  /// Returns one value per gauge; zeros before the first reading.
   [[nodiscard]] std::vector<Now> now() const;
-  /// The kept ticks of a gauge, oldest first. Precondition: gauge < gaugeCount().
+  /// Returns the kept ticks of a gauge, oldest first. Precondition: gauge < gaugeCount().
   [[nodiscard]] Series series(std::size_t gauge) const;
 
  private:

@@ -3,12 +3,12 @@
 
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/sim/state_copy.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_state/relay_particles.h>
+#include <spindrift/sim_state/state_copy.h>
 
 namespace spindrift::sim {
 
@@ -19,11 +19,6 @@ struct SceneBasis {
   Derived derived;
   StateCopy state;             ///< position, velocity and elevation; empty when the change keeps the particles
   std::uint64_t revision = 0;  ///< WaterSim::adopt() refuses a change prepared for another revision
-};
-
-/// Positions and velocities, 4 floats per particle (x, y, z, id; x, y, z, foam), as in device memory.
-struct RelaidParticles {
-  std::vector<float> position, velocity;
 };
 
 /// Input of WaterSim::adopt(). Plain values.

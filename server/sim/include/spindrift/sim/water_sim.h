@@ -7,9 +7,9 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
-#include <spindrift/core/effect.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
@@ -17,13 +17,14 @@
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/boat_record.h>
-#include <spindrift/sim/carried_state.h>
 #include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
-#include <spindrift/sim/saved_state.h>
-#include <spindrift/sim/state_copy.h>
+#include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_state/carried_state.h>
+#include <spindrift/sim_state/saved_state.h>
+#include <spindrift/sim_state/state_copy.h>
 
 namespace spindrift::sim {
 
@@ -36,8 +37,8 @@ struct LayerRequest {
   [[nodiscard]] bool isEmpty() const { return !surface && !particles && !foam; }
 };
 
-/// What a frame should contain. Layers that the scene lacks, and levels that would not downsample a layer, are left
-/// out.
+/// Parts that a frame should contain. Layers that the scene lacks, and levels that would not downsample a layer, are
+/// left out.
 struct FrameRequest {
   std::array<LayerRequest, core::kLevelCount> levels{};  ///< indexed by core::Level; see at()
   bool bodies = false;
@@ -78,15 +79,15 @@ class WaterSim {
   /// the duration of this call shows a device that cannot keep up. Does nothing once deviceError() is set.
   void step();
   static constexpr std::size_t kMaxTicksInFlight = 3;
-  /// Set when the device has not finished a tick within 10 s, or its context is lost. The simulation has then stopped:
-  /// destroy it and create another one, after a lost context on a new context.
+  /// Returns the error that is set when the device has not finished a tick within 10 s, or its context is lost. The
+  /// simulation has then stopped: destroy it and create another one, after a lost context on a new context.
   [[nodiscard]] const std::optional<core::Error>& deviceError() const { return device_error_; }
 
   /// Starts an effect now, on the wave, or on the particles if there is no wave. kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
   /// Adds a boat and returns its id. kInvalidInput in a scene without boats, kUnavailable when all slots are taken.
   core::Result<std::uint32_t> spawnBoat(const core::Boat& boat);
-  /// kInvalidInput for an unknown boat.
+  /// Steers a boat. Error kInvalidInput for an unknown boat.
   core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> removeBoat(std::uint32_t boat_id);
   [[nodiscard]] std::vector<BoatRecord> boats() const;
@@ -96,7 +97,7 @@ class WaterSim {
   /// Returns a number above every id in use; in a scene without boats that of numberBoatsFrom().
   [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
-  /// Number of particles now; in two-way scenes as of the newest health().
+  /// Returns the number of particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;
 
   /// Applies new parameter values from the next tick on: prepareScene() and adopt() in one call. kInvalidInput, with
@@ -119,8 +120,8 @@ class WaterSim {
   /// Copies what another simulation of the same water needs to continue from here. Waits.
   [[nodiscard]] CarriedState carriedState();
   /// Continues from the state of another simulation instead of the start: same time (to half a tick), water, boats with
-  /// their ids, effects and wind sea; carry_state.h says what becomes of each at another resolution. Call it before a
-  /// tick is run or after reset(). Parameters are not carried. kInvalidInput, with nothing changed, if it is not the
+  /// their ids, effects and wind sea; resample_state.h says what becomes of each at another resolution. Call it before
+  /// a tick is run or after reset(). Parameters are not carried. kInvalidInput, with nothing changed, if it is not the
   /// same water.
   core::Result<void> takeOver(const CarriedState& carried);
 
@@ -134,40 +135,42 @@ class WaterSim {
   /// Packs a frame of the present state. Returns false when there will be none: all slots are still in use by earlier
   /// frames, or the scene has none of the requested layers.
   bool requestFrame(const FrameRequest& request);
-  /// Number of requested frames that takeFrames() has not yet returned, without frames lost through a change of
-  /// `particles.count`.
+  /// Returns the number of requested frames that takeFrames() has not yet returned, without frames lost through a
+  /// change of `particles.count`.
   [[nodiscard]] std::size_t framesInFlight() const;
   /// Returns the finished frames, oldest first, with empty `diagnostics`.
   std::vector<core::FrameView> takeFrames();
-  /// Number of levels that downsample this scene: planes, particles.
+  /// Returns the number of levels that downsample this scene: planes, particles.
   [[nodiscard]] core::ReducedCounts reducedCounts() const;
 
-  /// The newest available health.
+  /// Returns the newest available health.
   [[nodiscard]] const Health& health() const { return health_; }
-  /// What the scene's gauges have read since the start or the last reset(); null in scenes without gauges. Like
-  /// health(), it is some ticks behind.
+  /// Returns the readings of the scene's gauges since the start or the last reset(); null in scenes without gauges.
+  /// Like health(), it is some ticks behind.
   [[nodiscard]] std::shared_ptr<const GaugeHistory> gauges() const { return gauges_; }
   /// Sums of health() since creation, and the number of times that the watchdog restored the last good checkpoint.
   [[nodiscard]] std::uint64_t nonfiniteCount() const { return nonfinite_count_; }
   [[nodiscard]] std::uint64_t escapedCount() const { return escaped_count_; }
   [[nodiscard]] std::uint64_t recoveredCount() const { return recovered_count_; }
-  /// Sum since creation of Health::crowded_count.
+  /// Returns the sum since creation of Health::crowded_count.
   [[nodiscard]] std::uint64_t crowdedCount() const { return crowded_count_; }
   /// Returns the mean cost of each pass since the last call, per scope.
   std::vector<gpu::PassCost> takePassCosts() { return timers_.take(); }
 
   [[nodiscard]] std::uint64_t tick() const { return tick_; }
-  /// Simulated time since the start or the last reset().
+  /// Returns the simulated time since the start or the last reset().
   [[nodiscard]] double time_s() const { return static_cast<double>(tick_ - start_tick_) * derived_.tick_s; }
   [[nodiscard]] const core::Scene& scene() const { return scene_; }
   [[nodiscard]] const Derived& derived() const { return derived_; }
 
   /// Copies the present state. Waits.
   StateCopy copyState();
-  /// Replaces the state (sizes must match). For tests that need a given state.
+  /// Replaces what the copy has (sizes must match); the rest of what lasts stays. For tests that need a given state.
   void setState(const StateCopy& state);
-  /// 64-bit FNV-1a of the state's bits: equal hashes for equal runs on the same device.
+  /// Returns hashOf(savedState()): everything that lasts. Equal hashes for equal runs on the same device. Waits.
   std::uint64_t stateHash();
+  /// Returns what the parts declare about their buffers. For tests.
+  [[nodiscard]] StateBuffers stateBuffers();
 
  private:
   struct Parts;
@@ -177,11 +180,15 @@ class WaterSim {
   bool waitForDevice();
   void uploadStartingState();
   std::vector<double> copyElevation();
+  /// nullopt in scenes without.
+  std::optional<StateBuffer> carriedBuffer(std::string_view name);
+  /// Continues from there, at so many ticks since the start, with the buffers as they are now.
+  void continueWith(const HostState& host, std::uint64_t run_tick);
   core::Result<void> replaceParticles(const PreparedScene& prepared);
   void uploadBasin();
   void startEvents();
   void advanceWave();
-  /// The sea that comes in during a wave step; null when none does.
+  /// Returns the sea that comes in during a wave step; null when none does.
   const gpu::TexelBuffer* advanceSea(std::uint32_t substep);
   void stirParticles();
   void sampleSurface();

@@ -21,18 +21,18 @@ struct Basin {
   /// diagonals, the last two are the shares of an effect's displacement that pass the faces toward +x and +z
   /// (shaders/wave/wave_faces.glsl).
   std::vector<std::array<float, 4>> conductance_m;
-  /// Input of a wave step for each cell, with the still depth [m] as in depth_m in third place. With sponges: rates at
-  /// which flow and elevation are lost [1/s] (equal in a sponge; flow alone where a beach runs dry), depth, 0. With
-  /// matched layers: rate at which flow is lost where a beach runs dry, loss rate of flow and elevation along x, depth,
-  /// loss rate along z. With a nonlinear bulk the depth is that of the ground, obstacles included: negative above the
-  /// still water, and no beach takes flow.
+  /// Input of a wave step for each cell, with the still depth [m] as in depth_m as the third component. With sponges:
+  /// rates at which flow and elevation are lost [1/s] (equal in a sponge; flow alone where a beach runs dry), depth, 0.
+  /// With matched layers: rate at which flow is lost where a beach runs dry, loss rate of flow and elevation along x,
+  /// depth, loss rate along z. With a nonlinear bulk the depth is that of the ground, obstacles included: negative
+  /// above the still water, and no beach takes flow.
   std::vector<std::array<float, 4>> bed;
 };
 
-/// Elevation [units] of the water of a nonlinear bulk at rest: 0, and the ground where that is higher.
+/// Returns the elevation [units] of the water of a nonlinear bulk at rest: 0, and the ground where that is higher.
 std::vector<std::int32_t> restingElevation(const Basin& basin);
 
-/// Signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
+/// Returns the signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
 double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
 
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);

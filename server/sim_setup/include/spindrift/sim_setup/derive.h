@@ -67,7 +67,7 @@ struct WaveLayout {
   double courant = 0.0;              ///< c dt / dx
 
   [[nodiscard]] core::CellCounts counts() const { return {count_x, count_z}; }
-  /// Half as many along each axis, rounded up: the cells of the foam field.
+  /// Returns half as many along each axis, rounded up: the cells of the foam field.
   [[nodiscard]] core::CellCounts foamCounts() const { return {(count_x + 1) / 2, (count_z + 1) / 2}; }
   [[nodiscard]] double longerSide_m() const { return std::max(length_m, width_m); }
   [[nodiscard]] double shorterSide_m() const { return std::min(length_m, width_m); }
@@ -91,7 +91,7 @@ struct Derived {
 /// lower), but the running room keeps its domain, grid and floor.
 core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kept = nullptr);
 
-/// Returns the layout for another number of particles in a running room: the same water in the same place, so the
+/// Returns the layout for another number of particles in a running room: the same water at the same position, so the
 /// spacing is (volume / count)^(1/3), and the layers follow from it. Errors as derive().
 core::Result<ParticleLayout> layOutAgain(const core::Scene& scene, const ParticleLayout& before);
 

@@ -51,7 +51,8 @@ struct Poles {
 /// flux through the open part of the face per width of the whole face. Arrays of four: x face of pole 0 and 1, then z
 /// face of pole 0 and 1.
 struct DispersionLevel {
-  /// Of the storage: even but for the coarsest grid, so an axis may end with a row of dry cells beyond the water.
+  /// Counts of the storage: even but for the coarsest grid, so an axis may end with a row of dry cells beyond the
+  /// water.
   CellCounts count;
   /// 1/d of the x face and of the z face (of coarse faces beside walls: their resistance), over their open share; b_0 d
   /// and b_1 d of the cell, over its wet share and the squared cell size of this grid; all times the scene's depth. 0
@@ -74,7 +75,7 @@ struct DispersionLevel {
   }
 };
 
-/// All numbers fit in 16 bits (roundToHalf()), except where it is flat.
+/// All numbers fit in 16 bits (core::roundToHalf()), except where it is flat.
 struct Dispersion {
   double depth_m = 0.0;  ///< the scene's
   double cell_m = 0.0;
@@ -86,10 +87,11 @@ struct Dispersion {
   bool is_flat = false;
 };
 
-/// f_j d of a grid of the V-cycle, 0 being the finest. On coarse grids K phi = phi/d - grad(b_j d div phi - f_j D phi),
-/// where D takes the difference across a cell along the axis of the face alone; fluxes that are linear inside a block
-/// have a mass matrix with f d = 1/8. Chosen so that waves along the axes and along the diagonals are equally fast;
-/// none on grid 2, where it would give waves of 8 cells along an axis two frequencies. Less than 1/4, so K is positive.
+/// Returns f_j d of a grid of the V-cycle, 0 being the finest. On coarse grids K phi = phi/d - grad(b_j d div phi - f_j
+/// D phi), where D takes the difference across a cell along the axis of the face alone; fluxes that are linear inside a
+/// block have a mass matrix with f d = 1/8. Chosen so that waves along the axes and along the diagonals are equally
+/// fast; none on grid 2, where it would give waves of 8 cells along an axis two frequencies. Less than 1/4, so K is
+/// positive.
 [[nodiscard]] constexpr std::array<double, kPoleCount> spreadOf(std::size_t grid) {
   if (grid == 1) return {0.12, 0.20};
   if (grid >= 3) return {0.14, 0.14};
@@ -120,14 +122,15 @@ inline constexpr int kCoarsestSweepCount = DISPERSION_COARSEST_SWEEPS;
 /// Bytes of its buffers on the device, at most. Precondition: canDisperse().
 [[nodiscard]] std::uint64_t dispersionBytes(const WaveLayout& layout);
 
-/// Largest stable step [s]: 2 over the highest frequency of the grid, with the dispersion's coefficients at any depth
-/// up to depth_m, with a margin.
+/// Returns the largest stable step [s]: 2 over the highest frequency of the grid, with the dispersion's coefficients at
+/// any depth up to depth_m, with a margin.
 [[nodiscard]] double dispersedMaxStep(double gravity_mps2, double depth_m, double cell_m);
 
 /// Lays out the grids for a basin with the 5-point stencil. Precondition: canDisperse().
 [[nodiscard]] Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin);
 
-/// kSweepWeight over the diagonal of the operator for each face of a grid, over the scene's depth; 0 where closed.
+/// Returns kSweepWeight over the diagonal of the operator for each face of a grid, over the scene's depth; 0 where
+/// closed.
 [[nodiscard]] std::vector<std::array<double, 4>> sweepWeights(const DispersionLevel& level);
 
 }  // namespace spindrift::sim

@@ -6,8 +6,8 @@
 
 #include <shared/event_uniforms.h>
 
-#include <spindrift/core/effect.h>
 #include <spindrift/core/result.h>
+#include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
@@ -31,7 +31,7 @@ EffectDomain domainOf(const WaveLayout& wave);
 class Effects {
  public:
   /// Starts an effect at time_s; a wave must have a side. kUnavailable when the most effects of its kind are active:
-  /// try again when one has ended. `spare`: places that must stay free, so that rain and wind leave some for clients.
+  /// try again when one has ended. `spare`: slots that must stay free, so that rain and wind leave some for clients.
   core::Result<void> start(const core::Effect& effect, double time_s, std::size_t spare = 0);
 
   /// Returns what the active effects add at time_s, after a step of dt_s, and removes those that have ended.

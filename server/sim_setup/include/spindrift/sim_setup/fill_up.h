@@ -6,8 +6,8 @@
 
 namespace spindrift::sim {
 
-/// Still depth [units] as the shaders compute it (shaders/wave/water_column.glsl): the depth as float, cut to whole
-/// units.
+/// Returns the still depth [units] as the shaders compute it (shaders/wave/water_column.glsl): the depth as float, cut
+/// to whole units.
 std::int64_t bedUnits(double depth_m);
 
 enum class Lack {

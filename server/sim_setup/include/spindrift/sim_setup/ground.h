@@ -1,4 +1,4 @@
-// The ground under the water and beside it, as a function of place. Pure functions of the scene. "Still depth": from
+// The ground under the water and beside it, as a function of position. Pure functions of the scene. "Still depth": from
 // the rest level down, positive below it and negative above it (land). [m]
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace spindrift::sim {
 
-/// Returns the still depth of the ground at a place, without obstacles: floor, beaches, grid, then the shapes in order.
-/// At most wave.depth_m: what checkGround() allows beyond it is the rounding of numbers in a file. Precondition: the
-/// scene has a wave.
+/// Returns the still depth of the ground at a position, without obstacles: floor, beaches, grid, then the shapes in
+/// order. At most wave.depth_m: what checkGround() allows beyond it is the rounding of numbers in a file. Precondition:
+/// the scene has a wave.
 double groundDepth(const core::Scene& scene, double x_m, double z_m);
 
 /// Water with BULK_NONLINEAR cannot stand higher than 64 m (shared/fixed_point.h), so it does not matter how far land
@@ -26,7 +26,7 @@ double groundDepthWithObstacles(const core::Scene& scene, double x_m, double z_m
 /// Returns the still depth where there is water at rest, 0 on land; without obstacles. [m]
 double bedDepth(const core::Scene& scene, double x_m, double z_m);
 
-/// Returns how fast the ground rises toward land, if a straight way up from this place leads there: the slope of the
+/// Returns how fast the ground rises toward land, if a straight way up from this position leads there: the slope of the
 /// ground, positive. Returns nullopt on land, on level ground, and on a slope that stays under water, such as a bar's.
 /// Only of the scene's bed; 0 without one.
 std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_m);

@@ -1,7 +1,7 @@
 // The pressure of a boat's hull on the water, as shaders/bodies/boat.glsl computes it, for tests and studies.
 #pragma once
 
-#include <spindrift/core/effect.h>
+#include <spindrift/core/scene.h>
 
 namespace spindrift::sim {
 
@@ -14,11 +14,12 @@ struct HullPressure {
   double volume_m3;
 
   [[nodiscard]] double head_m(double along_m, double across_m) const;
-  /// Fourier transform: integral of head cos(k_along a) cos(k_across b). [m^3]
+  /// Returns the Fourier transform: integral of head cos(k_along a) cos(k_across b). [m^3]
   [[nodiscard]] double spectrum_m3(double k_along_radpm, double k_across_radpm) const;
 };
 
-/// A settled boat on wave cells of `cell_m`. A hull narrower than three cells is spread over three.
+/// Returns the pressure of a settled boat on wave cells of `cell_m`. A hull narrower than three cells is spread over
+/// three.
 HullPressure hullPressure(const core::Boat& boat, double cell_m);
 
 }  // namespace spindrift::sim

@@ -30,20 +30,20 @@ class IncidentWaves {
     std::vector<Incident> values;
   };
 
-  /// Preconditions: makersFit(), and layout.dt_s is set. `depth_m`: at the side.
+  /// Makes the waves of a wave-maker. Preconditions: makersFit(), and layout.dt_s is set. `depth_m`: at the side.
   static IncidentWaves of(const core::WaveMaker& maker, const core::Scene& scene, const WaveLayout& layout,
                           double depth_m);
 
-  /// `time_s`: since the start of the scene; the middle of a step.
+  /// Returns the waves at a time; `time_s`: since the start of the scene; the middle of a step.
   [[nodiscard]] Incident at(double time_s) const;
-  /// Flow per level that takes up what comes back [m/s].
+  /// Returns the flow per level that takes up what comes back [m/s].
   [[nodiscard]] double absorbing_mps() const { return absorbing_mps_; }
   [[nodiscard]] double depth_m() const { return depth_m_; }
 
  private:
   [[nodiscard]] Incident ofComponents(double since_s) const;
   [[nodiscard]] Incident ofTable(double since_s) const;
-  /// Of a simple wave, whose flow follows from its level: components have the level of the wave itself.
+  /// Keeps the components' levels those of the wave itself, as of a simple wave, whose flow follows from its level.
   void keepLevels(double long_mps);
   [[nodiscard]] double envelope(double since_s) const;
 

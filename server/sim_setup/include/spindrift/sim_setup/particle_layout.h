@@ -11,13 +11,15 @@ namespace spindrift::sim {
 /// million.
 inline constexpr std::uint32_t kMaxCellCount = 1u << 26;
 
-/// `volume_m3`: volume of the water, if given; otherwise it follows from the scene's layers. Errors as derive().
+/// Lays out the particles. `volume_m3`: volume of the water, if given; otherwise it follows from the scene's layers.
+/// Errors as derive().
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3 = 0.0);
 
-/// Standard deviation, in wave cells, of a spread over 4 reach_count + 1 cells (shaders/coupling/splat.glsl).
+/// Returns the standard deviation, in wave cells, of a spread over 4 reach_count + 1 cells
+/// (shaders/coupling/splat.glsl).
 double splatWidth(std::uint32_t reach_count);
 
-/// k of p = k (rho - rho0): c0^2 over the stress ratio of the lattice.
+/// Returns k of p = k (rho - rho0): c0^2 over the stress ratio of the lattice.
 double stiffnessOf(const core::ParticleScene& particles, const ParticleLayout& layout);
 
 }  // namespace spindrift::sim

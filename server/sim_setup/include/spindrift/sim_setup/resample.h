@@ -20,7 +20,7 @@ struct SampleAxis {
 
 /// nx x nz samples, x fastest.
 struct Field {
-  std::vector<double> mean;   ///< over the wet part of each cell; 0 where there is none
+  std::vector<double> mean;   ///< over the wet part of each cell; 0 in dry cells
   std::vector<double> share;  ///< wet share of each cell, 0 to 1
 };
 

@@ -18,7 +18,7 @@ bool disperses(const core::Scene& scene);
 bool isOpen(const core::Scene& scene);
 /// Returns whether a side has a wave-maker.
 bool hasMakers(const core::Scene& scene);
-/// Bit of a side (shared/side_bits.h), and those of all sides with a wave-maker.
+/// Returns the bit of a side (shared/side_bits.h), and those of all sides with a wave-maker.
 std::uint32_t makerBit(core::Side side);
 std::uint32_t makerBits(const core::Scene& scene);
 /// Returns whether water can leave or enter: a side absorbs, or has a wave-maker.
@@ -51,7 +51,7 @@ bool isPeriodicZ(const core::WaveScene& wave);
 bool countsNeighbours(const core::Scene& scene);
 bool storesFoamSource(const core::Scene& scene);
 
-/// Number of what the patch follows, see shaders/coupling/follow.comp; 0 = nothing.
+/// Returns the number of what the patch follows, see shaders/coupling/follow.comp; 0 = nothing.
 int followNumber(const core::Scene& scene);
 
 /// Returns whether a change of a scene with particles changes their number.

@@ -46,8 +46,8 @@ struct SeaState {
 /// Returns omega. [rad/s]
 [[nodiscard]] double waveFrequency(double k_radpm, double gravity_mps2, double depth_m);
 
-/// Peak enhancement of JONSWAP (Hasselmann et al. 1973) at a share of the peak's frequency: `enhancement` at 1, 1 far
-/// from it.
+/// Returns the peak enhancement of JONSWAP (Hasselmann et al. 1973) at a share of the peak's frequency: `enhancement`
+/// at 1, 1 far from it.
 [[nodiscard]] double jonswapPeak(double ratio, double enhancement);
 
 /// JONSWAP spectrum for a wind speed and a fetch (Hasselmann et al. 1973), reduced in shallow water as in the TMA
@@ -58,10 +58,10 @@ struct WindSeaSpectrum {
   double alpha = 0.0;
   double peak_radps = 0.0;
 
-  /// Precondition: all arguments are positive. Beyond the fetch of a fully developed sea (Pierson & Moskowitz 1964) a
-  /// longer one changes nothing.
+  /// Makes the spectrum. Precondition: all arguments are positive. Beyond the fetch of a fully developed sea (Pierson &
+  /// Moskowitz 1964) a longer one changes nothing.
   static WindSeaSpectrum of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m);
-  /// Variance of the elevation per unit of frequency. [m^2 s]
+  /// Returns the variance of the elevation per unit of frequency. [m^2 s]
   [[nodiscard]] double density(double omega_radps) const;
 };
 

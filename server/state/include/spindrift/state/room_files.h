@@ -33,7 +33,7 @@ enum class Sync {
 
 class File;
 
-/// Where a state stands in the logs.
+/// Position of a state in the logs.
 struct StatePoint {
   std::uint64_t generation = 0;   ///< of the log that holds what follows
   std::uint64_t next_number = 0;  ///< of the first record that follows, counted from 1 since the room began
@@ -76,7 +76,7 @@ class RoomFiles {
   };
 
   struct Recovered {
-    std::uint64_t generation = 0;  ///< of the snapshot; 0: there is none
+    std::uint64_t generation = 0;  ///< of the snapshot; 0: no snapshot
     core::Bytes snapshot;
     /// The log of the snapshot's generation, always, and the following ones, without a gap. Without a snapshot from
     /// generation 1 on, whose log begins with the new room.
@@ -109,9 +109,9 @@ class RoomFiles {
   /// Counts a record that could not be appended although what it says happened, so that recover() finds it missing.
   void skipRecord();
 
-  /// With Sync::kAlways, forces all records to the disk that were appended before the call; otherwise does nothing. One
-  /// call for a batch of records is enough. After the disk has refused, every flush fails until a snapshot of a newer
-  /// generation is written: the operating system does not keep what it could not write.
+  /// Forces, with Sync::kAlways, all records to the disk that were appended before the call; otherwise does nothing.
+  /// One call for a batch of records is enough. After the disk has refused, every flush fails until a snapshot of a
+  /// newer generation is written: the operating system does not keep what it could not write.
   core::Result<void> flush();
 
   /// Writes the state that was copied at `point`. The file appears under its name when it is whole. An error leaves all
@@ -158,7 +158,7 @@ class RoomFiles {
   std::vector<std::shared_ptr<File>> unforced_logs_;  ///< older ones that the next flush has to force
   std::uint64_t next_number_ = 1;                     ///< of the next record
   bool is_torn_ = false;  ///< bytes of a record that could not be written follow the whole ones
-  bool is_full_ = false;  ///< a record found no place in the log
+  bool is_full_ = false;  ///< a record found no space in the log
 
   std::mutex snapshot_mutex_;  ///< one snapshot is written at a time
 };

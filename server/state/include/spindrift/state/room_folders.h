@@ -20,7 +20,7 @@ struct RoomList {
 };
 core::Result<RoomList> listRooms(const std::filesystem::path& folder);
 
-/// Moves the folder of a room whose files cannot be used to FOLDER/aside/NAME, NAME.2 and so on; returns the new place.
+/// Moves the folder of a room whose files cannot be used to FOLDER/aside/NAME, NAME.2 and so on; returns the new path.
 core::Result<std::filesystem::path> setRoomAside(const std::filesystem::path& folder, const std::string& name);
 
 /// Removes the files of a closed room; no error if it has none. The folder is renamed first, so that a room is there as

@@ -21,7 +21,8 @@ std::string toJson(const google::protobuf::Message& message);
 /// Returns Malformed for text that is no such object or has unknown fields.
 std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json);
 
-/// Error: kInvalidInput with one line. Does not check whether the name is free or the scene exists.
+/// Parses the body of a request for a room. Error: kInvalidInput with one line. Does not check whether the name is free
+/// or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);
 
 /// Parses a list as toJson() writes it; kInvalidInput with one line.

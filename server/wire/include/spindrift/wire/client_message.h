@@ -60,6 +60,11 @@ struct CommandRejection {
   std::string message;  ///< one line for the user
 };
 
+/// Makes a rejection; the caller sets its command number.
+inline CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
+  return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
+}
+
 /// Bytes that are not a valid client message, or one that cannot be answered; becomes a Refusal and a close.
 struct Malformed {
   std::string message;  ///< one line for the user

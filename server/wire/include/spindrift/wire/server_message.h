@@ -34,10 +34,11 @@ struct GreetingFacts {
   double speed = 1.0;
   v1::BoatList boats;               ///< on the water now
   std::vector<std::string> scenes;  ///< names that ChangeScene accepts
+  v1::FidelityLevels levels;        ///< that the scene can take
 };
 
 core::SharedBytes greeting(const GreetingFacts& facts, const v1::Scene& scene);
-/// `boat_id`: the new boat, for SpawnBoat.
+/// Makes an Ack. `boat_id`: the new boat, for SpawnBoat.
 core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);

@@ -49,7 +49,7 @@ struct CrowdReport {
   std::uint64_t unanswered_count = 0;  ///< commands without an answer at the end, except those of the last half second
 };
 
-/// Returns a quantile of sorted values; 0 if there are none.
+/// Returns a quantile of sorted values; 0 for no values.
 double quantileOf(const std::vector<double>& sorted, double ratio);
 
 /// Connects the crowd, measures, disconnects. `begin` is called when the measured time begins, `end` when it ends.

@@ -1,0 +1,65 @@
+// Checks of a received HTTP request, without a socket: bounds of the parser, replies to broken requests, and the
+// decision on an upgrade.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/string_body.hpp>
+#include <boost/system/error_code.hpp>
+
+#include <spindrift/core/result.h>
+#include <spindrift/http/routes.h>
+
+namespace spindrift::net {
+
+/// Limit of the request line and the header fields together.
+inline constexpr std::uint32_t kHeaderMaxBytes = 16 * 1024;
+
+using Request = boost::beast::http::request<boost::beast::http::string_body>;
+using RequestParser = boost::beast::http::request_parser<boost::beast::http::string_body>;
+
+/// Sets the parser's bounds; call it before the first byte.
+void bound(RequestParser& parser, std::size_t body_max_bytes);
+
+/// Returns the refusal for a request whose head alone is wrong, with the body unread; nullopt if it may continue. Turns
+/// a target in absolute form ("GET http://host/path") into a path and the Host header (RFC 9112 section 3.2.2). 400:
+/// HTTP/1.1 without Host, an invalid Host, or a repeated header that may occur once (RFC 9112 section 3.2, RFC 9110
+/// section 5.3, RFC 6455 section 11.3). 411: a POST to the REST interface without a length, or a chunked body. Chunked
+/// bodies are refused because no request here needs one, Beast's parser stores a chunk's line at any length, and
+/// it fails an assertion when the last chunk of an empty body comes byte by byte (boostorg/beast pull request 2861).
+/// 417: an expectation other than 100-continue.
+std::optional<Reply> refuseHead(RequestParser& parser);
+
+/// Returns the reply to a request that the parser refused; nullopt if the connection is gone.
+std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, std::size_t body_max_bytes);
+
+/// Returns the parts that routeRequest() reads.
+RequestHead headOf(const Request& request);
+
+/// Returns whether the client may wait for "100 Continue" before it sends the body (RFC 9110 section 10.1.1).
+bool expectsContinue(const Request& request);
+
+/// Returns what the application is asked; its body is valid as long as the request.
+HttpRequest questionOf(const Request& request, RequestTarget target, const std::string& peer);
+
+/// The room of an upgrade, or the refusal.
+struct UpgradeDecision {
+  std::optional<Reply> refusal;   ///< if set, the upgrade is refused with this reply
+  bool is_room_refused = false;   ///< the refusal is that of `accept_room`
+  std::string room{};             ///< "" is the default room
+  bool echo_subprotocol = false;  ///< the client offered kSubprotocol
+};
+
+/// Checks a WebSocket upgrade. `more_bytes_count`: bytes received after the request before it was answered.
+/// `accept_room`: returns whether sessions may enter the room; the line of its error is the refusal's, kUnavailable
+/// with 503, all others with 404. It may throw: 500.
+UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count,
+                              const std::function<core::Result<void>(const std::string& room)>& accept_room);
+
+}  // namespace spindrift::net

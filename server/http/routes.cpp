@@ -1,0 +1,171 @@
+#include <array>
+#include <optional>
+
+#include <spindrift/http/routes.h>
+
+#include "field_list.h"
+
+namespace spindrift::net {
+namespace {
+
+constexpr std::string_view kApiRoot = "/api/";
+
+bool isApplicationPath(std::string_view path) {
+  return path.starts_with(kApiRoot) || path == "/healthz" || path == "/readyz" || path == "/metrics";
+}
+
+/// Load balancers ask these whether they may send clients.
+bool isHealthPath(std::string_view path) {
+  return path == "/healthz" || path == "/readyz";
+}
+
+/// RFC 9110 section 9.3.7.
+Reply optionsReply(std::string_view allowed) {
+  Reply reply;
+  reply.status = 204;
+  reply.body = std::make_shared<const std::string>();
+  reply.headers = {{"Cache-Control", "no-store"}, {"Allow", std::string(allowed)}};
+  return reply;
+}
+
+Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
+  Reply reply =
+      textReply(405, "The method " + printable(method) + " is not allowed here: use " + std::string(allowed) + ".");
+  reply.headers.emplace_back("Allow", allowed);
+  return reply;
+}
+
+/// Returns whether the If-None-Match list contains this tag, with the weak comparison of RFC 9110 section 13.1.2.
+bool matchesEtag(std::string_view list, std::string_view etag) {
+  while (!list.empty()) {
+    std::string_view tag = takeEntry(list);
+    if (tag.starts_with("W/")) tag.remove_prefix(2);
+    if (tag == "*" || tag == etag) return true;
+  }
+  return false;
+}
+
+Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& files) {
+  const std::shared_ptr<const StaticFile> file = files.find(path, head.accept_encoding);
+  if (!file && path == "/") {
+    return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
+  }
+  if (!file) return textReply(404, "There is nothing at " + printable(path) + ".");
+  Reply reply;
+  reply.headers.emplace_back("ETag", file->etag);
+  reply.headers.emplace_back("Vary", "Accept-Encoding");
+  reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
+  if (matchesEtag(head.if_none_match, file->etag)) {
+    reply.status = 304;
+    reply.body = std::make_shared<const std::string>();
+    return reply;
+  }
+  if (!file->coding.empty()) reply.headers.emplace_back("Content-Encoding", file->coding);
+  reply.content_type = file->content_type;
+  reply.body = std::shared_ptr<const std::string>(file, &file->content);
+  return reply;
+}
+
+}  // namespace
+
+Reply textReply(unsigned status, std::string line) {
+  Reply reply;
+  reply.status = status;
+  reply.body = std::make_shared<const std::string>(std::move(line) + "\n");
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  return reply;
+}
+
+Reply webSocketReply(std::string line) {
+  Reply reply = textReply(426, std::move(line));
+  reply.headers.emplace_back("Upgrade", "websocket");
+  reply.headers.emplace_back("Sec-WebSocket-Version", kWebSocketVersion);
+  return reply;
+}
+
+bool isApiTarget(std::string_view target) {
+  if (const auto parsed = parseTarget(target)) return parsed->path.starts_with(kApiRoot);
+  return target.starts_with(kApiRoot);
+}
+
+Reply asProblem(Reply reply) {
+  constexpr unsigned kFirstError = 400;
+  if (reply.status < kFirstError || !reply.content_type.starts_with("text/plain")) return reply;
+  // The server's own lines are printable ASCII: untrusted text in them has passed printable().
+  std::string line;
+  for (const char c : *reply.body) {
+    if (c == '"' || c == '\\') line.push_back('\\');
+    if (c != '\n') line.push_back(c);
+  }
+  reply.content_type = "application/json";
+  reply.body = std::make_shared<const std::string>("{\"message\":\"" + line + "\"}\n");
+  return reply;
+}
+
+Reply preflightReply() {
+  Reply reply;
+  reply.status = 204;
+  reply.body = std::make_shared<const std::string>();
+  reply.headers = {{"Cache-Control", "no-store"},
+                   {"Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE"},
+                   {"Access-Control-Allow-Headers", "Authorization, Content-Type"},
+                   {"Access-Control-Max-Age", "600"}};
+  return reply;
+}
+
+void allowOrigin(Reply& reply, std::string_view origin) {
+  reply.headers.emplace_back("Access-Control-Allow-Origin", origin);
+}
+
+std::string methodToAnswer(const std::string& method, std::string_view path) {
+  const bool asks = method == "HEAD" || (method == "OPTIONS" && isHealthPath(path));
+  return asks ? "GET" : method;
+}
+
+std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files) {
+  // RFC 9112 section 3.2.4: the server as a whole.
+  if (head.method == "OPTIONS" && head.target == "*") return optionsReply("GET, HEAD, POST, DELETE, OPTIONS");
+  std::optional<RequestTarget> target = parseTarget(head.target);
+  if (!target) return textReply(400, "The request's path is not a plain absolute path.");
+  if (isApplicationPath(target->path)) {
+    if (head.method == "TRACE" || head.method == "CONNECT") {
+      return methodNotAllowed(head.method, "GET, HEAD, POST, PUT, PATCH, DELETE");
+    }
+    return *std::move(target);
+  }
+  if (roomOfPath(target->path)) {
+    return webSocketReply("This is a WebSocket address: connect with a WebSocket client, subprotocol spindrift.v1.");
+  }
+  constexpr std::string_view kAllowed = "GET, HEAD, OPTIONS";
+  if (head.method == "OPTIONS") return optionsReply(kAllowed);
+  if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, kAllowed);
+  return fileReply(head, target->path, files);
+}
+
+Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
+  if (!answer) return textReply(404, "There is nothing at " + printable(path) + ".");
+  Reply reply;
+  reply.status = answer->status;
+  reply.content_type = std::move(answer->content_type);
+  reply.body = std::make_shared<const std::string>(std::move(answer->body));
+  reply.headers = std::move(answer->headers);
+  reply.headers.emplace_back("Cache-Control", "no-store");
+  return reply;
+}
+
+std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {
+  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeaders{{
+      {"Content-Security-Policy",
+       "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' "
+       "data: blob:; "
+       "worker-src 'self' blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action "
+       "'none'"},
+      {"X-Content-Type-Options", "nosniff"},
+      {"Referrer-Policy", "no-referrer"},
+      {"Cross-Origin-Opener-Policy", "same-origin"},
+      {"X-Frame-Options", "DENY"},
+  }};
+  return kHeaders;
+}
+
+}  // namespace spindrift::net

@@ -1,0 +1,254 @@
+#include <algorithm>
+#include <cassert>
+#include <chrono>
+#include <iterator>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <spindrift/rooms/command_desk.h>
+#include <spindrift/wire/client_message.h>
+
+namespace spindrift::rooms {
+namespace {
+
+using namespace std::chrono_literals;
+using Clock = std::chrono::steady_clock;
+
+/// Share of the wall time that heavy commands may take, and how much of it at once: ticks come first.
+constexpr double kHeavyShare = 0.25;
+constexpr auto kHeavyBurst = 30ms;
+/// Limit of batches per round; the rest waits for the next tick.
+constexpr int kRoundMaxCount = 256;
+/// Values that one piece of work tries: a value that the water refuses costs 3 to 5 ms, and a sender may have 64
+/// waiting.
+constexpr int kTriedMaxCount = 8;
+
+}  // namespace
+
+/// A new command needs its message in wire.proto, a row here with a handler, and, if it has rules about the scene, a
+/// case in wire::checkAgainstScene(). A handler gets commands that wire::completeCommand() accepted.
+struct CommandDesk::Kind {
+  v1::Command::ActionCase action;
+  CommandTraits traits;
+  /// Carries the command out; null: it only changes the water (RoomWater::handlerOf()).
+  Outcome (RoomActions::*in_room)(const Command& command);
+  /// Begins a batch whose commands are answered later; takes the place of in_room.
+  void (CommandDesk::*begin)(Batch batch);
+};
+
+const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
+  using C = v1::Command;
+  using Act = RoomActions;
+  using Desk = CommandDesk;
+  constexpr auto kPlayer = core::Role::kPlayer;
+  constexpr auto kOperator = core::Role::kOperator;
+  constexpr bool kLight = false, kHeavy = true;
+  constexpr bool kShared = true;
+  static constexpr Kind kKinds[] = {
+      {C::kSplash, {kPlayer, kLight}, nullptr, nullptr},
+      {C::kBreakingWave, {kPlayer, kLight}, nullptr, nullptr},
+      {C::kSetParameter, {kOperator, kHeavy}, nullptr, &Desk::setParameters},
+      {C::kReset, {kOperator, kHeavy, kShared}, &Act::reset, nullptr},
+      {C::kSetPaused, {kOperator, kLight}, &Act::setPaused, nullptr},
+      {C::kSetSpeed, {kOperator, kLight}, &Act::setSpeed, nullptr},
+      {C::kSpawnBoat, {kPlayer, kHeavy}, &Act::spawnBoat, nullptr},
+      {C::kControlBoat, {kPlayer, kLight}, &Act::controlBoat, nullptr},
+      {C::kRemoveBoat, {kPlayer, kHeavy}, &Act::removeBoat, nullptr},
+      {C::kStep, {kOperator, kLight}, &Act::advance, nullptr},
+      {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, &Desk::beginScene},
+      {C::kTakeBoat, {kPlayer, kLight}, &Act::takeBoat, nullptr},
+  };
+  const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
+  assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action
+  return *kind;
+}
+
+const CommandTraits& traitsOf(const v1::Command& command) {
+  return CommandDesk::kindOf(command).traits;
+}
+
+CommandDesk::CommandDesk(const Parts& parts) : parts_(parts), heavy_budget_(kHeavyShare, kHeavyBurst) {}
+
+CommandDesk::Outcome CommandDesk::admit(Command command, const RoomSnapshot& room) {
+  const core::Sender& sender = command.sender;
+  const std::uint64_t command_id = command.id();
+  Outcome refused;
+  if (const core::Role needed = traitsOf(command.message).role; sender.role < needed) {
+    refused = wire::rejection(
+        v1::REJECT_REASON_FORBIDDEN, "",
+        fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
+  } else {
+    refused = wire::completeCommand(command.message, room.scene);
+    command.scene_version = room.scene_version;
+  }
+  if (!refused) {
+    if (auto full = queue_.tryPush(std::move(command), Clock::now()))
+      refused = wire::rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
+  }
+  if (refused) refused->command_id = command_id;
+  return refused;
+}
+
+// Carrying out
+
+void CommandDesk::carryOut(TimePoint now) {
+  const auto spend = [this](auto&& work) {
+    const auto begin = Clock::now();
+    work();
+    heavy_budget_.spend(Clock::now() - begin);
+  };
+  if (values_ && !values_->relaid && heavy_budget_.isOpen(now)) spend([this] { tryNewest(resume()); });
+  for (int k = 0; k < kRoundMaxCount; ++k) {
+    const bool may_be_heavy = !values_ && heavy_budget_.isOpen(now);
+    auto batch = queue_.next({.heavy = may_be_heavy, .scene_change = parts_.change.mayBuild()});
+    if (!batch) break;
+    if (traitsOf(batch->front().message).is_heavy)
+      spend([&] { apply(*std::move(batch)); });
+    else
+      apply(*std::move(batch));
+  }
+  answer(queue_.takeExpired(now),
+         wire::rejection(v1::REJECT_REASON_BUSY, "",
+                         "the room is busy with resets, scenes, parameters and boats: try again in a second"));
+}
+
+void CommandDesk::apply(Batch batch) {
+  const Kind& kind = kindOf(batch.front().message);
+  if (kind.begin) return (this->*kind.begin)(std::move(batch));
+  parts_.water.fillIn(batch.front().message);
+  Outcome outcome = checkAgain(batch.front());
+  if (!outcome) {
+    outcome = kind.in_room ? (parts_.actions.*kind.in_room)(batch.front()) : parts_.actions.applyToWater(batch.front());
+  }
+  answer(std::move(batch), outcome, parts_.actions.takeNewBoatId());
+}
+
+CommandDesk::Outcome CommandDesk::checkAgain(const Command& command) const {
+  if (command.scene_version == parts_.water.sceneVersion()) return {};
+  return wire::checkAgainstScene(command.message, parts_.water.scene());
+}
+
+// Scenes
+
+void CommandDesk::beginScene(Batch batch) {
+  if (const auto outcome = parts_.change.beginScene(batch.front())) return answer(std::move(batch), *outcome);
+  queue_.hold(batch);
+  scene_batch_ = std::move(batch);
+}
+
+void CommandDesk::sceneChanged(const Outcome& outcome) {
+  queue_.release(scene_batch_);
+  const v1::Command wanted = scene_batch_.front().message;
+  answer(std::exchange(scene_batch_, {}), outcome);
+  if (!outcome) answer(queue_.takeEqual(wanted), {});
+}
+
+// Parameters
+
+void CommandDesk::tryNewest(Values values) {
+  for (int k = 0; k < kTriedMaxCount && !values.untried.empty(); ++k) {
+    Command command = std::move(values.untried.back());
+    values.untried.pop_back();
+    Outcome outcome = refuseValue(command);
+    if (!outcome && parts_.change.beginRelayout(command.message.set_parameter())) {
+      values.relaid = std::move(command);
+      values.begin = Clock::now();
+      return putOff(std::move(values));
+    }
+    if (!outcome) outcome = parts_.actions.applyToWater(command);
+    const bool is_taken = !outcome;
+    if (is_taken) parts_.actions.parameterChanged(command.message.set_parameter());
+    values.tried.push_back({std::move(command), std::move(outcome)});
+    if (is_taken) return conclude(std::move(values));
+  }
+  if (values.untried.empty()) return conclude(std::move(values));
+  putOff(std::move(values));
+}
+
+void CommandDesk::putOff(Values values) {
+  queue_.hold(values.relaid ? Batch{*values.relaid} : values.untried);
+  values_.emplace(std::move(values));
+}
+
+CommandDesk::Values CommandDesk::resume() {
+  Values values = *std::exchange(values_, std::nullopt);
+  queue_.release(values.relaid ? Batch{*values.relaid} : values.untried);
+  return values;
+}
+
+void CommandDesk::conclude(Values values) {
+  answer(std::move(values.untried), {});
+  answers_.insert(answers_.end(), std::make_move_iterator(values.tried.rbegin()),
+                  std::make_move_iterator(values.tried.rend()));
+}
+
+void CommandDesk::finishRelayout() {
+  const auto outcome = parts_.change.takeLayout();
+  if (!outcome) return;
+  Values values = resume();
+  Command command = *std::exchange(values.relaid, std::nullopt);
+  heavy_budget_.spend(Clock::now() - values.begin);
+  const bool is_taken = !*outcome;
+  if (is_taken) {
+    parts_.diary.carriedOutLate(parts_.water.tick(), command.message);
+    parts_.actions.parameterChanged(command.message.set_parameter());
+  }
+  values.tried.push_back({std::move(command), *outcome});
+  if (is_taken) return conclude(std::move(values));
+  tryNewest(std::move(values));
+}
+
+CommandDesk::Outcome CommandDesk::refuseValue(const Command& command) const {
+  if (auto rejected = checkAgain(command)) return rejected;
+  const v1::SetParameter& change = command.message.set_parameter();
+  const auto wanted = parts_.water.workWith(change);
+  if (!wanted) return {};
+  return parts_.change.refuseSlow(command.sender, change.path(), parts_.cost.predict_ms(*wanted), water::kTickMax_ms);
+}
+
+// Answers
+
+void CommandDesk::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
+  for (Command& command : batch) answers_.push_back({std::move(command), outcome, boat_id});
+}
+
+void CommandDesk::rejectAll(const wire::CommandRejection& rejection) {
+  if (values_) {
+    Values values = resume();
+    parts_.change.abandonLayout();
+    if (values.relaid) values.tried.push_back({*std::exchange(values.relaid, std::nullopt), rejection});
+    answer(std::exchange(values.untried, {}), rejection);
+    conclude(std::move(values));
+  }
+  answer(queue_.drain(), rejection);
+}
+
+void CommandDesk::close(RoomOutlets& outlets) {
+  const auto closed = wire::rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
+  answer(std::exchange(scene_batch_, {}), closed);
+  rejectAll(closed);
+  sendAnswers(outlets);
+}
+
+void CommandDesk::sendAnswers(RoomOutlets& outlets) {
+  std::vector<Answer> answers = std::exchange(answers_, {});
+  // A rejection promises nothing, and does not wait for the disk.
+  const bool promises = std::ranges::any_of(answers, [](const Answer& one) { return !one.rejected; });
+  const auto kept = promises ? parts_.diary.flush() : core::Result<void>();
+  for (Answer& one : answers) {
+    if (!one.rejected && !kept) {
+      one.rejected =
+          wire::rejection(v1::REJECT_REASON_BUSY, "",
+                          "it was carried out, but the server cannot keep it on disk: " + kept.error().message);
+    }
+    if (one.rejected) {
+      one.rejected->command_id = one.command.id();
+      outlets.commandRejected(one.command, *one.rejected);
+    } else {
+      outlets.commandApplied(one.command, parts_.water.tick(), one.boat_id);
+    }
+  }
+}
+
+}  // namespace spindrift::rooms

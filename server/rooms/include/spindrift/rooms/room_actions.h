@@ -1,0 +1,68 @@
+// What commands do in a room: to its water, its time, and to boats and their owners.
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include <spindrift/history/diary.h>
+#include <spindrift/rooms/command.h>
+#include <spindrift/rooms/frame_schedule.h>
+#include <spindrift/rooms/room_reports.h>
+#include <spindrift/rooms/room_time.h>
+#include <spindrift/rooms/roster.h>
+#include <spindrift/water/room_water.h>
+#include <spindrift/water/tick_cost.h>
+
+namespace spindrift::rooms {
+
+/// Each action writes what it does to the diary first, and is rejected if the disk refuses.
+class RoomActions {
+ public:
+  using Outcome = water::RoomWater::Outcome;
+
+  /// The parts of the room that commands change; they outlive this.
+  struct Parts {
+    water::RoomWater& water;
+    history::Diary& diary;
+    RoomTime& time;
+    Roster& roster;
+    FrameSchedule& frames;
+    water::TickCost& cost;
+    News& news;
+  };
+  explicit RoomActions(const Parts& parts) : parts_(parts) {}
+
+  /// Applies a command that changes nothing but the water.
+  Outcome applyToWater(const Command& command);
+  /// A parameter has another value: updates what follows from it.
+  void parameterChanged(const v1::SetParameter& change);
+  /// Boats were added or removed: ends the ownership of removed boats and announces the boats.
+  void boatsChanged();
+
+  /// Stops a boat whose owner has left.
+  void stopBoat(std::uint32_t boat_id);
+
+  // One per kind of command that does more; see the table in command_desk.cpp.
+  Outcome reset(const Command& command);
+  Outcome setPaused(const Command& command);
+  Outcome setSpeed(const Command& command);
+  Outcome advance(const Command& command);
+  Outcome spawnBoat(const Command& command);
+  Outcome controlBoat(const Command& command);
+  Outcome removeBoat(const Command& command);
+  Outcome takeBoat(const Command& command);
+
+  /// Returns the boat that the last command added, once; 0: none.
+  [[nodiscard]] std::uint32_t takeNewBoatId() { return std::exchange(new_boat_id_, 0); }
+
+ private:
+  [[nodiscard]] Outcome writeAhead(const Command& command) {
+    return parts_.diary.writeAhead(parts_.water.tick(), command.message);
+  }
+  [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return parts_.water.boatIds().contains(boat_id); }
+
+  Parts parts_;
+  std::uint32_t new_boat_id_ = 0;
+};
+
+}  // namespace spindrift::rooms

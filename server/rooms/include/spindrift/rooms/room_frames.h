@@ -1,0 +1,59 @@
+// The frames of a room: requests them from the water when they are due and watched, and passes finished ones on.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include <spindrift/core/demand_table.h>
+#include <spindrift/core/frame_view.h>
+#include <spindrift/core/level.h>
+#include <spindrift/rooms/frame_schedule.h>
+#include <spindrift/rooms/room_outlets.h>
+#include <spindrift/rooms/room_time.h>
+#include <spindrift/rooms/tick_meter.h>
+#include <spindrift/water/room_water.h>
+
+namespace spindrift::rooms {
+
+class RoomFrames {
+ public:
+  using TimePoint = FrameSchedule::TimePoint;
+
+  /// The parts of the room that it reads; they outlive this.
+  struct Parts {
+    const Room& room;
+    water::RoomWater& water;
+    const RoomTime& time;
+    TickMeter& tick_meter;
+    const core::DemandTable& demand;
+    RoomOutlets& outlets;
+  };
+  explicit RoomFrames(const Parts& parts) : parts_(parts) {}
+  [[nodiscard]] FrameSchedule& schedule() { return schedule_; }
+  [[nodiscard]] const FrameSchedule& schedule() const { return schedule_; }
+
+  /// Requests the frame after a tick of a running room, if it is due.
+  void afterTick(TimePoint scheduled, TimePoint end);
+  /// Requests the frame of a paused room, if it is due.
+  void whilePaused(TimePoint now);
+  /// Passes on the frames that the device has finished.
+  void handOver();
+  /// Other water: what was requested before is not wanted any more.
+  void restart();
+
+  /// Returns the diagnostics layer of the present state.
+  [[nodiscard]] core::DiagnosticsView diagnostics();
+  /// Number of frames that were due and found no free slot in device memory.
+  [[nodiscard]] std::uint64_t droppedCount() const { return dropped_count_; }
+
+ private:
+  /// Requests what is watched of a frame that these levels take.
+  void request(TimePoint now, core::LevelSet due);
+
+  Parts parts_;
+  FrameSchedule schedule_;
+  bool wants_diagnostics_ = false;
+  std::uint64_t dropped_count_ = 0;
+};
+
+}  // namespace spindrift::rooms

@@ -1,0 +1,146 @@
+#include <fmt/format.h>
+
+#include <spindrift/rooms/room_actions.h>
+
+namespace spindrift::rooms {
+namespace {
+
+/// Limit of waiting ticks of Step: that of one command.
+constexpr std::uint32_t kPendingTickMaxCount = 600;
+
+/// The rejection for a boat that belongs to another person or to none.
+wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
+  return wire::rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
+                         owner_id == 0 ? fmt::format("boat {} is nobody's: take it first", boat_id)
+                                       : fmt::format("boat {} is person {}'s", boat_id, owner_id));
+}
+
+}  // namespace
+
+RoomActions::Outcome RoomActions::applyToWater(const Command& command) {
+  if (auto refused = writeAhead(command)) return refused;
+  return parts_.water.apply(command.message);
+}
+
+void RoomActions::parameterChanged(const v1::SetParameter& change) {
+  parts_.cost.workChanged(parts_.water.work());
+  parts_.frames.restart();  // the frame rate may have changed; by the old rate the next frame could be a second away
+  parts_.news.parameters[change.path()] = change.value();
+}
+
+void RoomActions::boatsChanged() {
+  parts_.roster.keepOnly(parts_.water.boatIds());
+  parts_.news.boats = true;
+}
+
+void RoomActions::stopBoat(std::uint32_t boat_id) {
+  Command stop;
+  stop.message.mutable_control_boat()->set_boat_id(boat_id);
+  (void)applyToWater(stop);  // the boat may be gone already
+}
+
+RoomActions::Outcome RoomActions::reset(const Command& command) {
+  if (auto rejected = applyToWater(command)) return rejected;
+  parts_.frames.restart();
+  parts_.frames.setIdleDue({});
+  parts_.time.setSteps(0);
+  parts_.news.reset = true;
+  boatsChanged();
+  return {};
+}
+
+// Time
+
+RoomActions::Outcome RoomActions::setPaused(const Command& command) {
+  if (auto refused = writeAhead(command)) return refused;
+  parts_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
+  parts_.news.state = true;
+  return {};
+}
+
+RoomActions::Outcome RoomActions::setSpeed(const Command& command) {
+  if (auto refused = writeAhead(command)) return refused;
+  parts_.time.setSpeed(command.message.set_speed().speed());
+  parts_.news.state = true;
+  return {};
+}
+
+RoomActions::Outcome RoomActions::advance(const Command& command) {
+  const std::uint32_t tick_count = command.message.step().tick_count();
+  RoomTime& time = parts_.time;
+  if (!time.isPaused()) {
+    return wire::rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
+  }
+  if (time.stepsToCome() + tick_count > kPendingTickMaxCount) {
+    return wire::rejection(
+        v1::REJECT_REASON_BUSY, "step.tick_count",
+        fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done", tick_count,
+                    time.stepsToCome(), kPendingTickMaxCount));
+  }
+  if (auto refused = writeAhead(command)) return refused;
+  time.setSteps(time.stepsToCome() + tick_count);
+  return {};
+}
+
+// Boats
+
+RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
+  const core::Sender& sender = command.sender;
+  if (sender.role < core::Role::kOperator && parts_.roster.hasBoat(sender.person_id)) {
+    return wire::rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat",
+                           "you have a boat: remove it before you launch another");
+  }
+  if (auto rejected = applyToWater(command)) return rejected;
+  boatsChanged();
+  new_boat_id_ = parts_.water.spawnedBoatId();
+  parts_.roster.give(new_boat_id_, sender.person_id);
+  return {};
+}
+
+RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
+  const std::uint32_t boat_id = command.message.control_boat().boat_id();
+  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  const bool is_free_to_operators = owner_id == 0 && command.sender.role >= core::Role::kOperator;
+  const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
+  if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
+    return notYours("control_boat.boat_id", boat_id, owner_id);
+  }
+  return applyToWater(command);
+}
+
+RoomActions::Outcome RoomActions::removeBoat(const Command& command) {
+  const std::uint32_t boat_id = command.message.remove_boat().boat_id();
+  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
+  if (!is_own && command.sender.role < core::Role::kOperator && isOnTheWater(boat_id)) {
+    return notYours("remove_boat.boat_id", boat_id, owner_id);
+  }
+  if (auto rejected = applyToWater(command)) return rejected;
+  boatsChanged();
+  return {};
+}
+
+RoomActions::Outcome RoomActions::takeBoat(const Command& command) {
+  const core::Sender& sender = command.sender;
+  const std::uint32_t boat_id = command.message.take_boat().boat_id();
+  const char* const kField = "take_boat.boat_id";
+  if (!isOnTheWater(boat_id)) {
+    return wire::rejection(v1::REJECT_REASON_UNKNOWN_BOAT, kField,
+                           fmt::format("there is no boat {} on the water", boat_id));
+  }
+  if (sender.person_id == 0) {
+    return wire::rejection(v1::REJECT_REASON_FORBIDDEN, kField,
+                           "only somebody in the room can take a boat: connect first");
+  }
+  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  if (owner_id == sender.person_id) return {};
+  const bool is_operator = sender.role >= core::Role::kOperator;
+  if (owner_id != 0 && !is_operator) return notYours(kField, boat_id, owner_id);
+  if (!is_operator && parts_.roster.hasBoat(sender.person_id)) {
+    return wire::rejection(v1::REJECT_REASON_HAS_BOAT, kField, "you have a boat: remove it before you take another");
+  }
+  parts_.roster.give(boat_id, sender.person_id);
+  return {};
+}
+
+}  // namespace spindrift::rooms

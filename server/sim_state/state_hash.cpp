@@ -1,0 +1,58 @@
+#include <bit>
+#include <cstdint>
+#include <ranges>
+#include <type_traits>
+#include <variant>
+
+#include <boost/pfr/core.hpp>
+
+#include <spindrift/sim_state/saved_state.h>
+
+namespace spindrift::sim {
+namespace {
+
+/// 64-bit FNV-1a over 32-bit words. Visits every field of a plain struct, so that none can be forgotten.
+class Hash {
+ public:
+  template <typename T>
+  void operator()(const T& value) {
+    if constexpr (std::is_same_v<T, Effects>) {
+      (*this)(value.active());
+    } else if constexpr (std::is_same_v<T, double>) {
+      add(std::bit_cast<std::uint64_t>(value));
+    } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
+      add(static_cast<std::uint64_t>(value));
+    } else if constexpr (std::ranges::range<T>) {
+      add(std::ranges::size(value));
+      for (const auto& each : value) (*this)(each);
+    } else if constexpr (requires { value.has_value(); }) {
+      (*this)(value.has_value());
+      if (value) (*this)(*value);
+    } else if constexpr (requires { value.valueless_by_exception(); }) {
+      (*this)(value.index());
+      std::visit([this](const auto& held) { (*this)(held); }, value);
+    } else {
+      boost::pfr::for_each_field(value, [this](const auto& field) { (*this)(field); });
+    }
+  }
+  void operator()(std::uint32_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ull; }
+  [[nodiscard]] std::uint64_t value() const { return hash_; }
+
+ private:
+  void add(std::uint64_t value) {
+    (*this)(static_cast<std::uint32_t>(value));
+    (*this)(static_cast<std::uint32_t>(value >> 32));
+  }
+
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+std::uint64_t hashOf(const SavedState& state) {
+  Hash hash;
+  hash(state);
+  return hash.value();
+}
+
+}  // namespace spindrift::sim

@@ -1,0 +1,245 @@
+#include <cassert>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <spindrift/core/text.h>
+#include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/parameters.h>
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
+#include <spindrift/sim_setup/open_side.h>
+#include <spindrift/water/recorded_hash.h>
+#include <spindrift/water/room_water.h>
+#include <spindrift/water/water_state.h>
+
+namespace spindrift::water {
+namespace {
+
+/// Makes the rejection for a change that a running room cannot take. `wanted`: its scene after `change`.
+wire::CommandRejection whyNot(const v1::SetParameter& change, core::Scene wanted, const core::Error& error) {
+  // The message begins with the field that breaks a rule; leave it out if Reject.field has it already.
+  const std::string own = change.path() + ": ";
+  const std::string message = error.message.starts_with(own) ? error.message.substr(own.size()) : error.message;
+  const auto reason = [&] {
+    if (error.code == core::ErrorCode::kUnavailable) return v1::REJECT_REASON_BUSY;
+    // If the changed scene can be started afresh, the room only lacks its buffers or programs.
+    if (sim::derive(wanted)) return v1::REJECT_REASON_NEEDS_RESTART;
+    wanted.allow_unstable = true;
+    wanted.fixed_substeps_count = 1;
+    return sim::derive(wanted) ? v1::REJECT_REASON_BREAKS_STEP_RULE : v1::REJECT_REASON_OUT_OF_RANGE;
+  };
+  return wire::rejection(reason(), change.path(), message);
+}
+
+}  // namespace
+
+RoomWater::RoomWater(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
+
+bool RoomWater::takes(const v1::Command& command) {
+  return handlerOf(command) != nullptr;
+}
+
+void RoomWater::fillIn(v1::Command& command) const {
+  if (!command.has_breaking_wave() || command.breaking_wave().side() != v1::SIDE_UNSPECIFIED) return;
+  command.mutable_breaking_wave()->set_side(toMessage(sim::openSide(sim().scene())));
+}
+
+RoomWater::Handler RoomWater::handlerOf(const v1::Command& command) {
+  switch (command.action_case()) {
+    case v1::Command::kSplash:
+      return &RoomWater::splash;
+    case v1::Command::kBreakingWave:
+      return &RoomWater::breakingWave;
+    case v1::Command::kSetParameter:
+      return &RoomWater::setParameter;
+    case v1::Command::kReset:
+      return &RoomWater::reset;
+    case v1::Command::kSpawnBoat:
+      return &RoomWater::spawnBoat;
+    case v1::Command::kControlBoat:
+      return &RoomWater::controlBoat;
+    case v1::Command::kRemoveBoat:
+      return &RoomWater::removeBoat;
+    default:
+      return nullptr;
+  }
+}
+
+RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
+  assert(takes(command));
+  Outcome outcome = (this->*handlerOf(command))(command);
+  if (!outcome) ++state_id_;
+  return outcome;
+}
+
+RoomWater::Outcome RoomWater::splash(const v1::Command& command) {
+  return startEffect(scene::toCore(command.splash()));
+}
+
+RoomWater::Outcome RoomWater::breakingWave(const v1::Command& command) {
+  return startEffect(scene::toCore(command.breaking_wave()));
+}
+
+RoomWater::Outcome RoomWater::reset(const v1::Command& /*command*/) {
+  sim().reset();
+  return {};
+}
+
+RoomWater::Outcome RoomWater::startEffect(const core::Effect& effect) {
+  const auto started = sim().start(effect);
+  if (started) return {};
+  const bool busy = started.error().code == core::ErrorCode::kUnavailable;
+  return wire::rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
+}
+
+RoomWater::Outcome RoomWater::setParameter(const v1::Command& command) {
+  const v1::SetParameter& change = command.set_parameter();
+  v1::Scene changed = scene();
+  if (auto error = scene::setParameter(changed, change.path(), change.value())) {
+    return wire::rejection(error->reason, error->field, error->message);
+  }
+  const core::Scene wanted = scene::toCore(changed);
+  if (auto applied = sim().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());
+  setScene(std::move(changed));
+  return {};
+}
+
+std::optional<RoomWater::Relayout> RoomWater::relayout(const v1::SetParameter& change) {
+  v1::Scene changed = scene();
+  if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
+  core::Scene wanted = scene::toCore(changed);
+  if (!sim().relaysParticles(wanted)) return std::nullopt;
+  sim::SceneBasis basis = sim().sceneBasis(wanted);
+  return Relayout{change, std::move(changed), std::move(wanted), std::move(basis)};
+}
+
+RoomWater::Outcome RoomWater::adopt(Relayout relayout, core::Result<sim::PreparedScene> prepared) {
+  if (!prepared) return whyNot(relayout.change, relayout.wanted, prepared.error());
+  if (auto adopted = sim().adopt(*std::move(prepared)); !adopted) {
+    return whyNot(relayout.change, relayout.wanted, adopted.error());
+  }
+  setScene(std::move(relayout.changed));
+  ++state_id_;
+  return {};
+}
+
+TickWork RoomWater::work() const {
+  return workOf(sim().scene(), sim().derived());
+}
+
+std::optional<TickWork> RoomWater::workWith(const v1::SetParameter& change) const {
+  v1::Scene changed = scene();
+  if (scene::setParameter(changed, change.path(), change.value())) return std::nullopt;
+  const core::Scene wanted = scene::toCore(changed);
+  const auto derived = sim::derive(wanted);
+  return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
+}
+
+RoomWater::Outcome RoomWater::spawnBoat(const v1::Command& command) {
+  const auto boat_id = sim().spawnBoat(scene::toCore(command.spawn_boat().boat()));
+  if (!boat_id) {
+    const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
+    return wire::rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
+                           boat_id.error().message);
+  }
+  spawned_boat_id_ = *boat_id;
+  return {};
+}
+
+RoomWater::Outcome RoomWater::controlBoat(const v1::Command& command) {
+  const v1::ControlBoat& control = command.control_boat();
+  const auto done = sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio());
+  if (done) return {};
+  return wire::rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
+}
+
+RoomWater::Outcome RoomWater::removeBoat(const v1::Command& command) {
+  const auto done = sim().removeBoat(command.remove_boat().boat_id());
+  if (done) return {};
+  return wire::rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
+}
+
+std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
+  const std::uint32_t first_boat_id = water_->sim().nextBoatId();
+  exchange(water);
+  water_->sim().numberBoatsFrom(first_boat_id);
+  return water;
+}
+
+core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
+  const sim::CarriedState carried = sim().carriedState();
+  if (auto why = failure()) return core::Error{core::ErrorCode::kUnavailable, *why};
+  // Values may have changed since the building began.
+  v1::Scene wanted = next->scene();
+  scene::keepParameters(scene(), wanted);
+  next->bind();
+  auto done = next->sim().setScene(scene::toCore(wanted));
+  if (done) done = next->sim().takeOver(carried);
+  if (!done) {
+    bind();
+    return done;
+  }
+  next->scene() = std::move(wanted);
+  exchange(next);
+  return {};
+}
+
+void RoomWater::save(v1::KeptState& state) {
+  state.set_tick(tick());
+  *state.mutable_start_scene() = water_->startScene();
+  *state.mutable_scene() = scene();
+  const sim::SavedState saved = sim().savedState();
+  *state.mutable_water() = toMessage(saved);
+  state.set_state_hash(sim::hashOf(saved));
+  state.set_state_hash_version(kStateHashVersion);
+}
+
+core::Result<void> RoomWater::restore(const v1::KeptState& state) {
+  const auto saved = toSavedState(state.water());
+  if (!saved) return saved.error();
+  v1::Scene now = state.scene();
+  if (auto set = sim().setScene(scene::toCore(now)); !set) return set;
+  if (auto done = sim().restore(*saved); !done) return done;
+  const auto hash = recordedHash(sim(), state.state_hash_version());
+  if (!hash) return hash.error();
+  if (*hash != state.state_hash()) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       fmt::format("the saved water is damaged: its hash is {:016x}, {:016x} was expected", *hash,
+                                   state.state_hash())};
+  }
+  setScene(std::move(now));
+  tick_shift_ = state.tick() - sim().tick();
+  ++state_id_;
+  return {};
+}
+
+void RoomWater::exchange(std::unique_ptr<Water>& water) {
+  const std::uint64_t first_tick = tick() + 1;
+  std::swap(water_, water);
+  water_->bind();
+  ++state_id_;
+  ++scene_version_;
+  tick_shift_ = first_tick - water_->sim().tick();
+}
+
+v1::BoatList RoomWater::boats() const {
+  v1::BoatList out;
+  for (const sim::BoatRecord& boat : sim().boats()) {
+    v1::BoatInfo& info = *out.add_boats();
+    info.set_boat_id(boat.boat_id);
+    info.set_length_m(boat.length_m);
+    info.set_beam_m(boat.beam_m);
+    info.set_height_m(boat.height_m);
+    info.set_draught_m(boat.draught_m);
+  }
+  return out;
+}
+
+std::set<std::uint32_t> RoomWater::boatIds() const {
+  std::set<std::uint32_t> out;
+  for (const sim::BoatRecord& boat : sim().boats()) out.insert(boat.boat_id);
+  return out;
+}
+
+}  // namespace spindrift::water

@@ -1,0 +1,105 @@
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <thread>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include <spindrift/scene/scene_loader.h>
+#include <spindrift/sim_setup/derive.h>
+#include <spindrift/water/water.h>
+
+namespace spindrift::water {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Shaders are compiled when they first run, which takes seconds on a software device. Diagnostics run every fourth
+/// tick, so four ticks keep their phase.
+constexpr int kWarmUpTickCount = 4;
+/// Ends within the first two ticks.
+constexpr double kWarmUpEffect_s = 0.01;
+/// The encoder holds a frame for milliseconds; a frame held longer than this is lost.
+constexpr auto kFramePatience = 5s;
+
+/// Returns the duration of the fastest tick [ms].
+double warmUp(gpu::Context& context, sim::WaterSim& sim) {
+  // A scene without waves has no program to compile for an effect, and refuses it.
+  (void)sim.start(core::Splash{.depth_m = 0.01, .duration_s = kWarmUpEffect_s});
+  (void)sim.start(core::BreakingWave{.side = core::Side::kPlusX, .amplitude_m = 0.01, .duration_s = kWarmUpEffect_s});
+  double tick_ms = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kWarmUpTickCount; ++i) {
+    const auto begin = std::chrono::steady_clock::now();
+    sim.step();
+    context.finish();
+    tick_ms =
+        std::min(tick_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+  }
+  sim::FrameRequest request{.bodies = true};
+  request.levels.fill({.surface = true, .particles = true, .foam = true});
+  (void)sim.requestFrame(request);
+  context.finish();
+  (void)sim.takeFrames();
+  (void)sim.takePassCosts();
+  sim.reset();
+  return tick_ms;
+}
+
+/// A device without memory for the scene: says how much the whole scene needs.
+core::Error withNeeds(core::Error error, const v1::Scene& scene) {
+  if (error.code != core::ErrorCode::kUnavailable) return error;
+  const auto derived = sim::derive(scene::toCore(scene));
+  if (derived)
+    error.message +=
+        fmt::format(" (scene {} needs {:.0f} MB)", scene.name(), static_cast<double>(derived->device_bytes) / 1e6);
+  return error;
+}
+
+}  // namespace
+
+core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene) {
+  auto context = gpu::Context::create(device);
+  if (!context) return context.error();
+  auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
+  if (!sim) return withNeeds(sim.error(), scene);
+  const double tick_ms = warmUp(**context, **sim);
+  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
+}
+
+Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
+             double warm_tick_ms)
+    : context_(std::move(context)),
+      sim_(std::move(sim)),
+      scene_(std::move(scene)),
+      start_scene_(scene_),
+      warm_tick_ms_(warm_tick_ms) {}
+
+Water::~Water() {
+  bind();
+  sim_.reset();
+  const auto deadline = std::chrono::steady_clock::now() + kFramePatience;
+  for (context_->collectRetired(); context_->hasRetired() && std::chrono::steady_clock::now() < deadline;
+       context_->collectRetired()) {
+    std::this_thread::sleep_for(1ms);
+  }
+}
+
+std::optional<std::string> Water::failure() {
+  if (context_->isLost()) return "the device was lost (" + context_->device().name + ")";
+  if (const auto& error = sim_->deviceError()) return error->message;
+  return std::nullopt;
+}
+
+void Water::bind() {
+  if (context_->isOwnedHere() || context_->makeCurrent()) return;
+  // Only a bug in the program leads here: two threads use one water.
+  spdlog::error("room's GL context cannot be bound: another thread has not released it");
+}
+
+void Water::release() {
+  if (context_->isOwnedHere()) context_->release();
+}
+
+}  // namespace spindrift::water
