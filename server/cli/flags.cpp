@@ -10,7 +10,7 @@ void addDevice(CLI::App& command, std::string& device) {
 }
 
 void addFidelity(CLI::App& command, std::string& fidelity) {
-  command.add_option("--fidelity", fidelity, "How finely scenes are simulated, whatever they say themselves")
+  command.add_option("--fidelity", fidelity, "Fidelity of all scenes, in place of the one in their files")
       ->check(CLI::IsMember({"draft", "balanced", "fine", "reference"}));
 }
 

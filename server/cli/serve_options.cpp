@@ -29,13 +29,13 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
   command.add_option("--threads", options.thread_count, "I/O threads")->check(integerIn(1, 64))->capture_default_str();
   command
       .add_option("--tls-cert", options.tls_cert_file,
-                  "Speak TLS on the port: PEM file with the server's certificate and its chain")
+                  "Serve over TLS with this certificate: PEM file with the server's certificate and its chain")
       ->check(isNotEmpty());
   command.add_option("--tls-key", options.tls_key_file, "PEM file with the private key of --tls-cert")
       ->check(isNotEmpty());
   command
       .add_option("--trust-proxy", options.trusted_proxies,
-                  "Network of a proxy, ADDRESS/BITS: what its X-Forwarded-For names is the client; may be repeated")
+                  "Network of a trusted proxy, ADDRESS/BITS: its X-Forwarded-For gives the client's address; may be repeated")
       ->transform(isNetwork())
       ->delimiter(',');
   command.add_option("--max-sessions", options.max_session_count, "Maximum number of sessions at a time")
@@ -43,7 +43,7 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       ->capture_default_str();
   command
       .add_option("--address-share", options.address_session_share,
-                  "Share of the sessions that one address may use; 1 behind a proxy that is not trusted")
+                  "Share of --max-sessions that one address may use; 1 behind a proxy that is not in --trust-proxy")
       ->check(numberIn(0.0, 1.0))
       ->capture_default_str();
   command
@@ -61,10 +61,10 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
                   "Accept JSON Web Tokens of this key: FILE with a public key (RS256, EdDSA), or hs256:FILE with a "
                   "secret; may be repeated")
       ->check(isNotEmpty());
-  command.add_option("--jwt-keys", options.jwt_key_set, "The same for the keys of a JWK set")->check(isNotEmpty());
-  command.add_option("--jwt-issuer", options.jwt_issuer, "What iss of a JWT has to be (default: anything)")
+  command.add_option("--jwt-keys", options.jwt_key_set, "Accept JSON Web Tokens of the keys in this JWK set (JSON)")->check(isNotEmpty());
+  command.add_option("--jwt-issuer", options.jwt_issuer, "Required issuer (claim iss) of a JSON Web Token (default: any)")
       ->check(isText());
-  command.add_option("--jwt-audience", options.jwt_audience, "What aud of a JWT has to contain (default: anything)")
+  command.add_option("--jwt-audience", options.jwt_audience, "Required audience (claim aud) of a JSON Web Token (default: any)")
       ->check(isText());
   command
       .add_option("--person-commands-per-s", options.person_commands_per_s,
@@ -73,7 +73,7 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
       ->capture_default_str();
   command
       .add_option("--audit-log", options.audit_file,
-                  "Append what operators do, and who is refused, to this file: one JSON object per line")
+                  "Append the commands of operators and every refused client to this file: one JSON object per line")
       ->check(isNotEmpty());
   command
       .add_option(
@@ -89,11 +89,11 @@ void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_require
       .add_option("--nats", options.nats_url,
                   is_required
                       ? "NATS server of the cluster, nats://[USER:PASSWORD@]HOST:PORT or tls://…; several with ','"
-                      : "Be a server of a cluster, over this NATS server, nats://[USER:PASSWORD@]HOST:PORT or "
-                        "tls://…; several with ','")
+                      : "Join a cluster over this NATS server, nats://[USER:PASSWORD@]HOST:PORT or tls://…; several "
+                        "with ','")
       ->check(isNatsServers());
   command
-      .add_option("--nats-ca", options.nats_ca_file, "Certificates that sign the NATS server's (default: the system's)")
+      .add_option("--nats-ca", options.nats_ca_file, "PEM file with the authorities that sign the NATS server's certificate (default: the system's)")
       ->check(isNotEmpty());
   command
       .add_option("--node", options.node, "Name of this process in the cluster (default: the host's name and the port)")
@@ -107,12 +107,13 @@ void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_require
 void addLastOptions(CLI::App& command, FrontOptions& options) {
   command
       .add_option("--drain-s,--drain", options.drain_s,
-                  "Seconds between SIGTERM and the end of the sessions, in which clients learn where to go")
+                  "Seconds from SIGTERM until sessions are closed; clients are told where to reconnect")
       ->check(numberIn(0.0, 4.0))
       ->capture_default_str();
   command
       .add_option("--drain-to", options.drain_to,
-                  "ws://HOST[:PORT] or wss://HOST[:PORT] of the server to which clients go then (default: this one)")
+                  "Server to which clients reconnect during --drain-s, ws://HOST[:PORT] or wss://HOST[:PORT] (default: "
+                  "this one)")
       ->check(isServer());
   command
       .add_option(
@@ -175,8 +176,9 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
       ->capture_default_str();
   command
       .add_option("--sync", options.sync,
-                  "When the disk is forced to write what is in --state-dir: never, for snapshots, or always before a "
-                  "command is answered. A crash of the program loses nothing with any; a power failure may")
+                  "When --state-dir is flushed to the disk: never, after each snapshot, or always (before a command is "
+                  "answered). A crash of the program loses nothing in any case; a power failure loses what was not "
+                  "flushed")
       ->check(CLI::IsMember({"never", "snapshots", "always"}))
       ->capture_default_str();
   addClusterOptions(command, options, false);
