@@ -48,6 +48,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
   static constexpr Kind kKinds[] = {
       {C::kSplash, {kPlayer, kLight}, nullptr, nullptr},
       {C::kBreakingWave, {kPlayer, kLight}, nullptr, nullptr},
+      {C::kStroke, {kPlayer, kLight}, &Act::draw, nullptr},
       {C::kSetParameter, {kOperator, kHeavy}, nullptr, &Desk::setParameters},
       {C::kReset, {kOperator, kHeavy, kShared}, &Act::reset, nullptr},
       {C::kSetPaused, {kOperator, kLight}, &Act::setPaused, nullptr},

@@ -162,6 +162,7 @@ void Room::step(TimePoint now) {
   time_.ticked(now, end);
   restartIfOver();
   frames_.afterTick(scheduled, end);
+  reports_.tellStrokes(end);
   time_.warnIfSlow(name_, end);
   change_.adapt(end);
 }

@@ -82,6 +82,14 @@ RoomActions::Outcome RoomActions::advance(const Command& command) {
   return {};
 }
 
+// Strokes
+
+RoomActions::Outcome RoomActions::draw(const Command& command) {
+  Command signed_command = command;
+  signed_command.message.mutable_stroke()->set_person_id(command.sender.person_id);
+  return applyToWater(signed_command);
+}
+
 // Boats
 
 RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {

@@ -9,6 +9,7 @@ namespace {
 
 /// When many clients join at once, they are announced in a few lists instead of one list each.
 constexpr std::chrono::milliseconds kPeopleNewsInterval{200};
+constexpr std::chrono::milliseconds kStrokeNewsInterval{33};
 
 }  // namespace
 
@@ -55,6 +56,25 @@ void RoomReports::tellPeople(bool is_news, TimePoint now) {
   has_people_news_ = false;
   next_people_news_ = now + kPeopleNewsInterval;
   parts_.outlets.peopleChanged(parts_.room, parts_.roster.people());
+}
+
+void RoomReports::tellStrokes(TimePoint now) {
+  const std::vector<sim::Stroke>& active = parts_.water.sim().strokes();
+  if (active.empty() && !has_told_strokes_) return;
+  if (!active.empty() && now < next_stroke_news_) return;
+  has_told_strokes_ = !active.empty();
+  next_stroke_news_ = now + kStrokeNewsInterval;
+  v1::Strokes out;
+  out.set_time_s(parts_.water.sim().time_s());
+  for (const sim::Stroke& stroke : active) {
+    v1::Finger& finger = *out.add_fingers();
+    finger.set_person_id(stroke.person_id);
+    finger.set_stroke_id(stroke.stroke_id);
+    finger.set_x_m(stroke.x_m);
+    finger.set_z_m(stroke.z_m);
+    finger.set_radius_m(stroke.radius_m);
+  }
+  parts_.outlets.strokesChanged(parts_.room, out);
 }
 
 bool RoomReports::tellRecovery(TimePoint now) {

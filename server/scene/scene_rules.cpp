@@ -15,6 +15,9 @@ namespace {
 
 /// Maximum depression or crest over the depth; beyond it the bed would fall dry or the wave equation become invalid.
 constexpr double kMaxEffectDepthRatio = 0.9;
+constexpr int kStrokePointMaxCount = 64;
+/// Largest finger: its radius over the shorter side of the water, and its depth over the water's and over the radius.
+constexpr double kStrokeMaxRadiusSides = 0.125, kStrokeMaxDepthRatio = 1.0 / 3.0, kStrokeMaxDepthRadii = 0.5;
 constexpr std::size_t kNameMaxBytes = 64;
 constexpr std::size_t kTitleMaxBytes = 200;
 constexpr std::size_t kDescriptionMaxBytes = 4000;
@@ -198,6 +201,36 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
                metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m), side_m);
     }
   }
+  return issues;
+}
+
+std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  const WaterExtents water = waterExtentsOf(scene);
+  if (stroke.points_size() > kStrokePointMaxCount) {
+    addRange(issues, "stroke.points",
+             std::to_string(stroke.points_size()) + " points are more than " + std::to_string(kStrokePointMaxCount) +
+                 "; send them in several messages");
+    return issues;
+  }
+  for (int k = 0; k < stroke.points_size(); ++k) {
+    const std::string path = "stroke.points[" + std::to_string(k) + "].";
+    checkPosition(stroke.points(k).x_m(), water.side_x_m, path + "x_m", issues);
+    checkPosition(stroke.points(k).z_m(), water.side_z_m, path + "z_m", issues);
+    if (k > 0 && stroke.points(k).time_s() <= stroke.points(k - 1).time_s()) {
+      addRange(issues, path + "time_s",
+               core::formatQuantity(stroke.points(k).time_s(), "s") + " is not later than the point before; send the " +
+                   "points in the order of their times");
+    }
+  }
+  const auto atMost = [&](double value_m, double max_m, const char* path, const char* rule) {
+    if (value_m > max_m)
+      addRange(issues, path, metres(value_m) + " is more than " + rule + "; choose at most " + metres(max_m));
+  };
+  atMost(stroke.radius_m(), kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
+         "an eighth of the side of the water");
+  atMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m", "a third of the water's depth");
+  atMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m", "half the radius");
   return issues;
 }
 

@@ -77,6 +77,10 @@ void Gateway::peopleChanged(const rooms::Room& room, const v1::People& people) {
   tell(room, topic::kPeople, wire::people(people));
 }
 
+void Gateway::strokesChanged(const rooms::Room& room, const v1::Strokes& strokes) {
+  tell(room, topic::kStrokes, wire::strokes(strokes));
+}
+
 void Gateway::wasReset(const rooms::Room& room) {
   tell(room, topic::kReset, wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "the scene has started again"));
 }

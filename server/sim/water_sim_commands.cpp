@@ -29,6 +29,18 @@ core::Result<void> WaterSim::start(const core::Effect& effect) {
   return started;
 }
 
+core::Result<void> WaterSim::draw(const StrokePart& part) {
+  const std::size_t before_count = strokes().size();
+  auto drawn = parts_->effects.strokes().add(part);
+  if (parts_->follower && strokes().size() > before_count)
+    parts_->follower->goTo(part.points.front().x_m, part.points.front().z_m);
+  return drawn;
+}
+
+const std::vector<Stroke>& WaterSim::strokes() const {
+  return parts_->effects.strokes().active();
+}
+
 core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {
   if (!parts_->boats)
     return Error{ErrorCode::kInvalidInput, "this scene has no boats: choose one whose file has \"boats {}\""};

@@ -154,6 +154,7 @@ shared::EventUniforms Effects::advance(double time_s, const EffectDomain& domain
       out.crests[out.crest_count++] = uniformOf(std::get<core::BreakingWave>(a.effect), gain, age_s, domain);
   }
   std::erase_if(active_, [&](const Active& a) { return time_s >= a.start_s + duration(a.effect); });
+  strokes_.advance(domain.dt_s, out);
   return out;
 }
 

@@ -51,6 +51,8 @@ RoomWater::Handler RoomWater::handlerOf(const v1::Command& command) {
       return &RoomWater::splash;
     case v1::Command::kBreakingWave:
       return &RoomWater::breakingWave;
+    case v1::Command::kStroke:
+      return &RoomWater::stroke;
     case v1::Command::kSetParameter:
       return &RoomWater::setParameter;
     case v1::Command::kReset:
@@ -74,11 +76,15 @@ RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
 }
 
 RoomWater::Outcome RoomWater::splash(const v1::Command& command) {
-  return startEffect(scene::toCore(command.splash()));
+  return outcomeOf(sim().start(scene::toCore(command.splash())));
 }
 
 RoomWater::Outcome RoomWater::breakingWave(const v1::Command& command) {
-  return startEffect(scene::toCore(command.breaking_wave()));
+  return outcomeOf(sim().start(scene::toCore(command.breaking_wave())));
+}
+
+RoomWater::Outcome RoomWater::stroke(const v1::Command& command) {
+  return outcomeOf(sim().draw(toStrokePart(command.stroke())));
 }
 
 RoomWater::Outcome RoomWater::reset(const v1::Command& /*command*/) {
@@ -86,8 +92,7 @@ RoomWater::Outcome RoomWater::reset(const v1::Command& /*command*/) {
   return {};
 }
 
-RoomWater::Outcome RoomWater::startEffect(const core::Effect& effect) {
-  const auto started = sim().start(effect);
+RoomWater::Outcome RoomWater::outcomeOf(const core::Result<void>& started) {
   if (started) return {};
   const bool busy = started.error().code == core::ErrorCode::kUnavailable;
   return wire::rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);

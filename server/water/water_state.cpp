@@ -44,6 +44,33 @@ void fill(v1::ActiveEffect& out, const core::BreakingWave& wave) {
   message.set_direction_deg(wave.direction_deg);
 }
 
+void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
+  v1::Stroke& message = *out.mutable_stroke();
+  message.set_person_id(stroke.person_id);
+  message.set_stroke_id(stroke.stroke_id);
+  message.set_radius_m(stroke.radius_m);
+  message.set_depth_m(stroke.depth_m);
+  message.set_ends(stroke.is_lifted);
+  for (const sim::StrokePoint& point : stroke.path) {
+    v1::StrokePoint& one = *message.add_points();
+    one.set_time_s(point.time_s);
+    one.set_x_m(point.x_m);
+    one.set_z_m(point.z_m);
+    one.set_pressure_ratio(point.pressure_ratio);
+  }
+  out.set_play_s(stroke.play_s);
+  out.set_still_s(stroke.still_s);
+  out.set_x_m(stroke.x_m);
+  out.set_z_m(stroke.z_m);
+  out.set_level_ratio(stroke.level_ratio);
+}
+
+sim::Stroke toStroke(const v1::ActiveStroke& message) {
+  sim::StrokePart part = toStrokePart(message.stroke());
+  return {part.person_id, part.stroke_id,   part.radius_m,    part.depth_m,  std::move(part.points), part.ends,
+          message.play_s(), message.still_s(), message.x_m(), message.z_m(), message.level_ratio()};
+}
+
 void fill(v1::Boat& out, const core::Boat& boat) {
   out.set_x_m(boat.x_m);
   out.set_z_m(boat.z_m);
@@ -165,6 +192,17 @@ v1::Side toMessage(core::Side side) {
   return v1::SIDE_DIRECTION;
 }
 
+sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
+  sim::StrokePart out{.person_id = stroke.person_id(),
+                      .stroke_id = stroke.stroke_id(),
+                      .radius_m = stroke.radius_m(),
+                      .depth_m = stroke.depth_m(),
+                      .ends = stroke.ends()};
+  for (const v1::StrokePoint& point : stroke.points())
+    out.points.push_back({point.time_s(), point.x_m(), point.z_m(), point.pressure_ratio()});
+  return out;
+}
+
 v1::WaterState toMessage(const sim::SavedState& state) {
   v1::WaterState out;
   out.set_run_tick(state.run_tick);
@@ -181,6 +219,7 @@ v1::WaterState toMessage(const sim::SavedState& state) {
     message.set_start_s(active.start_s);
     std::visit([&](const auto& effect) { fill(message, effect); }, active.effect);
   }
+  for (const sim::Stroke& stroke : state.host.effects.strokes().active()) fill(*out.add_strokes(), stroke);
   for (const sim::BoatPlace& place : state.host.boats.places) {
     v1::BoatPlace& message = *out.add_boats();
     message.set_boat_id(place.boat_id);
@@ -226,6 +265,9 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   }
   sim::HostState& host = out.host;
   if (!host.effects.resume(std::move(active))) return invalid("it has more effects than there can be");
+  std::vector<sim::Stroke> strokes;
+  for (const v1::ActiveStroke& stroke : message.strokes()) strokes.push_back(toStroke(stroke));
+  if (!host.effects.strokes().resume(std::move(strokes))) return invalid("it has more strokes than there can be");
   for (const v1::BoatPlace& place : message.boats())
     host.boats.places.push_back({place.boat_id(), scene::toCore(place.boat())});
   host.boats.first_id = message.first_boat_id();

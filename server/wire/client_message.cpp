@@ -177,6 +177,7 @@ std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::
     v1::Boat& boat = *command.mutable_spawn_boat()->mutable_boat();
     if (scene.has_boats()) scene::completeBoat(boat, scene);
   }
+  if (command.has_stroke()) scene::completeStroke(*command.mutable_stroke(), scene);
   scene::fillMessageDefaults(command);
   return checkAgainstScene(command, scene);
 }
@@ -192,6 +193,9 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kBreakingWave:
       issues = scene::checkEffect(scene::toCore(command.breaking_wave()), scene);
+      break;
+    case v1::Command::kStroke:
+      issues = scene::checkStroke(command.stroke(), scene);
       break;
     case v1::Command::kSetParameter: {
       const v1::SetParameter& set = command.set_parameter();

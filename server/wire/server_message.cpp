@@ -98,6 +98,12 @@ core::SharedBytes welcome(const v1::Welcome& welcome) {
   return serialize(message);
 }
 
+core::SharedBytes strokes(const v1::Strokes& strokes) {
+  v1::ServerMessage message;
+  *message.mutable_strokes() = strokes;
+  return serialize(message);
+}
+
 core::SharedBytes people(const v1::People& people) {
   v1::ServerMessage message;
   *message.mutable_people() = people;

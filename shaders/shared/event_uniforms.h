@@ -6,9 +6,12 @@
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
-// Maximum number of splashes (rain drops included) and of crests at the same time.
+// Maximum number of splashes (rain drops included), of crests and of strokes at the same time.
 #define MAX_SPLASHES 96
 #define MAX_CRESTS 16
+#define MAX_STROKES 64
+// A stroke moves its dent with two splashes: one fills it, one presses it at the next position.
+#define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_STROKES)
 // A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
 #define SPLASH_REACH 3.5f
 
@@ -27,7 +30,7 @@ struct EventUniform {
   float back_m;
   float lateral_m;     // crest: half its length along the crest; 0 = across the whole domain
   float half_step_m;   // crest: distance travelled in half a step
-  float speed_mps;     // crest: of the wave. splash: of the crown that it produces now; 0 for rain drops
+  float speed_mps;     // crest: of the wave. splash: of the crown that it produces now; 0 for rain drops and strokes
   float depth_m;       // splash: full depth
   float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
   float unused_x;
@@ -35,18 +38,18 @@ struct EventUniform {
 };
 #ifdef __cplusplus
 struct EventUniforms {
-  EventUniform splashes[MAX_SPLASHES];
+  EventUniform splashes[MAX_PRESSES];
   EventUniform crests[MAX_CRESTS];
   uint splash_count;
   uint crest_count;
   uint every_cell;  // as in the block below
   uint padding;
 };
-static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_SPLASHES + MAX_CRESTS) + 16);
+static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 16);
 }  // namespace spindrift::shared
 #else
 layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
-  EventUniform splashes[MAX_SPLASHES];
+  EventUniform splashes[MAX_PRESSES];
   EventUniform crests[MAX_CRESTS];
   uint splash_count;
   uint crest_count;

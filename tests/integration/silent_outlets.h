@@ -11,6 +11,7 @@ struct SilentOutlets : rooms::RoomOutlets {
   void parameterChanged(const rooms::Room&, const std::string&, double) override {}
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
+  void strokesChanged(const rooms::Room&, const v1::Strokes&) override {}
   void wasReset(const rooms::Room&) override {}
   void fidelityChanged(const rooms::Room&, const std::string&) override {}
   void hasRecovered(const rooms::Room&, const std::string&) override {}

@@ -15,6 +15,19 @@ inline v1::Command splash(double depth_m = 0.5, double radius_m = 1.5) {
   return command;
 }
 
+/// A part of a stroke with one point.
+inline v1::Command stroke(std::uint32_t stroke_id, double time_s, double x_m, double z_m, bool ends = false) {
+  v1::Command command;
+  v1::Stroke& out = *command.mutable_stroke();
+  out.set_stroke_id(stroke_id);
+  out.set_ends(ends);
+  v1::StrokePoint& point = *out.add_points();
+  point.set_time_s(time_s);
+  point.set_x_m(x_m);
+  point.set_z_m(z_m);
+  return command;
+}
+
 inline v1::Command setParameter(const std::string& path, double value) {
   v1::Command command;
   command.mutable_set_parameter()->set_path(path);

@@ -1,7 +1,8 @@
 import { Matrix4, PerspectiveCamera } from "three";
 import { describe, expect, it } from "vitest";
 
-import { nearestTags, tagPlace } from "../src/ui/boat_tags";
+import { nearestTags } from "../src/ui/boat_tags";
+import { tagPlace } from "../src/ui/tag_place";
 
 function seenFrom(zM: number): Matrix4 {
   const camera = new PerspectiveCamera(60, 390 / 844, 0.1, 100);

@@ -12,13 +12,16 @@ import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
 import { addDetailRow } from "../ui/detail_row";
 import { byId, setText } from "../ui/dom";
+import { DrawingRow } from "../ui/drawing_row";
 import { EffectsPanel } from "../ui/effects_panel";
+import { FingerTags } from "../ui/finger_tags";
 import { Hud } from "../ui/hud";
 import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
 import { QualityRow } from "../ui/quality_row";
 import { RoomPanel } from "../ui/room_panel";
+import { kStrokeLabel } from "../ui/stroke_sender";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { setAddressParameter, takeLinkToken } from "./address";
@@ -41,6 +44,7 @@ export class App {
   readonly commands = new CommandSender(this.client);
   readonly display: Display;
   readonly effects = new EffectsPanel(byId("effects"));
+  readonly drawing = new DrawingRow();
   readonly room = new RoomPanel(this.commands.send);
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
@@ -57,6 +61,7 @@ export class App {
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
+  private readonly fingers = new FingerTags(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
   private readonly answerListeners: AnswerListener[];
@@ -81,7 +86,7 @@ export class App {
       release: (frame) => this.client.release(frame),
       update: (atS) => this.boats.update(atS),
       drawn: (atS) => {
-        this.showTags();
+        this.showTags(atS);
         this.looks.update(atS);
       },
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
@@ -150,8 +155,8 @@ export class App {
         this.hud.acked(commandId, appliedTick);
         for (const listener of this.answerListeners) listener.ack(commandId, boatId);
         const label = this.commands.takeLabel(commandId);
-        // The helm sends up to 20 commands per second.
-        if (label !== kHelmLabel) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
+        // The helm sends up to 20 commands per second, each finger 30.
+        if (label !== kHelmLabel && label !== kStrokeLabel) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
       },
       reject: ({ reason, message, ...reject }) => {
         const commandId = Number(reject.commandId);
@@ -168,8 +173,10 @@ export class App {
         this.people.setPeople(people, unlistedCount);
         this.boats.setPeople(people);
         this.tags.setPeople(people);
+        this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
       },
+      strokes: ({ list }) => this.fingers.take(list),
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
@@ -201,6 +208,7 @@ export class App {
     this.room.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
+    this.fingers.clear();
     this.looks.enter(greeting);
     // Not before: the connection exists from now on.
     this.showQuality();
@@ -214,6 +222,11 @@ export class App {
     if (greeting.hasBed) this.ground.ask(greeting.room);
   }
 
+  /** The server takes strokes from this visitor now. */
+  get mayDraw(): boolean {
+    return this.state.name === "live" && this.role !== "viewer" && this.effects.finger !== undefined;
+  }
+
   /** Shows the quality that is drawn, and asks for as many frames as it needs. */
   private showQuality(): void {
     const { quality } = this.display;
@@ -221,8 +234,10 @@ export class App {
     this.client.call("setFrameRate", kTiers[quality.tier].frameRateMaxHz);
   }
 
-  private showTags(): void {
+  private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
+    const shape = scene.shape();
+    this.fingers.update(scene.camera, scene.shownTimeS, scene.ripple.down(), this.people.ownId, (xM, zM) => shape?.elevationAtM(xM, zM) ?? 0, covered, atS);
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 
@@ -231,6 +246,7 @@ export class App {
     const isPlayer = this.role !== "viewer";
     const isOperator = this.role === "operator";
     this.effects.setEnabled(this.state.name === "live" && isPlayer);
+    this.drawing.setAllowed(this.mayDraw);
     this.boats.setAllowed(isPlayer);
     this.room.setAllowed(isOperator);
     byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;

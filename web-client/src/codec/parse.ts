@@ -12,6 +12,7 @@ import { levelName } from "./layers";
 import { isMalformed, malformed, type Malformed } from "./malformed";
 import { parseFrame } from "./parse_frame";
 import { readPeople, readWelcome } from "./people";
+import { readStrokes } from "./strokes";
 
 type WireMessage = Exclude<ServerMessage["message"], { case: undefined }>;
 /** Frames have parseFrame(). */
@@ -34,6 +35,7 @@ const kReaders = {
   roomEvent: ({ kind, tick, message }) => ({ event: roomEventName(kind), tick, message }),
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
   people: (people) => ({ people: readPeople(people), unlistedCount: people.unlistedCount }),
+  strokes: (strokes) => readStrokes(strokes),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
   draining: (draining) => readDraining(draining),
   pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),

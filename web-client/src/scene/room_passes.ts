@@ -40,6 +40,7 @@ import { isIndoors } from "./solids/surroundings";
 import { CausticsPass } from "./water/caustics_pass";
 import { FieldPass } from "./water/field_pass";
 import { FoamPass } from "./water/foam_pass";
+import type { LocalRipple } from "./water/local_ripple";
 import { PresentPass } from "./water/present_pass";
 import { WaterPass } from "./water/water_pass";
 import type { DiffuseParticles } from "./whitewater/diffuse_particles";
@@ -53,6 +54,7 @@ export interface RoomTools {
   quality: Quality;
   /** Outlives the passes of a room, so that another quality keeps wet ground. */
   wetness: ShoreWetness;
+  ripple: LocalRipple;
 }
 
 /** What all looks of a room share. `field` undefined: there is no wave. */
@@ -71,10 +73,10 @@ export interface RoomWater {
   dispose(): void;
 }
 
-export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness }: RoomTools): RoomBase {
+export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness, ripple }: RoomTools): RoomBase {
   const { wave, sideM, widthM } = greeting;
   const cellsOf = shoreOf(greeting);
-  const field = wave && new FieldPass(wave, frames.surfaces, quality, cellsOf);
+  const field = wave && new FieldPass(wave, frames.surfaces, ripple, quality, cellsOf);
   const shore = field && cellsOf && new ShorePass(frames, field, wetness, cellsOf, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);

@@ -20,9 +20,11 @@ import { Sky } from "./light/sky";
 import { LookRoom, type Legend, type Reading } from "./looks/look_room";
 import { looksOf, type LookName } from "./looks/looks";
 import { makeBase, makeNaturalWater, usedPasses, type RoomBase, type RoomTools, type RoomWater } from "./room_passes";
+import { clamp } from "./maths/interpolate";
 import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
 import { isIndoors, viewOf } from "./solids/surroundings";
+import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
 
 /** Room for waves above the water in a view, as a share of its side. */
@@ -30,11 +32,16 @@ const kWaveRoom = 0.04;
 /** Sides of the square per near plane, and sides of the square at the far plane: behind the last cell of an open sea. */
 const kNearPerSide = 160;
 const kFarSides = 500;
+/** How far behind a finger the server's water is beyond the age of the picture, and most of both together. */
+const kServerBehindS = 0.08;
+const kMostBehindS = 1;
 
 export class WaterScene {
   readonly camera = new PerspectiveCamera(47, 1, 0.1, 1000);
   /** Hour and weather of the light. */
   readonly daylight = new Daylight();
+  /** The dents of one's own fingers. */
+  readonly ripple = new LocalRipple();
   private readonly frames: StreamedFrames;
   private sky: Sky;
   private readonly noise = makeNoiseTexture();
@@ -109,6 +116,7 @@ export class WaterScene {
   render(nowS: number, drawn?: (pass: Pass) => void): void {
     const { renderer, camera, picture } = this;
     picture.shownS = this.clock.displayTimeS(nowS);
+    this.ripple.update(nowS, clamp((this.clock.delayS() ?? 0) + kServerBehindS, kServerBehindS, kMostBehindS));
     renderer.getDrawingBufferSize(picture.sizePx);
     camera.updateMatrixWorld();
     const light = this.daylight.update(nowS);
@@ -240,8 +248,8 @@ export class WaterScene {
   }
 
   private get tools(): RoomTools {
-    const { frames, sky, noise, quality, wetness } = this;
-    return { frames, sky, noise, quality, wetness };
+    const { frames, sky, noise, quality, wetness, ripple } = this;
+    return { frames, sky, noise, quality, wetness, ripple };
   }
 
   private makeWater(): void {

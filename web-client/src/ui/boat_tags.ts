@@ -1,41 +1,18 @@
 // Names over the boats that people own. Elements are moved by transforms only, and nothing is measured while drawing. Hidden from screen
 // readers: the list of people says the same.
-import { Matrix4, Vector4, type PerspectiveCamera } from "three";
+import { Matrix4, type PerspectiveCamera } from "three";
 
 import type { BoatDetail } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { BodyPose } from "../scene/frames/bodies";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
+import { tagPlace, type TagPlace } from "./tag_place";
 
 /** Only the nearest boats have tags. */
 const kTagsMax = 8;
 /** Height of a tag's foot over the boat's middle, in boat lengths. */
 const kOverBoatLengths = 0.5;
-/** Half the width and the height that a tag needs. */
-const kHalfWidthPx = 44;
-const kHeightPx = 26;
-
-interface TagPlace {
-  xPx: number;
-  yPx: number;
-  /** Distance along the view. */
-  awayM: number;
-}
-
-const scratch = new Vector4();
-
-/** Returns where a point is on the page; undefined behind the camera, outside the window, or where a panel covers the tag. */
-export function tagPlace(seen: Matrix4, point: readonly [number, number, number], widthPx: number, heightPx: number, covered: readonly PixelRect[]): TagPlace | undefined {
-  const { x, y, w } = scratch.set(...point, 1).applyMatrix4(seen);
-  if (!(w > 1e-6)) return undefined;
-  const xPx = (0.5 + (0.5 * x) / w) * widthPx;
-  const yPx = (0.5 - (0.5 * y) / w) * heightPx;
-  if (!(xPx > 0 && xPx < widthPx && yPx > kHeightPx && yPx < heightPx)) return undefined;
-  const hides = ({ leftPx, topPx, rightPx, bottomPx }: PixelRect): boolean =>
-    xPx + kHalfWidthPx > leftPx && xPx - kHalfWidthPx < rightPx && yPx > topPx && yPx - kHeightPx < bottomPx;
-  return covered.some(hides) ? undefined : { xPx, yPx, awayM: w };
-}
 
 /** Returns at most `most` boats with an owner, the nearest first. */
 export function nearestTags<T extends { place: TagPlace }>(tags: T[], most: number): T[] {

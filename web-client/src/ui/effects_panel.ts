@@ -3,9 +3,10 @@ import type { GreetingInfo } from "../codec/greeting";
 import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { byId } from "./dom";
-import { clampTo, effectLimits, type EffectLimits } from "./effect_limits";
+import { clampTo, effectLimits, fingerSize, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";
 import { SliderRow } from "./slider_row";
+import type { FingerSize } from "./stroke_sender";
 
 type EffectKey = keyof EffectLimits;
 const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM", "waveDirectionDeg"];
@@ -32,6 +33,8 @@ const kShapes: readonly Choice[] = [
 ];
 
 export class EffectsPanel {
+  /** Size of a finger in the room's water; undefined: there is no water to draw in. */
+  finger: FingerSize | undefined;
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
   private readonly buttons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
@@ -46,6 +49,7 @@ export class EffectsPanel {
   /** Keeps the values that the new room allows. */
   enter(greeting: GreetingInfo): void {
     const limits = effectLimits(greeting);
+    this.finger = fingerSize(greeting);
     this.root.hidden = !limits;
     if (!limits) {
       this.values = undefined;

@@ -1,7 +1,7 @@
 // Sends the newest of many values at a bounded rate: the first at once, later ones after the shortest interval, the last one
 // always. Clock and timers are injected.
 
-interface SenderWorld {
+export interface SenderWorld {
   nowMs(): number;
   setTimer(callback: () => void, ms: number): number;
   clearTimer(timer: number): void;

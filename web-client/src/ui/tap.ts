@@ -8,7 +8,8 @@ export interface PointerSample {
   timeMs: number;
 }
 
-const kTapMs = 600;
+/** A press that is held no longer is a tap. */
+export const kTapMs = 600;
 
 export class TapDetector {
   private down: PointerSample | undefined;

@@ -1,5 +1,5 @@
 // The camera views, the moves between them, and the view that follows a boat.
-import { Vector3, type PerspectiveCamera } from "three";
+import { MOUSE, TOUCH, Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { clamp, smooth, wrapAngle } from "../maths/interpolate";
@@ -75,6 +75,8 @@ export class CameraViews {
     this.controls.dampingFactor = 0.09;
     this.controls.minPolarAngle = kSteepestRad;
     this.controls.listenToKeyEvents(canvas);
+    this.controls.mouseButtons = { LEFT: MOUSE.ROTATE, MIDDLE: MOUSE.DOLLY, RIGHT: MOUSE.ROTATE };
+    this.controls.touches = { ONE: TOUCH.ROTATE, TWO: TOUCH.DOLLY_ROTATE };
     this.hand = new CameraHand(this.controls, () => this.movedByHand());
   }
 
@@ -107,6 +109,11 @@ export class CameraViews {
     this.heightPx = Math.max(heightPx, 1);
     this.free = free;
     if (!same) this.frameAgain();
+  }
+
+  /** False: a pointer that is pressed now does not turn the camera. */
+  set takesPointers(takes: boolean) {
+    this.controls.enabled = takes;
   }
 
   get canDive(): boolean {

@@ -18,6 +18,7 @@ import { makeCellsTexture } from "../shore/cells_texture";
 import type { ShoreCells } from "../shore/shore_ground";
 import { kFilmM } from "../shore/shore_wetness";
 import { kCurvature, kSlope, kSmooth } from "./field_kernels";
+import type { LocalRipple } from "./local_ripple";
 
 /** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
 const kUnitsPerQuantum = 256;
@@ -62,8 +63,9 @@ export class FieldPass implements Pass {
 
   /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. `cellsOf`: the ground by the counts of a frame, for a moving shore. */
   constructor(
-    { sideM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
+    { sideM, widthM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
+    ripple: LocalRipple,
     private readonly quality: Pick<Quality, "fieldCountMax" | "texelType" | "plain">,
     private readonly cellsOf?: (counts: PlaneCounts) => ShoreCells,
   ) {
@@ -81,6 +83,7 @@ export class FieldPass implements Pass {
     this.frames = new FrameTextures<SurfaceFrame>(counts, kFrameCount, makeTexture);
     const { blank } = this.frames;
     const state = { depthTest: false, depthWrite: false };
+    const unit = { value: kUnitBeforeM };
     this.interpolate = new FullscreenPass(
       makeMaterial(
         "elevation",
@@ -90,11 +93,14 @@ export class FieldPass implements Pass {
           u_to: { value: blank },
           u_after: { value: blank },
           u_weights: { value: new Vector4(0, 0, 0, 0) },
+          u_unit_m: unit,
+          u_water_m: { value: new Vector2(sideM, widthM) },
+          u_dents: ripple.dents,
+          u_dent_count: ripple.count,
         },
         state,
       ),
     );
-    const unit = { value: kUnitBeforeM };
     if (cellsOf) {
       const cells = { value: makeCellsTexture(cellsOf(counts)) };
       const uniforms = { u_elevation: { value: this.elevation.texture }, u_unit_m: unit, u_cells: cells, u_film_m: { value: kFilmM } };

@@ -47,6 +47,7 @@ class RoomActions {
   Outcome setPaused(const Command& command);
   Outcome setSpeed(const Command& command);
   Outcome advance(const Command& command);
+  Outcome draw(const Command& command);
   Outcome spawnBoat(const Command& command);
   Outcome controlBoat(const Command& command);
   Outcome removeBoat(const Command& command);

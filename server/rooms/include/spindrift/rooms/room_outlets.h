@@ -27,6 +27,8 @@ class RoomOutlets {
   virtual void parameterChanged(const Room& room, const std::string& path, double value) = 0;
   virtual void boatsChanged(const Room& room, const v1::BoatList& boats) = 0;
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;
+  /// The fingers in the water, while there are any; an empty list after the last one.
+  virtual void strokesChanged(const Room& room, const v1::Strokes& strokes) = 0;
   /// A client reset the scene to its start.
   virtual void wasReset(const Room& room) = 0;
   /// The watchdog or a new device restored the water; `how` is one line for people.

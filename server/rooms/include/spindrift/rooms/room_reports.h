@@ -54,6 +54,8 @@ class RoomReports {
   void tell();
   /// Tells who is in the room; `is_news`: that has changed.
   void tellPeople(bool is_news, TimePoint now);
+  /// Tells where the fingers are, up to 30 times per second.
+  void tellStrokes(TimePoint now);
   /// Tells that the watchdog has acted, from time to time. Returns whether it did.
   bool tellRecovery(TimePoint now);
   /// Returns when tellPeople() has something to tell; nullopt: nothing waits.
@@ -70,6 +72,8 @@ class RoomReports {
   GrowthNews recovery_news_{std::chrono::seconds(1)};
   bool has_people_news_ = false;
   TimePoint next_people_news_{};
+  bool has_told_strokes_ = false;
+  TimePoint next_stroke_news_{};
   Published<RoomSnapshot> snapshot_;
 };
 

@@ -38,6 +38,9 @@ void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues);
 /// Returns the violations by a splash or a breaking wave in this scene; paths start with "splash" or "breaking_wave".
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);
 
+/// Returns the violations by a stroke in this scene; paths start with "stroke".
+std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& scene);
+
 /// Returns the violations by a boat's position and size. `prefix` is put in front of each path ("spawn_boat.boat.").
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
@@ -48,6 +51,9 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
 void completeEffect(v1::Splash& splash, const v1::Scene& scene);
 void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene);
 void completeBoat(v1::Boat& boat, const v1::Scene& scene);
+
+/// Fills in what was left out of a stroke: a point in the middle, and a size that suits the water.
+void completeStroke(v1::Stroke& stroke, const v1::Scene& scene);
 
 /// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running
 /// scene too, so parameter changes are checked against them.

@@ -53,6 +53,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
+  void strokesChanged(const rooms::Room& room, const v1::Strokes& strokes) override;
   void wasReset(const rooms::Room& room) override;
   void hasRecovered(const rooms::Room& room, const std::string& how) override;
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;

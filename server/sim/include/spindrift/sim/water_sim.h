@@ -22,6 +22,7 @@
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/strokes.h>
 #include <spindrift/sim_state/carried_state.h>
 #include <spindrift/sim_state/saved_state.h>
 #include <spindrift/sim_state/state_copy.h>
@@ -85,6 +86,10 @@ class WaterSim {
 
   /// Starts an effect now, on the wave, or on the particles if there is no wave. kUnavailable when too many are active.
   core::Result<void> start(const core::Effect& effect);
+  /// Begins or continues a stroke; see Strokes::add().
+  core::Result<void> draw(const StrokePart& part);
+  /// The strokes on the water, as the last step left them.
+  [[nodiscard]] const std::vector<Stroke>& strokes() const;
   /// Adds a boat and returns its id. kInvalidInput in a scene without boats, kUnavailable when all slots are taken.
   core::Result<std::uint32_t> spawnBoat(const core::Boat& boat);
   /// Steers a boat. Error kInvalidInput for an unknown boat.

@@ -9,6 +9,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/strokes.h>
 
 namespace spindrift::sim {
 
@@ -27,7 +28,7 @@ struct EffectDomain {
 };
 EffectDomain domainOf(const WaveLayout& wave);
 
-/// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests.
+/// The active effects: at most MAX_SPLASHES splashes and MAX_CRESTS crests; and the strokes.
 class Effects {
  public:
   /// Starts an effect at time_s; a wave must have a side. kUnavailable when the most effects of its kind are active:
@@ -37,19 +38,26 @@ class Effects {
   /// Returns what the active effects add at time_s, after a step of dt_s, and removes those that have ended.
   shared::EventUniforms advance(double time_s, const EffectDomain& domain);
 
-  [[nodiscard]] bool idle() const { return active_.empty(); }
-  void clear() { active_.clear(); }
+  [[nodiscard]] bool idle() const { return active_.empty() && strokes_.active().empty(); }
+  void clear() {
+    active_.clear();
+    strokes_.clear();
+  }
+
+  [[nodiscard]] Strokes& strokes() { return strokes_; }
+  [[nodiscard]] const Strokes& strokes() const { return strokes_; }
 
   struct Active {
     core::Effect effect;
     double start_s = 0.0;
   };
   [[nodiscard]] const std::vector<Active>& active() const { return active_; }
-  /// Replaces them all. Returns false, with nothing changed, if there are more of a kind than can be active.
+  /// Replaces them all but the strokes. Returns false, with nothing changed, if there are more of a kind than can be active.
   bool resume(std::vector<Active> active);
 
  private:
   std::vector<Active> active_;
+  Strokes strokes_;
 };
 
 }  // namespace spindrift::sim

@@ -108,12 +108,14 @@ class RoomWater {
   static Handler handlerOf(const v1::Command& command);
   Outcome splash(const v1::Command& command);
   Outcome breakingWave(const v1::Command& command);
+  Outcome stroke(const v1::Command& command);
   Outcome setParameter(const v1::Command& command);
   Outcome reset(const v1::Command& command);
   Outcome spawnBoat(const v1::Command& command);
   Outcome controlBoat(const v1::Command& command);
   Outcome removeBoat(const v1::Command& command);
-  Outcome startEffect(const core::Effect& effect);
+  /// Returns the rejection if the water did not take a command.
+  static Outcome outcomeOf(const core::Result<void>& started);
   /// Exchanges the waters between two ticks.
   void exchange(std::unique_ptr<Water>& water);
 

@@ -9,6 +9,7 @@
 namespace spindrift::water {
 
 v1::Side toMessage(core::Side side);
+sim::StrokePart toStrokePart(const v1::Stroke& stroke);
 v1::WaterState toMessage(const sim::SavedState& state);
 
 /// Error: kInvalidInput for a message that no simulation can have made.

@@ -1,0 +1,79 @@
+// Fingers that are drawn through the water. Each presses a dent that moves with it, so it leaves a wake.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <shared/event_uniforms.h>
+
+#include <spindrift/core/result.h>
+
+namespace spindrift::sim {
+
+/// Position of a finger at a time.
+struct StrokePoint {
+  double time_s = 0.0;  ///< on the stroke's own clock
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double pressure_ratio = 1.0;  ///< 0 to 1
+};
+
+/// The beginning of a stroke, or more of it.
+struct StrokePart {
+  std::uint32_t person_id = 0;
+  std::uint32_t stroke_id = 0;  ///< of this person
+  double radius_m = 0.0;        ///< of the dent; that of the first part counts, as its depth
+  double depth_m = 0.0;
+  std::vector<StrokePoint> points{};
+  bool ends = false;  ///< the finger is lifted after the last point
+};
+
+/// A stroke on the water.
+struct Stroke {
+  std::uint32_t person_id = 0;
+  std::uint32_t stroke_id = 0;
+  double radius_m = 0.0;
+  double depth_m = 0.0;
+  std::vector<StrokePoint> path{};  ///< what is still to be drawn, from the point before play_s on; never empty
+  bool is_lifted = false;
+  double play_s = 0.0;   ///< time on the path, up to which it is drawn
+  double still_s = 0.0;  ///< since the last part
+  /// As the last step left it: the position, and the dent's share of its depth.
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double level_ratio = 0.0;
+};
+
+/// The path is drawn a little after its points have come, so that a trace does not depend on the rhythm in which the
+/// network delivers them. A dent goes from one position to the next by two splashes: one fills it, one presses it.
+/// So a stroke conserves the water to the last unit, as splashes do, and moves none while the finger rests.
+class Strokes {
+ public:
+  /// At most this many of one person at a time: the fingers of two hands.
+  static constexpr std::size_t kPersonMaxCount = 10;
+  /// Points of a path that wait; the oldest give way.
+  static constexpr std::size_t kPathMaxCount = 256;
+  /// Longest delay of a path; beyond it the finger jumps.
+  static constexpr double kMaxDelay_s = 0.5;
+  /// A finger of which nothing has been heard for this long is lifted.
+  static constexpr double kMaxSilence_s = 2.0;
+
+  /// Begins a stroke or continues it. Precondition: times ascend within the part; one that begins has a point. Points
+  /// that are not later than what is there are omitted. kUnavailable: there are MAX_STROKES, or kPersonMaxCount of the
+  /// person.
+  core::Result<void> add(const StrokePart& part);
+
+  /// Draws a step of dt_s: appends to out.splashes what moves the dents.
+  void advance(double dt_s, shared::EventUniforms& out);
+
+  [[nodiscard]] const std::vector<Stroke>& active() const { return active_; }
+  /// Replaces them all. Returns false, with nothing changed, if there are more than can be, or one has no path.
+  bool resume(std::vector<Stroke> active);
+  void clear() { active_.clear(); }
+
+ private:
+  std::vector<Stroke> active_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,146 @@
+// Fingers in the water, in Chromium: a drag draws and everybody sees whose it is; the right button and two fingers turn the view.
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import { after, before, describe, it } from "node:test";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { repository, startServer } from "./server.mjs";
+
+const WAIT_MS = 60_000;
+const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
+
+async function waitFor(page, what, accept) {
+  const deadline_ms = Date.now() + WAIT_MS;
+  for (;;) {
+    const stats = await page.evaluate(() => window.spindrift?.stats());
+    if (stats !== undefined && accept(stats)) return stats;
+    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
+    await sleep(50);
+  }
+}
+
+describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 }, () => {
+  let server;
+  let browser;
+  /** Two people, each in a browser window of their own; the second has a phone. */
+  let desk;
+  let phone;
+
+  const open = async (options) => {
+    const page = await (await browser.newContext(options)).newPage();
+    await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
+    await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
+    return page;
+  };
+  const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
+  /** Presses, moves along the points and leaves the button down. */
+  const drag = async (page, points, button = "left") => {
+    for (const [k, [xM, zM]] of points.entries()) {
+      const [xPx, yPx] = await pixelOf(page, xM, zM);
+      await page.mouse.move(xPx, yPx);
+      if (k === 0) await page.mouse.down({ button });
+    }
+  };
+  const waitForStill = (page) => waitFor(page, "still water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM < 0.02);
+
+  before(async () => {
+    server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`]);
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    desk = await open({ viewport: { width: 900, height: 600 } });
+    phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.stop("SIGTERM");
+  });
+
+  it("tells a first visitor, once, what a drag does", async () => {
+    const hint = desk.getByTestId("hint");
+    assert.ok(await hint.isVisible());
+    assert.match(await hint.textContent(), /Drag on the water to draw in it; the right button turns the view/);
+    assert.match(await phone.getByTestId("hint").textContent(), /two fingers turn the view/);
+  });
+
+  it("draws with the mouse, at once on one's own screen, and shows the other whose finger it is", async () => {
+    const { view } = await waitForStill(desk);
+    const line = Array.from({ length: 20 }, (_, k) => [-1.5 + 0.15 * k, 0.5]);
+    await drag(desk, line);
+    const own = await waitFor(desk, "the local ripple", ({ dents }) => dents > 0);
+    assert.equal(own.view, view, "the camera stays");
+    assert.equal(await desk.locator(".finger-tags div").count(), 1, "one's own ring");
+    const ring = phone.locator(".finger-tags div");
+    await ring.waitFor({ timeout: WAIT_MS });
+    const [xPx, yPx] = await pixelOf(phone, ...line.at(-1));
+    const box = await ring.boundingBox();
+    assert.ok(Math.hypot(box.x + box.width / 2 - xPx, box.y + box.height / 2 - yPx) < 40, `the ring is at ${JSON.stringify(box)}, the finger at ${xPx}, ${yPx}`);
+    const people = await desk.evaluate(() => [...document.querySelectorAll("#people .swatch")].map((swatch) => getComputedStyle(swatch).backgroundColor));
+    assert.ok(people.includes(await ring.evaluate((element) => getComputedStyle(element).borderTopColor)), "in the colour of a person");
+    await phone.waitForFunction(() => document.querySelector(".finger-tags span")?.textContent !== "", undefined, { timeout: WAIT_MS });
+    await waitFor(phone, "the wake in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.02);
+    await desk.mouse.up();
+    await ring.waitFor({ state: "detached", timeout: WAIT_MS });
+    await waitFor(desk, "the local ripple to go", ({ dents }) => dents === 0);
+    assert.ok(await desk.getByTestId("hint").isHidden());
+  });
+
+  it("turns the view with the right button, and with the left one where the water ends", async () => {
+    await waitForStill(desk);
+    await desk.getByTestId("view-above").click();
+    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await sleep(1200);
+    await drag(desk, [[0, 0], [1, 0.5], [2, 1]], "right");
+    await desk.mouse.up({ button: "right" });
+    const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
+    assert.equal(turned.dents, 0);
+    await desk.getByTestId("view-above").click();
+    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await sleep(1200);
+    await desk.mouse.move(12, 300);
+    await desk.mouse.down();
+    await desk.mouse.move(80, 300, { steps: 5 });
+    await desk.mouse.up();
+    await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
+  });
+
+  it("gives the left button back to the view if that is chosen, and keeps the choice", async () => {
+    await desk.getByTestId("drag").selectOption("turn");
+    await desk.getByTestId("view-above").click();
+    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await sleep(1200);
+    await drag(desk, [[0, 0], [1, 0.5], [2, 1]]);
+    await desk.mouse.up();
+    const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
+    assert.equal(turned.dents, 0);
+    assert.equal(await desk.evaluate(() => localStorage.getItem("spindrift.drag")), "turn");
+    await desk.getByTestId("drag").selectOption("draw");
+  });
+
+  it("takes each finger of a touch for itself, and two that come down together for the view", async () => {
+    const { view } = await waitForStill(phone);
+    const touch = await phone.context().newCDPSession(phone);
+    const at = async (id, xM, zM) => {
+      const [x, y] = await pixelOf(phone, xM, zM);
+      return { id, x, y };
+    };
+    const send = (type, touchPoints) => touch.send("Input.dispatchTouchEvent", { type, touchPoints });
+    await send("touchStart", [await at(1, -1, 0)]);
+    for (let k = 1; k <= 5; ++k) await send("touchMove", [await at(1, -1 + 0.2 * k, 0)]);
+    await sleep(300);
+    await send("touchStart", [await at(1, 0, 0), await at(2, 1, 1)]);
+    for (let k = 1; k <= 5; ++k) await send("touchMove", [await at(1, 0.2 * k, 0), await at(2, 1, 1 - 0.2 * k)]);
+    const two = await waitFor(phone, "two local ripples", ({ dents }) => dents >= 8);
+    assert.equal(two.view, view, "the camera stays");
+    await desk.waitForFunction(() => document.querySelectorAll(".finger-tags div").length === 2, undefined, { timeout: WAIT_MS });
+    await send("touchEnd", []);
+    await waitFor(phone, "no ripple", ({ dents }) => dents === 0);
+
+    await send("touchStart", [await at(1, -0.5, 0), await at(2, 0.5, 0)]);
+    for (let k = 1; k <= 8; ++k) await send("touchMove", [await at(1, -0.5 - 0.1 * k, 0), await at(2, 0.5 + 0.1 * k, 0)]);
+    await send("touchEnd", []);
+    const zoomed = await waitFor(phone, "the camera to leave its view", (stats) => stats.view === null);
+    assert.equal(zoomed.dents, 0);
+  });
+});

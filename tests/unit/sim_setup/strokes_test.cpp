@@ -1,0 +1,173 @@
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <spindrift/sim_setup/effects.h>
+
+namespace spindrift::sim {
+namespace {
+
+constexpr double kStep_s = 0.01;
+
+StrokePart part(std::vector<StrokePoint> points, bool ends = false, std::uint32_t stroke_id = 1,
+                std::uint32_t person_id = 7) {
+  return {person_id, stroke_id, 0.5, 0.2, std::move(points), ends};
+}
+
+/// A finger that moves along x with 1 m/s, from time to time.
+std::vector<StrokePoint> line(double from_s, double to_s, double every_s = 0.02) {
+  std::vector<StrokePoint> out;
+  for (double t = from_s; t < to_s - 1e-9; t += every_s) out.push_back({t, t, 0.0, 1.0});
+  return out;
+}
+
+shared::EventUniforms stepOf(Strokes& strokes) {
+  shared::EventUniforms out{};
+  strokes.advance(kStep_s, out);
+  return out;
+}
+
+TEST(Strokes, LeaveNothingBehindInTheSumOfTheirSplashes) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part(line(0.0, 1.0), true)));
+  double sum_m = 0.0, pressed_m = 0.0;
+  int step_count = 0;
+  for (; !strokes.active().empty(); ++step_count) {
+    ASSERT_LT(step_count, 1000);
+    const auto out = stepOf(strokes);
+    for (std::uint32_t k = 0; k < out.splash_count; ++k) {
+      sum_m += out.splashes[k].gain_m;
+      pressed_m = std::min(pressed_m, sum_m);
+    }
+  }
+  EXPECT_NEAR(sum_m, 0.0, 1e-6);
+  EXPECT_NEAR(pressed_m, -0.2, 1e-6) << "the full depth in between";
+}
+
+TEST(Strokes, TraceDoesNotDependOnTheRhythmOfTheMessages) {
+  const auto trace = [](double every_s, double late_s) {
+    Strokes strokes;
+    std::vector<double> out;
+    double sent_s = 0.0;
+    const std::vector<StrokePoint> points = line(0.0, 1.0, 0.01);
+    for (double now_s = 0.0; now_s < 1.3; now_s += kStep_s) {
+      if (now_s >= sent_s + every_s - late_s && sent_s < 1.0 - 1e-9) {
+        std::vector<StrokePoint> some;
+        for (const StrokePoint& p : points)
+          if (p.time_s >= sent_s - 1e-9 && p.time_s < sent_s + every_s - 1e-9) some.push_back(p);
+        sent_s += every_s;
+        EXPECT_TRUE(strokes.add(part(std::move(some), sent_s >= 1.0 - 1e-9)));
+      }
+      stepOf(strokes);
+      if (strokes.active().size() == 1 && strokes.active()[0].x_m > 0.3 && strokes.active()[0].x_m < 0.8)
+        out.push_back(strokes.active()[0].x_m);
+    }
+    return out;
+  };
+  for (const double every_s : {0.02, 0.03, 0.05}) {
+    const std::vector<double> xs_m = trace(every_s, 0.0);
+    ASSERT_GT(xs_m.size(), 30u) << every_s;
+    for (std::size_t k = 1; k < xs_m.size(); ++k)
+      EXPECT_NEAR(xs_m[k] - xs_m[k - 1], kStep_s, 0.26 * kStep_s) << "message every " << every_s << " s, step " << k;
+  }
+}
+
+TEST(Strokes, RestingFingerMovesNoWater) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part({{0.0, 1.0, 2.0, 1.0}})));
+  std::uint32_t count = 0;
+  for (int k = 0; k < 100; ++k) count += stepOf(strokes).splash_count;
+  EXPECT_GT(count, 0u) << "it presses at first";
+  for (int k = 0; k < 90; ++k) EXPECT_EQ(stepOf(strokes).splash_count, 0u);
+  ASSERT_EQ(strokes.active().size(), 1u);
+  EXPECT_EQ(strokes.active()[0].x_m, 1.0);
+}
+
+TEST(Strokes, FingerOfWhichNothingIsHeardIsLifted) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part({{0.0, 1.0, 2.0, 1.0}})));
+  const int limit = static_cast<int>((Strokes::kMaxSilence_s + 1.0) / kStep_s);
+  for (int k = 0; k < limit; ++k) stepOf(strokes);
+  EXPECT_TRUE(strokes.active().empty());
+}
+
+TEST(Strokes, LateAndRepeatedPointsAreOmitted) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {0.1, 1, 0, 1}})));
+  ASSERT_TRUE(strokes.add(part({{0.05, 9, 9, 1}, {0.1, 9, 9, 1}, {0.2, 2, 0, 1}})));
+  ASSERT_EQ(strokes.active()[0].path.size(), 3u);
+  EXPECT_EQ(strokes.active()[0].path.back().x_m, 2.0);
+}
+
+TEST(Strokes, PathIsBoundedAndNeverFarBehind) {
+  Strokes strokes;
+  double now_s = 0.0;
+  for (int message = 0; message < 40; ++message) {  // ten times as fast as time
+    ASSERT_TRUE(strokes.add(part(line(now_s, now_s + 0.1, 0.002))));
+    now_s += 0.1;
+    stepOf(strokes);
+    ASSERT_LE(strokes.active()[0].path.size(), Strokes::kPathMaxCount);
+    ASSERT_LE(strokes.active()[0].path.back().time_s - strokes.active()[0].play_s, Strokes::kMaxDelay_s + 0.1);
+  }
+  ASSERT_TRUE(strokes.add(part({{80000.0, 3, 0, 1}}, true))) << "a client's clock may jump";
+  for (int k = 0; k < 100; ++k) stepOf(strokes);
+  EXPECT_TRUE(strokes.active().empty());
+}
+
+TEST(Strokes, FasterThanARadiusPerStepPressesLess) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}})));
+  for (int k = 0; k < 30; ++k) stepOf(strokes);
+  ASSERT_TRUE(strokes.add(part({{0.3, 0, 0, 1}, {0.31, 500, 0, 1}, {1.0, 500, 0, 1}})));
+  for (int k = 0; k < 60; ++k) {
+    const auto out = stepOf(strokes);
+    for (std::uint32_t i = 0; i < out.splash_count; ++i) EXPECT_LE(std::abs(out.splashes[i].gain_m), 0.2f + 1e-6f);
+  }
+}
+
+TEST(Strokes, LimitsAreNamed) {
+  Strokes strokes;
+  for (std::uint32_t k = 0; k < Strokes::kPersonMaxCount; ++k)
+    ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}}, false, k)));
+  const auto own = strokes.add(part({{0.0, 0, 0, 1}}, false, 99));
+  ASSERT_FALSE(own);
+  EXPECT_EQ(own.error().code, core::ErrorCode::kUnavailable);
+  EXPECT_NE(own.error().message.find("10 strokes of one person"), std::string::npos) << own.error().message;
+  EXPECT_TRUE(strokes.add(part({{0.1, 0, 0, 1}}, false, 3))) << "a stroke that has begun continues";
+  for (std::uint32_t person = 100; strokes.active().size() < MAX_STROKES; ++person)
+    ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}}, false, 1, person)));
+  const auto all = strokes.add(part({{0.0, 0, 0, 1}}, false, 1, 99));
+  ASSERT_FALSE(all);
+  EXPECT_NE(all.error().message.find("64 strokes at the same time"), std::string::npos) << all.error().message;
+  shared::EventUniforms out{};
+  for (int k = 0; k < 50; ++k) {
+    out = {};
+    strokes.advance(kStep_s, out);
+    ASSERT_LE(out.splash_count, static_cast<std::uint32_t>(MAX_PRESSES));
+  }
+}
+
+TEST(Strokes, EndOfAStrokeThatHasEndedIsNoError) {
+  Strokes strokes;
+  EXPECT_TRUE(strokes.add(part({}, true)));
+  EXPECT_TRUE(strokes.active().empty());
+}
+
+TEST(Strokes, ResumedStrokesGoOnAsTheyWouldHave) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part(line(0.0, 0.5))));
+  for (int k = 0; k < 20; ++k) stepOf(strokes);
+  Strokes copy;
+  ASSERT_TRUE(copy.resume(strokes.active()));
+  for (int k = 0; k < 100; ++k) {
+    const auto a = stepOf(strokes), b = stepOf(copy);
+    ASSERT_EQ(a.splash_count, b.splash_count);
+    for (std::uint32_t i = 0; i < a.splash_count; ++i) ASSERT_EQ(a.splashes[i].x_m, b.splashes[i].x_m);
+  }
+  EXPECT_FALSE(copy.resume({Stroke{}})) << "a stroke without a path";
+}
+
+}  // namespace
+}  // namespace spindrift::sim

@@ -1,0 +1,155 @@
+// Pointers on the canvas: a tap splashes; a drag that begins on the water draws in it, each finger for itself; everything else is left to the
+// camera: the right button, two fingers that come down together, a drag that begins off the water.
+import { Vector3 } from "three";
+
+import { kClickRadiusPx } from "../scene/camera/camera_hand";
+import { pickWater } from "../scene/frames/pick";
+import { kStrokeLabel, StrokeSender, type FingerPoint } from "../ui/stroke_sender";
+import { kTapMs, TapDetector, toDeviceCoordinates, type PointerSample } from "../ui/tap";
+import type { App } from "./app";
+import { nowS } from "./picture_clock";
+
+/** Two fingers that come down within this time are a gesture of the camera. */
+const kTogetherMs = 150;
+
+/** A pointer that began on the water. */
+interface Hand {
+  down: PointerEvent;
+  /** What it has drawn before it counts as a stroke. */
+  points: FingerPoint[];
+  draws: boolean;
+  /** Begins the stroke of a finger that is held still. */
+  timer: number;
+}
+
+export class PointerHands {
+  private readonly taps = new TapDetector();
+  private readonly hands = new Map<number, Hand>();
+  private readonly sender: StrokeSender;
+  private isHandingOver = false;
+  /** Time at which a touch went to the camera. */
+  private cameraTouchMs = -Infinity;
+
+  constructor(private readonly app: App) {
+    this.sender = new StrokeSender((value) => app.commands.send({ case: "stroke", value }, kStrokeLabel), {
+      nowMs: () => performance.now(),
+      setTimer: (callback, ms) => window.setTimeout(callback, ms),
+      clearTimer: (timer) => window.clearTimeout(timer),
+    });
+    const { canvas } = app.display;
+    // Before the camera, which listens to the same canvas and, while it turns, to the document.
+    canvas.addEventListener("pointerdown", (event) => this.pressed(event), { capture: true });
+    document.addEventListener("pointerdown", () => (app.display.views.takesPointers = true));
+    canvas.addEventListener("pointermove", (event) => this.moved(event));
+    canvas.addEventListener("pointerup", (event) => this.released(event));
+    canvas.addEventListener("pointercancel", (event) => {
+      this.taps.cancelled(event.pointerId);
+      this.let(event);
+    });
+  }
+
+  /** Lifts all fingers. */
+  liftAll(): void {
+    for (const pointerId of [...this.hands.keys()]) this.lift(pointerId);
+  }
+
+  private pressed(event: PointerEvent): void {
+    if (this.isHandingOver) return;
+    if (event.button === 0) this.taps.pressed(sampleOf(event));
+    const { app, hands } = this;
+    const isTouch = event.pointerType === "touch";
+    const size = app.effects.finger;
+    const button = app.drawing.drawsFirst ? 0 : 2;
+    if (!app.mayDraw || !size || event.button !== button || (isTouch && !app.drawing.drawsFirst)) return;
+    const partner = isTouch ? [...hands.values()].find(({ down, draws }) => !draws && event.timeStamp - down.timeStamp < kTogetherMs && down.pointerType === "touch") : undefined;
+    if (partner) return this.handOver(partner.down, event);
+    const place = this.placeUnder(event);
+    if (!place || (isTouch && event.timeStamp - this.cameraTouchMs < kTogetherMs)) {
+      if (isTouch) this.cameraTouchMs = event.timeStamp;
+      return;
+    }
+    app.display.views.takesPointers = false;
+    app.display.canvas.setPointerCapture(event.pointerId);
+    app.display.scene.ripple.press(event.pointerId, place.xM, place.zM, size, nowS());
+    const timer = window.setTimeout(() => this.begin(event.pointerId), kTapMs);
+    hands.set(event.pointerId, { down: event, points: [pointOf(event, place)], draws: false, timer });
+  }
+
+  private moved(event: PointerEvent): void {
+    const hand = this.hands.get(event.pointerId);
+    if (!hand) return;
+    event.stopPropagation();
+    const coalesced = event.getCoalescedEvents();
+    for (const each of coalesced.length > 0 ? coalesced : [event]) {
+      const place = this.placeUnder(each);
+      if (!place) continue;
+      const point = pointOf(each, place);
+      if (hand.draws) this.sender.move(event.pointerId, point);
+      else hand.points.push(point);
+      this.app.display.scene.ripple.move(event.pointerId, place.xM, place.zM, nowS());
+    }
+    if (!hand.draws && Math.hypot(event.clientX - hand.down.clientX, event.clientY - hand.down.clientY) > kClickRadiusPx) this.begin(event.pointerId);
+  }
+
+  private released(event: PointerEvent): void {
+    const isTap = this.taps.released(sampleOf(event));
+    this.let(event);
+    const place = isTap ? this.placeUnder(event) : undefined;
+    if (place) this.app.commands.send(this.app.effects.splashAt(place.xM, place.zM), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
+  }
+
+  private let(event: PointerEvent): void {
+    if (!this.hands.has(event.pointerId)) return;
+    event.stopPropagation();
+    this.lift(event.pointerId);
+  }
+
+  /** The pointer draws from now on. */
+  private begin(pointerId: number): void {
+    const hand = this.hands.get(pointerId);
+    const size = this.app.effects.finger;
+    if (!hand || hand.draws || !size) return;
+    hand.draws = true;
+    window.clearTimeout(hand.timer);
+    this.taps.cancelled(pointerId);
+    this.sender.begin(pointerId, hand.points.splice(0), size);
+    this.app.drawing.hasDrawn();
+  }
+
+  private lift(pointerId: number): void {
+    const hand = this.hands.get(pointerId);
+    if (!hand) return;
+    window.clearTimeout(hand.timer);
+    this.hands.delete(pointerId);
+    this.sender.end(pointerId);
+    this.app.display.scene.ripple.lift(pointerId, nowS());
+  }
+
+  /** Gives two fingers to the camera, the first of which was ours. */
+  private handOver(first: PointerEvent, second: PointerEvent): void {
+    this.lift(first.pointerId);
+    this.cameraTouchMs = second.timeStamp;
+    this.isHandingOver = true;
+    this.app.display.canvas.dispatchEvent(new PointerEvent("pointerdown", first));
+    this.isHandingOver = false;
+  }
+
+  private placeUnder(event: PointerEvent): { xM: number; zM: number } | undefined {
+    const { canvas, scene } = this.app.display;
+    const shape = scene.shape();
+    if (!shape) return undefined;
+    const at = toDeviceCoordinates(event.clientX, event.clientY, canvas.getBoundingClientRect());
+    const { camera } = scene;
+    const direction = new Vector3(at.x, at.y, 0.5).unproject(camera).sub(camera.position).normalize();
+    return pickWater({ originM: camera.position.toArray(), direction: direction.toArray() }, shape);
+  }
+}
+
+function sampleOf(event: PointerEvent): PointerSample {
+  return { id: event.pointerId, xPx: event.clientX, yPx: event.clientY, timeMs: event.timeStamp };
+}
+
+/** Only pens tell their pressure well enough. */
+function pointOf(event: PointerEvent, place: { xM: number; zM: number }): FingerPoint {
+  return { timeMs: event.timeStamp, ...place, pressureRatio: event.pointerType === "pen" && event.pressure > 0 ? event.pressure : 1 };
+}

@@ -1,0 +1,88 @@
+// Rings over the fingers in the water, in the colours of their people, with names after a moment. One's own follows the pointer, those of
+// others come with the server's list. Hidden from screen readers: they move too fast to be read out.
+import { Matrix4, type PerspectiveCamera } from "three";
+
+import type { PersonInfo } from "../codec/people";
+import type { FingersInfo } from "../codec/strokes";
+import type { PixelRect } from "../scene/camera/framing";
+import { make, setText } from "./dom";
+import { tagPlace } from "./tag_place";
+
+/** A name is shown from then on, so that short strokes do not flicker. */
+const kNameAfterS = 1;
+/** Lists that wait for their picture: more than there are frames between server and picture. */
+const kListsMax = 40;
+
+interface Ring {
+  element: HTMLElement;
+  name: HTMLElement;
+  sinceS: number;
+}
+
+export class FingerTags {
+  private readonly element = make("div", { class: "finger-tags", "aria-hidden": "true", "data-testid": "finger-tags" });
+  private readonly rings = new Map<string, Ring>();
+  private readonly lists: FingersInfo[] = [];
+  private people = new Map<number, PersonInfo>();
+  private readonly seen = new Matrix4();
+
+  /** `before`: the rings lie over this element and under everything after it. */
+  constructor(before: Element) {
+    before.after(this.element);
+  }
+
+  setPeople(people: readonly PersonInfo[]): void {
+    this.people = new Map(people.map((person) => [person.personId, person]));
+  }
+
+  take(list: FingersInfo): void {
+    // A restored or restarted scene has an earlier time.
+    if (list.timeS < (this.lists.at(-1)?.timeS ?? -Infinity)) this.lists.length = 0;
+    this.lists.push(list);
+    if (this.lists.length > kListsMax) this.lists.shift();
+  }
+
+  clear(): void {
+    this.lists.length = 0;
+  }
+
+  /**
+   * Called for each picture. `shownS`: simulation time of the picture. `own`: where one's own fingers are now; `ownId`: whose the list's are
+   * left out.
+   */
+  update(camera: PerspectiveCamera, shownS: number | undefined, own: ReadonlyMap<number, { xM: number; zM: number }>, ownId: number, heightAtM: (xM: number, zM: number) => number, covered: readonly PixelRect[], nowS: number): void {
+    this.seen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
+    while (shownS !== undefined && (this.lists[1]?.timeS ?? Infinity) <= shownS) this.lists.shift();
+    const list = this.lists[0];
+    const drawn = new Set<string>();
+    const show = (key: string, personId: number, xM: number, zM: number, named: boolean): void => {
+      const place = tagPlace(this.seen, [xM, heightAtM(xM, zM), zM], window.innerWidth, window.innerHeight, covered);
+      if (!place) return;
+      drawn.add(key);
+      const ring = this.ringOf(key, nowS);
+      const person = this.people.get(personId);
+      ring.element.style.setProperty("--owner", person?.color ?? "#ffffff");
+      ring.element.style.transform = `translate(${place.xPx.toFixed(1)}px, ${place.yPx.toFixed(1)}px)`;
+      setText(ring.name, named && nowS - ring.sinceS >= kNameAfterS ? (person?.name ?? "") : "");
+    };
+    for (const [pointerId, { xM, zM }] of own) show(`own ${pointerId}`, ownId, xM, zM, false);
+    if (list && (shownS === undefined || list.timeS <= shownS))
+      for (const { personId, strokeId, xM, zM } of list.fingers) if (personId !== ownId || ownId === 0) show(`${personId} ${strokeId}`, personId, xM, zM, true);
+    for (const [key, { element }] of this.rings)
+      if (!drawn.has(key)) {
+        element.remove();
+        this.rings.delete(key);
+      }
+  }
+
+  private ringOf(key: string, nowS: number): Ring {
+    let ring = this.rings.get(key);
+    if (!ring) {
+      const name = make("span");
+      ring = { element: make("div", {}, [name]), name, sinceS: nowS };
+      this.rings.set(key, ring);
+      this.element.append(ring.element);
+    }
+    return ring;
+  }
+}

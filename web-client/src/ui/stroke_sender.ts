@@ -1,0 +1,103 @@
+// Fingers in the water → messages of strokes: the points of each finger, together once per interval. Clock and timers are injected.
+import type { MessageInitShape } from "@bufbuild/protobuf";
+
+import type { StrokeSchema } from "../gen/spindrift/v1/wire_pb";
+import type { SenderWorld } from "./latest_sender";
+
+export interface FingerPoint {
+  timeMs: number;
+  xM: number;
+  zM: number;
+  /** 0 to 1. */
+  pressureRatio: number;
+}
+
+/** Label of its commands. */
+export const kStrokeLabel = "Stroke";
+
+/** Size of the dent that a finger presses. */
+export interface FingerSize {
+  radiusM: number;
+  depthM: number;
+}
+
+export type StrokeMessage = MessageInitShape<typeof StrokeSchema>;
+
+const kIntervalMs = 33;
+/** A resting finger is heard of this often; the server lifts one that is silent for 2 s. */
+const kRestMs = 700;
+/** Points nearer in time add nothing. */
+const kSpacingMs = 4;
+/** Most points of a message, as the server allows. */
+const kPointsMax = 64;
+
+interface Finger {
+  strokeId: number;
+  beganMs: number;
+  sentMs: number;
+  last: FingerPoint;
+  unsent: FingerPoint[];
+}
+
+export class StrokeSender {
+  private nextId = 1;
+  private readonly fingers = new Map<number, Finger>();
+  private timer: number | undefined;
+
+  constructor(
+    private readonly send: (stroke: StrokeMessage) => void,
+    private readonly world: SenderWorld,
+  ) {}
+
+  /** A finger begins a stroke, with what it has drawn already. */
+  begin(pointerId: number, points: readonly FingerPoint[], { radiusM, depthM }: FingerSize): void {
+    const first = points[0];
+    if (!first) return;
+    const finger: Finger = { strokeId: this.nextId++, beganMs: first.timeMs, sentMs: this.world.nowMs(), last: first, unsent: [first] };
+    this.fingers.set(pointerId, finger);
+    for (const point of points.slice(1)) add(finger, point);
+    this.post(finger, { radiusM, depthM });
+    this.timer ??= this.world.setTimer(() => this.flush(), kIntervalMs);
+  }
+
+  move(pointerId: number, point: FingerPoint): void {
+    const finger = this.fingers.get(pointerId);
+    if (finger) add(finger, point);
+  }
+
+  end(pointerId: number): void {
+    const finger = this.fingers.get(pointerId);
+    if (!finger) return;
+    this.fingers.delete(pointerId);
+    this.post(finger, { ends: true });
+  }
+
+  endAll(): void {
+    for (const pointerId of [...this.fingers.keys()]) this.end(pointerId);
+  }
+
+  private flush(): void {
+    this.timer = this.fingers.size > 0 ? this.world.setTimer(() => this.flush(), kIntervalMs) : undefined;
+    const nowMs = this.world.nowMs();
+    for (const finger of this.fingers.values()) {
+      if (finger.unsent.length === 0 && nowMs - finger.sentMs >= kRestMs) add(finger, { ...finger.last, timeMs: Math.max(nowMs, finger.last.timeMs + kSpacingMs) });
+      if (finger.unsent.length > 0) this.post(finger, {});
+    }
+  }
+
+  private post(finger: Finger, more: StrokeMessage): void {
+    const points = finger.unsent.splice(0).slice(-kPointsMax);
+    finger.sentMs = this.world.nowMs();
+    this.send({
+      strokeId: finger.strokeId,
+      points: points.map(({ timeMs, ...rest }) => ({ timeS: (timeMs - finger.beganMs) / 1000, ...rest })),
+      ...more,
+    });
+  }
+}
+
+function add(finger: Finger, point: FingerPoint): void {
+  if (point.timeMs < finger.last.timeMs + kSpacingMs) return;
+  finger.last = point;
+  finger.unsent.push(point);
+}
