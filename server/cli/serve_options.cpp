@@ -34,8 +34,9 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
   command.add_option("--tls-key", options.tls_key_file, "PEM file with the private key of --tls-cert")
       ->check(isNotEmpty());
   command
-      .add_option("--trust-proxy", options.trusted_proxies,
-                  "Network of a trusted proxy, ADDRESS/BITS: its X-Forwarded-For gives the client's address; may be repeated")
+      .add_option(
+          "--trust-proxy", options.trusted_proxies,
+          "Network of a trusted proxy, ADDRESS/BITS: its X-Forwarded-For gives the client's address; may be repeated")
       ->transform(isNetwork())
       ->delimiter(',');
   command.add_option("--max-sessions", options.max_session_count, "Maximum number of sessions at a time")
@@ -61,10 +62,14 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
                   "Accept JSON Web Tokens of this key: FILE with a public key (RS256, EdDSA), or hs256:FILE with a "
                   "secret; may be repeated")
       ->check(isNotEmpty());
-  command.add_option("--jwt-keys", options.jwt_key_set, "Accept JSON Web Tokens of the keys in this JWK set (JSON)")->check(isNotEmpty());
-  command.add_option("--jwt-issuer", options.jwt_issuer, "Required issuer (claim iss) of a JSON Web Token (default: any)")
+  command.add_option("--jwt-keys", options.jwt_key_set, "Accept JSON Web Tokens of the keys in this JWK set (JSON)")
+      ->check(isNotEmpty());
+  command
+      .add_option("--jwt-issuer", options.jwt_issuer, "Required issuer (claim iss) of a JSON Web Token (default: any)")
       ->check(isText());
-  command.add_option("--jwt-audience", options.jwt_audience, "Required audience (claim aud) of a JSON Web Token (default: any)")
+  command
+      .add_option("--jwt-audience", options.jwt_audience,
+                  "Required audience (claim aud) of a JSON Web Token (default: any)")
       ->check(isText());
   command
       .add_option("--person-commands-per-s", options.person_commands_per_s,
@@ -93,7 +98,8 @@ void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_require
                         "with ','")
       ->check(isNatsServers());
   command
-      .add_option("--nats-ca", options.nats_ca_file, "PEM file with the authorities that sign the NATS server's certificate (default: the system's)")
+      .add_option("--nats-ca", options.nats_ca_file,
+                  "PEM file with the authorities that sign the NATS server's certificate (default: the system's)")
       ->check(isNotEmpty());
   command
       .add_option("--node", options.node, "Name of this process in the cluster (default: the host's name and the port)")

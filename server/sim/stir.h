@@ -6,10 +6,10 @@
 #include <shared/event_uniforms.h>
 
 #include <spindrift/core/result.h>
+#include <spindrift/effects/effects.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_setup/effects.h>
 
 #include "particle_buffers.h"
 #include "particle_pool.h"

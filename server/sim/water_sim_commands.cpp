@@ -1,24 +1,12 @@
 // WaterSim: commands of clients and events of the scene.
-#include <algorithm>
-#include <cmath>
-
 #include <spdlog/spdlog.h>
 
+#include <spindrift/effects/scheduled_effects.h>
 #include <spindrift/sim_setup/open_side.h>
-#include <spindrift/sim_setup/storm.h>
 
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
-namespace {
-
-using core::Error;
-using core::ErrorCode;
-
-/// Largest depth of a splash, as a share of the water's depth.
-constexpr double kLargestDepthShare = 0.9;
-
-}  // namespace
 
 core::Result<void> WaterSim::start(const core::Effect& effect) {
   core::Effect complete = effect;
@@ -43,17 +31,18 @@ const std::vector<Stroke>& WaterSim::strokes() const {
 
 core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {
   if (!parts_->boats)
-    return Error{ErrorCode::kInvalidInput, "this scene has no boats: choose one whose file has \"boats {}\""};
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "this scene has no boats: choose one whose file has \"boats {}\""};
   return parts_->boats->spawn(boat);
 }
 
 core::Result<void> WaterSim::controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
-  if (!parts_->boats) return Error{ErrorCode::kInvalidInput, "this scene has no boats"};
+  if (!parts_->boats) return core::Error{core::ErrorCode::kInvalidInput, "this scene has no boats"};
   return parts_->boats->control(boat_id, throttle_ratio, rudder_ratio);
 }
 
 core::Result<void> WaterSim::removeBoat(std::uint32_t boat_id) {
-  if (!parts_->boats) return Error{ErrorCode::kInvalidInput, "this scene has no boats"};
+  if (!parts_->boats) return core::Error{core::ErrorCode::kInvalidInput, "this scene has no boats"};
   return parts_->boats->remove(boat_id);
 }
 
@@ -79,26 +68,13 @@ std::uint32_t WaterSim::particleCount() const {
 
 void WaterSim::startEvents() {
   if (scene_.storm) {
-    for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s)) {
-      // Effects of clients have priority: a drop without a free slot is dropped.
+    // Effects of clients have priority: a drop without a free slot is dropped.
+    for (const core::Effect& effect : stormEffects(scene_, *derived_.wave, tick_ - start_tick_, derived_.tick_s))
       (void)parts_->effects.start(effect, time_s(),
                                   std::holds_alternative<core::Splash>(effect) ? kSpareSplashes : kSpareCrests);
-    }
   }
-  const double from_s = time_s();
-  const double to_s = from_s + derived_.tick_s;
-  for (const core::TimedEvent& event : scene_.events) {
-    const double repeats =
-        event.every_s > 0 ? std::max(0.0, std::ceil((from_s - event.at_s) / event.every_s - 1e-9)) : 0.0;
-    const double due_s = event.at_s + repeats * event.every_s;
-    if (due_s < from_s - 1e-9 || due_s >= to_s - 1e-9) continue;
-    core::Effect effect = event.effect;
-    // The scene's events were checked for its first depth; reduce them if the water has become shallower.
-    if (auto* splash = std::get_if<core::Splash>(&effect); splash && scene_.wave) {
-      splash->depth_m = std::min(splash->depth_m, kLargestDepthShare * scene_.wave->depth_m);
-    }
+  for (const core::Effect& effect : dueEvents(scene_, time_s(), derived_.tick_s))
     if (auto started = start(effect); !started) spdlog::warn("scene {}: {}", scene_.name, started.error().message);
-  }
 }
 
 }  // namespace spindrift::sim

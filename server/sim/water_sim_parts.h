@@ -5,9 +5,9 @@
 #include <optional>
 #include <vector>
 
+#include <spindrift/effects/effects.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/sim_setup/basin.h>
-#include <spindrift/sim_setup/effects.h>
 
 #include "boats.h"
 #include "breakers.h"

@@ -10,7 +10,7 @@
 #include <shared/fixed_point.h>
 
 #include <spindrift/sim_setup/basin.h>
-#include <spindrift/sim_setup/effects.h>
+#include <spindrift/sim_setup/pulse.h>
 
 #include "create_all.h"
 

@@ -8,9 +8,9 @@
 
 #include <spindrift/core/fourier.h>
 #include <spindrift/core/random.h>
-#include <spindrift/sim_setup/effects.h>
 #include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/incident_waves.h>
+#include <spindrift/sim_setup/pulse.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 

@@ -67,7 +67,7 @@ void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
 
 sim::Stroke toStroke(const v1::ActiveStroke& message) {
   sim::StrokePart part = toStrokePart(message.stroke());
-  return {part.person_id, part.stroke_id,   part.radius_m,    part.depth_m,  std::move(part.points), part.ends,
+  return {part.person_id,   part.stroke_id,    part.radius_m, part.depth_m,  std::move(part.points), part.ends,
           message.play_s(), message.still_s(), message.x_m(), message.z_m(), message.level_ratio()};
 }
 

@@ -14,11 +14,9 @@ using std::chrono::seconds;
 /// A command that took longer counts as not answered: heavy ones wait for a second at most, and a takeover of a room
 /// or a change of its scene takes less than this.
 constexpr seconds kAnswerPatience{20};
-constexpr milliseconds kSplashInterval{40};
-constexpr int kStrokeSplashes = 15;
+constexpr milliseconds kPointInterval{40};
+constexpr int kStrokePoints = 15;
 constexpr double kStrokeLength_m = 3.0;
-constexpr double kSplashDepth_m = 0.05;
-constexpr double kSplashRadius_m = 0.6;
 constexpr milliseconds kSteeringInterval{500};
 constexpr double kRates_hz[] = {0.0, 5.0, 20.0, 30.0, 60.0};
 constexpr v1::Layer kLayers[] = {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_FOAM, v1::LAYER_BODIES};
@@ -50,7 +48,7 @@ void SoakClient::turn(Clock::time_point now) {
   giveUpAnswers(now);
   if (now >= leave_at_) return leave(now);
   if (!is_greeted_) return;
-  if (splashes_left_ > 0 && now >= next_splash_) goOnWithStroke(now);
+  if (points_left_ > 0 && now >= next_point_) continueStroke(now);
   if (now >= next_stroke_) {
     next_stroke_ = now + crowd_.untilNext(crowd_.options.strokes_per_s);
     beginStroke(now);
@@ -99,7 +97,7 @@ void SoakClient::opened() {
   next_stroke_ = now + crowd_.untilNext(options.strokes_per_s);
   next_boat_ = now + crowd_.untilNext(options.boats_per_s);
   next_level_ = now + crowd_.untilNext(options.level_changes_per_s);
-  splashes_left_ = 0;
+  points_left_ = 0;
   if (!comes_back_) boat_ = 0;
 }
 
@@ -281,24 +279,27 @@ void SoakClient::beginStroke(Clock::time_point now) {
     send(std::move(message), false);
     return;
   }
-  splashes_left_ = kStrokeSplashes;
-  next_splash_ = now;
+  points_left_ = kStrokePoints;
+  next_point_ = now;
+  ++stroke_id_;
   const double direction_rad = crowd_.between(-M_PI, M_PI);
   stroke_x_m_ = crowd_.between(-half_x_m_, half_x_m_);
   stroke_z_m_ = crowd_.between(-half_z_m_, half_z_m_);
-  stroke_dx_m_ = kStrokeLength_m / kStrokeSplashes * std::cos(direction_rad);
-  stroke_dz_m_ = kStrokeLength_m / kStrokeSplashes * std::sin(direction_rad);
+  stroke_dx_m_ = kStrokeLength_m / kStrokePoints * std::cos(direction_rad);
+  stroke_dz_m_ = kStrokeLength_m / kStrokePoints * std::sin(direction_rad);
 }
 
-void SoakClient::goOnWithStroke(Clock::time_point now) {
-  --splashes_left_;
-  next_splash_ = now + kSplashInterval;
+void SoakClient::continueStroke(Clock::time_point now) {
+  --points_left_;
+  next_point_ = now + kPointInterval;
   v1::ClientMessage message;
-  v1::Splash& splash = *message.mutable_command()->mutable_splash();
-  splash.set_x_m(std::clamp(stroke_x_m_, -half_x_m_, half_x_m_));
-  splash.set_z_m(std::clamp(stroke_z_m_, -half_z_m_, half_z_m_));
-  splash.set_radius_m(kSplashRadius_m);
-  splash.set_depth_m(kSplashDepth_m);
+  v1::Stroke& stroke = *message.mutable_command()->mutable_stroke();
+  stroke.set_stroke_id(stroke_id_);
+  stroke.set_ends(points_left_ == 0);
+  v1::StrokePoint& point = *stroke.add_points();
+  point.set_time_s(std::chrono::duration<double>(kPointInterval).count() * (kStrokePoints - 1 - points_left_));
+  point.set_x_m(std::clamp(stroke_x_m_, -half_x_m_, half_x_m_));
+  point.set_z_m(std::clamp(stroke_z_m_, -half_z_m_, half_z_m_));
   stroke_x_m_ += stroke_dx_m_;
   stroke_z_m_ += stroke_dz_m_;
   send(std::move(message), false);

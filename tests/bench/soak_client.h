@@ -73,7 +73,7 @@ class SoakClient {
   void subscribe(v1::Layer layer, double rate_hz, v1::Level level, v1::Packing packing, bool adapts);
   void changeLevel();
   void beginStroke(Clock::time_point now);
-  void goOnWithStroke(Clock::time_point now);
+  void continueStroke(Clock::time_point now);
   void launchOrRemoveBoat();
   void steer();
   void send(v1::ClientMessage message, bool is_heavy);
@@ -92,11 +92,12 @@ class SoakClient {
   Clock::time_point try_at_;
   Clock::time_point leave_at_;
   Clock::time_point next_stroke_;
-  Clock::time_point next_splash_;
+  Clock::time_point next_point_;
   Clock::time_point next_boat_;
   Clock::time_point next_steering_;
   Clock::time_point next_level_;
-  int splashes_left_ = 0;
+  int points_left_ = 0;
+  std::uint32_t stroke_id_ = 0;
   double stroke_x_m_ = 0.0;
   double stroke_z_m_ = 0.0;
   double stroke_dx_m_ = 0.0;

@@ -24,7 +24,8 @@ TEST_F(ServerStrokes, MoveTheWaterForAllAndShowWhoseFingerItIs) {
   watches.subscribe(v1::LAYER_SURFACE);
   ASSERT_TRUE(draws.apply(stroke(5, 0.0, -1.0, 0.5)));
   ASSERT_TRUE(draws.apply(stroke(5, 0.4, 1.0, 0.5)));
-  const auto seen = fingersWhen(watches, [](const v1::Strokes& s) { return s.fingers_size() == 1 && s.fingers(0).x_m() > 0; });
+  const auto seen =
+      fingersWhen(watches, [](const v1::Strokes& s) { return s.fingers_size() == 1 && s.fingers(0).x_m() > 0; });
   ASSERT_TRUE(seen);
   EXPECT_EQ(seen->fingers(0).person_id(), draws.welcome().person_id());
   EXPECT_EQ(seen->fingers(0).stroke_id(), 5u);

@@ -46,6 +46,13 @@ class Crowd {
         return static_cast<bool>(water.start(scene::toCore(command.splash())));
       case v1::Command::kBreakingWave:
         return static_cast<bool>(water.start(scene::toCore(command.breaking_wave())));
+      case v1::Command::kStroke: {
+        const v1::Stroke& stroke = command.stroke();
+        sim::StrokePart part{1, ++stroke_id_, stroke.radius_m(), stroke.depth_m(), {}, stroke.ends()};
+        for (const v1::StrokePoint& p : stroke.points())
+          part.points.push_back({p.time_s(), p.x_m(), p.z_m(), p.pressure_ratio()});
+        return static_cast<bool>(water.draw(part));
+      }
       case v1::Command::kSpawnBoat:
         return static_cast<bool>(water.spawnBoat(scene::toCore(command.spawn_boat().boat())));
       case v1::Command::kControlBoat: {
@@ -94,6 +101,19 @@ class Crowd {
     v1::Command out;
     if (kind < 1 && sends_ == Sends::kEverything) {
       out.mutable_reset();
+    } else if (kind < 100) {
+      v1::Stroke& stroke = *out.mutable_stroke();
+      stroke.set_radius_m(dice_.between(0.1, 4.0));
+      stroke.set_depth_m(stroke.radius_m() * dice_.between(0.05, 0.5));
+      stroke.set_ends(true);
+      const int count = 1 + dice_.upTo(6);
+      for (int k = 0; k < count; ++k) {
+        v1::StrokePoint& point = *stroke.add_points();
+        point.set_time_s(0.1 * k);
+        point.set_x_m(dice_.between(-half_m, half_m));
+        point.set_z_m(dice_.between(-half_z_m, half_z_m));
+        point.set_pressure_ratio(dice_.between(0.0, 1.0));
+      }
     } else if (kind < 250) {
       v1::Splash& splash = *out.mutable_splash();
       splash.set_x_m(dice_.between(-half_m, half_m));
@@ -167,6 +187,7 @@ class Crowd {
   const v1::ParameterDescription* costly_ = nullptr;  ///< set last, to be put back next
   double costly_value_before_ = 0.0;
   std::size_t next_parameter_ = 0;
+  std::uint32_t stroke_id_ = 0;
   std::map<std::string, int> accepted_;  ///< changes of each parameter that the room took
   Dice dice_{20231121};
 };

@@ -61,8 +61,8 @@ TEST_P(StrokesOnDevice, MoveWaterAndKeepItsVolumeToTheUnit) {
   WaterSim& water = make(basin());
   const double before_m = sum(water.copyState());
   // Along a wall into a corner, where a part of the dent has no water to take.
-  ASSERT_TRUE(water.draw(
-      {1, 1, kRadius_m, kDepth_m, {{0, -3.9, -3.9, 1}, {0.5, 0.0, -3.9, 1}, {1.0, 3.9, -3.9, 0.5}}, true}));
+  ASSERT_TRUE(
+      water.draw({1, 1, kRadius_m, kDepth_m, {{0, -3.9, -3.9, 1}, {0.5, 0.0, -3.9, 1}, {1.0, 3.9, -3.9, 0.5}}, true}));
   double most_m = 0.0;
   for (int k = 0; k < 120; ++k) {
     water.step();

@@ -61,7 +61,8 @@ TEST(StrokeCommands, WhatCannotBeIsRejectedWithItsField) {
   EXPECT_EQ(off.field, "stroke.points[0].z_m");
   EXPECT_THAT(off.message, HasSubstr("lies outside of the water; choose -5 to 5 m"));
 
-  const auto nan = rejected([](v1::Stroke& s) { s.mutable_points(0)->set_x_m(std::numeric_limits<double>::quiet_NaN()); });
+  const auto nan =
+      rejected([](v1::Stroke& s) { s.mutable_points(0)->set_x_m(std::numeric_limits<double>::quiet_NaN()); });
   EXPECT_EQ(nan.reason, v1::REJECT_REASON_NOT_FINITE);
   EXPECT_EQ(nan.field, "stroke.points[0].x_m");
 

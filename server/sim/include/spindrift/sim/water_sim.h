@@ -13,6 +13,7 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
+#include <spindrift/effects/strokes.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
@@ -22,7 +23,6 @@
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_setup/strokes.h>
 #include <spindrift/sim_state/carried_state.h>
 #include <spindrift/sim_state/saved_state.h>
 #include <spindrift/sim_state/state_copy.h>

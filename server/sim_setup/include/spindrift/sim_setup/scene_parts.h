@@ -27,7 +27,7 @@ bool exchangesWater(const core::Scene& scene);
 bool hasMatchedLayer(const core::Scene& scene);
 
 /// Returns whether the wind waves of a storm come in through absorbing sides (sea_state.h); in other scenes with a
-/// storm they are gusts (storm.h).
+/// storm they are gusts (scheduled_effects.h).
 bool hasWindSea(const core::Scene& scene);
 /// Returns whether particles or boats read the surface.
 bool isSampled(const core::Scene& scene);

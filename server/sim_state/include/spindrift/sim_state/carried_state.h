@@ -6,8 +6,8 @@
 #include <vector>
 
 #include <spindrift/core/scene.h>
+#include <spindrift/effects/effects.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_setup/effects.h>
 #include <spindrift/sim_setup/sea_state.h>
 #include <spindrift/sim_state/state_copy.h>
 

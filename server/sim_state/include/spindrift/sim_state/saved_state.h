@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <spindrift/effects/effects.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_setup/effects.h>
 #include <spindrift/sim_state/carried_state.h>
 
 namespace spindrift::sim {

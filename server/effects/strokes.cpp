@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/sim_setup/strokes.h>
+#include <spindrift/effects/strokes.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,12 +1,11 @@
-
 #include <algorithm>
 #include <cmath>
 
 #include <shared/event_uniforms.h>
 
 #include <spindrift/core/random.h>
+#include <spindrift/effects/scheduled_effects.h>
 #include <spindrift/sim_setup/scene_parts.h>
-#include <spindrift/sim_setup/storm.h>
 
 namespace spindrift::sim {
 namespace {
@@ -22,7 +21,25 @@ constexpr double kGroupLengthShare = 0.09;  ///< of the shorter side of the wate
 constexpr double kGroupSpread_deg = 25.0;
 constexpr double kWaveDepthShare = 0.5;  ///< of the water's depth, at most
 
+/// Largest depth of a splash, as a share of the water's depth.
+constexpr double kLargestDepthShare = 0.9;
+
 }  // namespace
+
+std::vector<core::Effect> dueEvents(const core::Scene& scene, double from_s, double tick_s) {
+  std::vector<core::Effect> out;
+  const double to_s = from_s + tick_s;
+  for (const core::TimedEvent& event : scene.events) {
+    const double repeats =
+        event.every_s > 0 ? std::max(0.0, std::ceil((from_s - event.at_s) / event.every_s - 1e-9)) : 0.0;
+    const double due_s = event.at_s + repeats * event.every_s;
+    if (due_s < from_s - 1e-9 || due_s >= to_s - 1e-9) continue;
+    core::Effect& effect = out.emplace_back(event.effect);
+    if (auto* splash = std::get_if<core::Splash>(&effect); splash && scene.wave)
+      splash->depth_m = std::min(splash->depth_m, kLargestDepthShare * scene.wave->depth_m);
+  }
+  return out;
+}
 
 std::vector<core::Effect> stormEffects(const core::Scene& scene, const WaveLayout& wave, std::uint64_t tick,
                                        double tick_s) {

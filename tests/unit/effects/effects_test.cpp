@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/sim_setup/effects.h>
+#include <spindrift/effects/effects.h>
 
 #include "small_scene.h"
 

@@ -8,14 +8,10 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
+#include <spindrift/effects/strokes.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_setup/strokes.h>
 
 namespace spindrift::sim {
-
-/// Returns 0 before the pulse, 1 after it, and a smooth ramp between (smoothstep). `phase`: time since the start over
-/// the duration.
-double pulse(double phase);
 
 /// The water that effects act on: a rectangle centred on the origin.
 struct EffectDomain {
@@ -52,7 +48,8 @@ class Effects {
     double start_s = 0.0;
   };
   [[nodiscard]] const std::vector<Active>& active() const { return active_; }
-  /// Replaces them all but the strokes. Returns false, with nothing changed, if there are more of a kind than can be active.
+  /// Replaces them all but the strokes. Returns false, with nothing changed, if there are more of a kind than can be
+  /// active.
   bool resume(std::vector<Active> active);
 
  private:

@@ -6,7 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/sim_setup/effects.h>
+#include <spindrift/effects/effects.h>
+#include <spindrift/sim_setup/pulse.h>
 
 namespace spindrift::sim {
 namespace {
@@ -107,11 +108,6 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
 
 EffectDomain domainOf(const WaveLayout& wave) {
   return {wave.length_m, wave.width_m, wave.cell_m, wave.speed_mps, wave.dt_s, wave.dispersing_depth_m};
-}
-
-double pulse(double phase) {
-  const double t = std::clamp(phase, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
 }
 
 core::Result<void> Effects::start(const core::Effect& effect, double time_s, std::size_t spare) {

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/sim_setup/effects.h>
+#include <spindrift/effects/effects.h>
 
 namespace spindrift::sim {
 namespace {
