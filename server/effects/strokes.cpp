@@ -15,7 +15,11 @@ constexpr double kDelay_s = 0.05;
 /// A dent takes this long from nothing to its full depth, and back.
 constexpr double kPress_s = 0.12;
 
-/// Pace of the play clock: slower while points run short, faster while they pile up.
+/// A stroke moves less water where the surface is farther than this many times its depth from its rest, and none from
+/// twice that on.
+constexpr double kHighestDepths = 2.0;
+
+/// Pace of the play clock while the finger is down: slower while points run short, faster while they pile up.
 double paceOf(double waiting_s) {
   if (waiting_s < 0.4 * kDelay_s) return 0.75;
   if (waiting_s < 2.5 * kDelay_s) return 1.0;
@@ -33,14 +37,24 @@ StrokePoint play(Stroke& stroke, double dt_s) {
   std::vector<StrokePoint>& path = stroke.path;
   const double newest_s = path.back().time_s;
   double waiting_s = newest_s - stroke.play_s;
-  if (waiting_s > Strokes::kMaxDelay_s) stroke.play_s = newest_s - (waiting_s = kDelay_s);
-  // The last points of a lifted finger are not waited for.
-  const double pace = stroke.is_lifted ? std::max(paceOf(waiting_s), 1.0) : paceOf(waiting_s);
+  const double most_s = stroke.is_lifted ? Strokes::kMaxLiftedDelay_s : Strokes::kMaxDelay_s;
+  if (waiting_s > most_s) stroke.play_s = newest_s - (waiting_s = kDelay_s);
+  const double pace = stroke.is_lifted ? 1.0 : paceOf(waiting_s);
   stroke.play_s = std::min(stroke.play_s + pace * dt_s, newest_s);
   const auto next = std::ranges::upper_bound(path, stroke.play_s, {}, &StrokePoint::time_s);
   if (next == path.begin()) return path.front();  // the delay before the first point
   path.erase(path.begin(), next - 1);
   return path.size() == 1 ? path.front() : mixed(path[0], path[1], stroke.play_s);
+}
+
+/// Number of fingers at the place of one, counting those near it in part.
+double crowdAt(const Stroke& stroke, const std::vector<Stroke>& all) {
+  double count = 0.0;
+  for (const Stroke& other : all) {
+    const double away_m = std::hypot(other.x_m - stroke.x_m, other.z_m - stroke.z_m);
+    count += std::max(0.0, 1.0 - away_m / (other.radius_m + stroke.radius_m));
+  }
+  return count;  // at least 1: itself
 }
 
 void press(const Stroke& stroke, double gain, shared::EventUniforms& out) {
@@ -51,6 +65,7 @@ void press(const Stroke& stroke, double gain, shared::EventUniforms& out) {
   splash.z_m = static_cast<float>(stroke.z_m);
   splash.radius_m = static_cast<float>(stroke.radius_m);
   splash.depth_m = static_cast<float>(stroke.depth_m);
+  splash.highest_m = static_cast<float>(kHighestDepths * stroke.depth_m);
 }
 
 }  // namespace
@@ -96,8 +111,10 @@ void Strokes::advance(double dt_s, shared::EventUniforms& out) {
     stroke.is_lifted = stroke.is_lifted || stroke.still_s > kMaxSilence_s;
     const bool is_over = stroke.is_lifted && stroke.play_s >= stroke.path.back().time_s;
     const double way_m = std::hypot(at.x_m - stroke.x_m, at.z_m - stroke.z_m);
-    // A finger that is faster than a radius per step would press a row of separate dents: it presses less.
-    const double wanted = is_over ? 0.0 : at.pressure_ratio * std::min(1.0, stroke.radius_m / std::max(way_m, 1e-9));
+    // A finger that is faster than a radius per step would press a row of separate dents: it presses less. So do
+    // fingers at one place: together they press as one.
+    const double most_ratio = std::min(1.0, stroke.radius_m / std::max(way_m, 1e-9)) / crowdAt(stroke, active_);
+    const double wanted = is_over ? 0.0 : at.pressure_ratio * most_ratio;
     const double most = dt_s / kPress_s;
     const double level = stroke.level_ratio + std::clamp(wanted - stroke.level_ratio, -most, most);
     if (way_m == 0.0) {

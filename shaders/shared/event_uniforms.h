@@ -33,8 +33,8 @@ struct EventUniform {
   float speed_mps;     // crest: of the wave. splash: of the crown that it produces now; 0 for rain drops and strokes
   float depth_m;       // splash: full depth
   float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
-  float unused_x;
-  float unused_y;
+  float highest_m;     // stroke: it moves less water where the surface is farther than this from its rest; 0: no bound
+  float unused;
 };
 #ifdef __cplusplus
 struct EventUniforms {

@@ -47,6 +47,7 @@ void main() {
     return;
   }
   const vec2 p = waveCellCentre(cell);
+  const int i = cell.x + n.x * cell.y;
   const ivec2 next = nextCells(cell, n);
   const vec4 shares = effectShares(cell, next, n);
   ivec2 moved = ivec2(0);
@@ -56,13 +57,14 @@ void main() {
     const vec2 centre = vec2(e.x_m, e.z_m);
     const vec2 at_x = acrossSides(p + vec2(0.5 * cell_m, 0.0) - centre);
     const vec2 at_z = acrossSides(p + vec2(0.0, 0.5 * cell_m) - centre);
-    const vec2 displaced_m2 =
+    vec2 displaced_m2 =
         passing(-vec2(splashDisplacement(at_x, e.radius_m).x, splashDisplacement(at_z, e.radius_m).y), shares);
+    if (e.highest_m > 0.0 && displaced_m2 != vec2(0.0))
+      displaced_m2 *= vec2(strokeShare(i, next.x, e.highest_m), strokeShare(i, next.y, e.highest_m));
     moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
   }
   if (moved == ivec2(0)) return;
   const Flow open = conductanceOf(cell, n);
-  const int i = cell.x + n.x * cell.y;
   if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
   if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
 }

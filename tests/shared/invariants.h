@@ -24,7 +24,11 @@ inline bool isFinite(const google::protobuf::Message& message) {
   std::vector<const FieldDescriptor*> fields;
   reflection.ListFields(message, &fields);
   return std::ranges::all_of(fields, [&](const FieldDescriptor* field) {
-    if (field->is_repeated()) return false;  // no command has one
+    if (field->is_repeated()) {  // only of messages
+      for (int k = 0; k < reflection.FieldSize(message, field); ++k)
+        if (!isFinite(reflection.GetRepeatedMessage(message, field, k))) return false;
+      return true;
+    }
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_DOUBLE)
       return std::isfinite(reflection.GetDouble(message, field));
     if (field->cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) return isFinite(reflection.GetMessage(message, field));

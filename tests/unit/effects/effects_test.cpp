@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/effects/effects.h>
+#include <spindrift/sim_setup/pulse.h>
 
 #include "small_scene.h"
 

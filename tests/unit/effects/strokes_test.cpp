@@ -116,6 +116,14 @@ TEST(Strokes, PathIsBoundedAndNeverFarBehind) {
   EXPECT_TRUE(strokes.active().empty());
 }
 
+TEST(Strokes, WholeStrokeInOneMessageIsDrawnAtItsOwnPace) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part(line(0.0, 4.0, 0.1), true)));
+  for (int k = 0; k < 205; ++k) stepOf(strokes);
+  ASSERT_EQ(strokes.active().size(), 1u);
+  EXPECT_NEAR(strokes.active()[0].x_m, 2.0, 0.011);
+}
+
 TEST(Strokes, FasterThanARadiusPerStepPressesLess) {
   Strokes strokes;
   ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}})));
@@ -125,6 +133,15 @@ TEST(Strokes, FasterThanARadiusPerStepPressesLess) {
     const auto out = stepOf(strokes);
     for (std::uint32_t i = 0; i < out.splash_count; ++i) EXPECT_LE(std::abs(out.splashes[i].gain_m), 0.2f + 1e-6f);
   }
+}
+
+TEST(Strokes, FingersAtOnePlacePressAsOne) {
+  Strokes strokes;
+  for (std::uint32_t finger = 0; finger < 5; ++finger) ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}}, false, finger)));
+  ASSERT_TRUE(strokes.add(part({{0.0, 3, 0, 1}}, false, 9)));
+  for (int k = 0; k < 50; ++k) stepOf(strokes);
+  for (std::size_t finger = 0; finger < 5; ++finger) EXPECT_NEAR(strokes.active()[finger].level_ratio, 0.2, 1e-9);
+  EXPECT_NEAR(strokes.active()[5].level_ratio, 1.0, 1e-9) << "far from the others";
 }
 
 TEST(Strokes, LimitsAreNamed) {

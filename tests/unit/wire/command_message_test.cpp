@@ -20,7 +20,8 @@ void fill(google::protobuf::Message& message) {
     const FieldDescriptor& field = *message.GetDescriptor()->field(i);
     switch (field.cpp_type()) {
       case FieldDescriptor::CPPTYPE_MESSAGE:
-        fill(*reflection.MutableMessage(&message, &field));
+        fill(field.is_repeated() ? *reflection.AddMessage(&message, &field)
+                                 : *reflection.MutableMessage(&message, &field));
         break;
       case FieldDescriptor::CPPTYPE_DOUBLE: {
         const v1::ParameterOptions* options = scene::parameterOptions(field);

@@ -54,8 +54,10 @@ class Strokes {
   static constexpr std::size_t kPersonMaxCount = 10;
   /// Points of a path that wait; the oldest give way.
   static constexpr std::size_t kPathMaxCount = 256;
-  /// Longest delay of a path; beyond it the finger jumps.
-  static constexpr double kMaxDelay_s = 0.5;
+  /// Longest that a path may lie ahead of the play clock, while the finger is down and once it is lifted; beyond that
+  /// the finger jumps. A whole stroke may come in one part.
+  static constexpr double kMaxDelay_s = 2.0;
+  static constexpr double kMaxLiftedDelay_s = 10.0;
   /// A finger of which nothing has been heard for this long is lifted.
   static constexpr double kMaxSilence_s = 2.0;
 
