@@ -9,7 +9,7 @@
 namespace spindrift::sim {
 
 CarriedState WaterSim::carriedState() {
-  return {.scene = scene_, .derived = derived_, .time_s = time_s(), .state = copyState(), .host = parts_->hostState()};
+  return {.scene = scene_, .derived = derived_, .time_s = time_s(), .state = copyState(), .host = hostState()};
 }
 
 core::Result<void> WaterSim::takeOver(const CarriedState& carried) {

@@ -80,8 +80,6 @@ struct WaterSim::Parts {
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
   /// Returns the buffers that the parts declare.
   StateBuffers stateBuffers();
-  /// Returns the state that lasts outside these buffers.
-  [[nodiscard]] HostState hostState() const;
   /// Number of live particles. Waits in two-way scenes.
   [[nodiscard]] std::size_t liveCount(const Derived& derived) const;
   core::Result<void> makeCheckpoints(gpu::Context& ctx);

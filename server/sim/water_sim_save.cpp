@@ -27,13 +27,13 @@ StateBuffers WaterSim::stateBuffers() {
   return parts_->stateBuffers();
 }
 
-HostState WaterSim::Parts::hostState() const {
-  HostState out{.effects = effects};
-  if (boats) out.boats = boats->carried();
-  if (wind_sea) out.sea = wind_sea->carried();
-  if (follower) {
-    out.patch_x_m = follower->x_m();
-    out.patch_z_m = follower->z_m();
+HostState WaterSim::hostState() const {
+  HostState out{.effects = parts_->effects, .boats = {{}, first_boat_id_, first_boat_id_}};
+  if (parts_->boats) out.boats = parts_->boats->carried();
+  if (parts_->wind_sea) out.sea = parts_->wind_sea->carried();
+  if (parts_->follower) {
+    out.patch_x_m = parts_->follower->x_m();
+    out.patch_z_m = parts_->follower->z_m();
   }
   return out;
 }
@@ -58,7 +58,7 @@ SavedState WaterSim::savedState() {
     out.buffers.push_back(
         {each.buffer->name(), each.buffer->downloadVector<std::uint32_t>(each.wordCount(live_count))});
   }
-  out.host = parts_->hostState();
+  out.host = hostState();
   return out;
 }
 
@@ -119,10 +119,8 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
 
 void WaterSim::continueWith(const HostState& host, std::uint64_t run_tick) {
   parts_->effects = host.effects;
-  if (parts_->boats) {
-    parts_->boats->takeOver(host.boats);
-    first_boat_id_ = host.boats.first_id;
-  }
+  if (parts_->boats) parts_->boats->takeOver(host.boats);
+  first_boat_id_ = host.boats.first_id;
   if (parts_->wind_sea) parts_->wind_sea->takeOver(host.sea);
   if (parts_->follower) parts_->follower->goTo(host.patch_x_m, host.patch_z_m);
   start_tick_ = tick_ - run_tick;  // modulo 2^64

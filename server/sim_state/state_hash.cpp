@@ -18,6 +18,7 @@ class Hash {
   void operator()(const T& value) {
     if constexpr (std::is_same_v<T, Effects>) {
       (*this)(value.active());
+      if (const auto& strokes = value.strokes().active(); !strokes.empty()) (*this)(strokes);
     } else if constexpr (std::is_same_v<T, double>) {
       add(std::bit_cast<std::uint64_t>(value));
     } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {

@@ -176,5 +176,18 @@ TEST_F(TakeOver, OfOtherWaterIsRefusedAndChangesNothing) {
   EXPECT_EQ(next->stateHash(), before);
 }
 
+TEST_F(OnDevice, WaterWithoutBoatsKeepsTheNumberOfTheNextBoat) {
+  core::Scene scene = smallScene();
+  WaterSim& water = make(scene);
+  water.numberBoatsFrom(33);
+  const SavedState saved = water.savedState();
+  const CarriedState carried = water.carriedState();
+  for (const bool restores : {true, false}) {
+    WaterSim& fresh = make(scene);
+    ASSERT_TRUE(restores ? fresh.restore(saved) : fresh.takeOver(carried));
+    EXPECT_EQ(fresh.nextBoatId(), 33u) << (restores ? "restored" : "taken over");
+  }
+}
+
 }  // namespace
 }  // namespace spindrift::sim

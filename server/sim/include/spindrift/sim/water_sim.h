@@ -187,6 +187,8 @@ class WaterSim {
   std::vector<double> copyElevation();
   /// nullopt in scenes without.
   std::optional<StateBuffer> carriedBuffer(std::string_view name);
+  /// Returns the state that lasts outside the buffers.
+  [[nodiscard]] HostState hostState() const;
   /// Continues from there, at so many ticks since the start, with the buffers as they are now.
   void continueWith(const HostState& host, std::uint64_t run_tick);
   core::Result<void> replaceParticles(const PreparedScene& prepared);
