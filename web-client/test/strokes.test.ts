@@ -67,6 +67,17 @@ describe("StrokeSender", () => {
     for (const { points } of sent) expect(points!.at(-1)).toMatchObject({ xM: 0.5 });
   });
 
+  it("keeps ten fingers within the commands that the server takes from a session", () => {
+    const { world, sent, sender } = begin();
+    for (let id = 0; id < 10; ++id) sender.begin(id, [at(0, id)], kSize);
+    for (let ms = 5; ms <= 10_000; ms += 5) {
+      world.pass(5);
+      for (let id = 0; id < 10; ++id) sender.move(id, at(ms, id + ms));
+    }
+    expect(sent.length).toBeGreaterThan(1000);
+    expect(sent.length).toBeLessThan(1500);
+  });
+
   it("gives each finger a number and ends them all", () => {
     const { sent, sender } = begin();
     sender.begin(7, [at(0, 0)], kSize);

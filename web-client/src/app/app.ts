@@ -237,7 +237,7 @@ export class App {
   private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
     const shape = scene.shape();
-    this.fingers.update(scene.camera, scene.shownTimeS, scene.ripple.down(), this.people.ownId, (xM, zM) => shape?.elevationAtM(xM, zM) ?? 0, covered, atS);
+    this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => shape?.elevationAtM(xM, zM) ?? 0, covered, atS);
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 

@@ -1,5 +1,5 @@
 // Rings over the fingers in the water, in the colours of their people, with names after a moment. One's own follows the pointer, those of
-// others come with the server's list. Hidden from screen readers: they move too fast to be read out.
+// others are shown as soon as the server's list comes: ahead of the water by the delay of the pictures, as one's own are. Hidden from screen readers: they move too fast to be read out.
 import { Matrix4, type PerspectiveCamera } from "three";
 
 import type { PersonInfo } from "../codec/people";
@@ -10,8 +10,6 @@ import { tagPlace } from "./tag_place";
 
 /** A name is shown from then on, so that short strokes do not flicker. */
 const kNameAfterS = 1;
-/** Lists that wait for their picture: more than there are frames between server and picture. */
-const kListsMax = 40;
 
 interface Ring {
   element: HTMLElement;
@@ -22,7 +20,7 @@ interface Ring {
 export class FingerTags {
   private readonly element = make("div", { class: "finger-tags", "aria-hidden": "true", "data-testid": "finger-tags" });
   private readonly rings = new Map<string, Ring>();
-  private readonly lists: FingersInfo[] = [];
+  private fingers: FingersInfo["fingers"] = [];
   private people = new Map<number, PersonInfo>();
   private readonly seen = new Matrix4();
 
@@ -35,25 +33,17 @@ export class FingerTags {
     this.people = new Map(people.map((person) => [person.personId, person]));
   }
 
-  take(list: FingersInfo): void {
-    // A restored or restarted scene has an earlier time.
-    if (list.timeS < (this.lists.at(-1)?.timeS ?? -Infinity)) this.lists.length = 0;
-    this.lists.push(list);
-    if (this.lists.length > kListsMax) this.lists.shift();
+  take({ fingers }: FingersInfo): void {
+    this.fingers = fingers;
   }
 
   clear(): void {
-    this.lists.length = 0;
+    this.fingers = [];
   }
 
-  /**
-   * Called for each picture. `shownS`: simulation time of the picture. `own`: where one's own fingers are now; `ownId`: whose the list's are
-   * left out.
-   */
-  update(camera: PerspectiveCamera, shownS: number | undefined, own: ReadonlyMap<number, { xM: number; zM: number }>, ownId: number, heightAtM: (xM: number, zM: number) => number, covered: readonly PixelRect[], nowS: number): void {
+  /** Called for each picture. `own`: where one's own fingers are now; `ownId`: whose the list's are left out. */
+  update(camera: PerspectiveCamera, own: ReadonlyMap<number, { xM: number; zM: number }>, ownId: number, heightAtM: (xM: number, zM: number) => number, covered: readonly PixelRect[], nowS: number): void {
     this.seen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    while (shownS !== undefined && (this.lists[1]?.timeS ?? Infinity) <= shownS) this.lists.shift();
-    const list = this.lists[0];
     const drawn = new Set<string>();
     const show = (key: string, personId: number, xM: number, zM: number, named: boolean): void => {
       const place = tagPlace(this.seen, [xM, heightAtM(xM, zM), zM], window.innerWidth, window.innerHeight, covered);
@@ -66,8 +56,7 @@ export class FingerTags {
       setText(ring.name, named && nowS - ring.sinceS >= kNameAfterS ? (person?.name ?? "") : "");
     };
     for (const [pointerId, { xM, zM }] of own) show(`own ${pointerId}`, ownId, xM, zM, false);
-    if (list && (shownS === undefined || list.timeS <= shownS))
-      for (const { personId, strokeId, xM, zM } of list.fingers) if (personId !== ownId || ownId === 0) show(`${personId} ${strokeId}`, personId, xM, zM, true);
+    for (const { personId, strokeId, xM, zM } of this.fingers) if (personId !== ownId || ownId === 0) show(`${personId} ${strokeId}`, personId, xM, zM, true);
     for (const [key, { element }] of this.rings)
       if (!drawn.has(key)) {
         element.remove();

@@ -24,6 +24,8 @@ export interface FingerSize {
 export type StrokeMessage = MessageInitShape<typeof StrokeSchema>;
 
 const kIntervalMs = 33;
+/** More fingers take turns at a lower rate, within the commands per second that the server takes from a session. */
+const kFullRateFingers = 4;
 /** A resting finger is heard of this often; the server lifts one that is silent for 2 s. */
 const kRestMs = 700;
 /** Points nearer in time add nothing. */
@@ -57,7 +59,7 @@ export class StrokeSender {
     this.fingers.set(pointerId, finger);
     for (const point of points.slice(1)) add(finger, point);
     this.post(finger, { radiusM, depthM });
-    this.timer ??= this.world.setTimer(() => this.flush(), kIntervalMs);
+    this.timer ??= this.world.setTimer(() => this.flush(), this.intervalMs);
   }
 
   move(pointerId: number, point: FingerPoint): void {
@@ -76,8 +78,12 @@ export class StrokeSender {
     for (const pointerId of [...this.fingers.keys()]) this.end(pointerId);
   }
 
+  private get intervalMs(): number {
+    return kIntervalMs * Math.max(this.fingers.size / kFullRateFingers, 1);
+  }
+
   private flush(): void {
-    this.timer = this.fingers.size > 0 ? this.world.setTimer(() => this.flush(), kIntervalMs) : undefined;
+    this.timer = this.fingers.size > 0 ? this.world.setTimer(() => this.flush(), this.intervalMs) : undefined;
     const nowMs = this.world.nowMs();
     for (const finger of this.fingers.values()) {
       if (finger.unsent.length === 0 && nowMs - finger.sentMs >= kRestMs) add(finger, { ...finger.last, timeMs: Math.max(nowMs, finger.last.timeMs + kSpacingMs) });
