@@ -19,11 +19,13 @@ constexpr double kPress_s = 0.12;
 /// twice that on.
 constexpr double kHighestDepths = 2.0;
 
-/// Pace of the play clock while the finger is down: slower while points run short, faster while they pile up.
+/// Pace of the play clock: slower while points run short, faster while they pile up, as in a room that is slower than
+/// the clock of its clients.
 double paceOf(double waiting_s) {
   if (waiting_s < 0.4 * kDelay_s) return 0.75;
   if (waiting_s < 2.5 * kDelay_s) return 1.0;
-  return waiting_s < 5 * kDelay_s ? 1.25 : 2.0;
+  if (waiting_s < 5 * kDelay_s) return 1.25;
+  return waiting_s < 10 * kDelay_s ? 2.0 : 4.0;
 }
 
 StrokePoint mixed(const StrokePoint& a, const StrokePoint& b, double time_s) {
@@ -37,9 +39,9 @@ StrokePoint play(Stroke& stroke, double dt_s) {
   std::vector<StrokePoint>& path = stroke.path;
   const double newest_s = path.back().time_s;
   double waiting_s = newest_s - stroke.play_s;
-  const double most_s = stroke.is_lifted ? Strokes::kMaxLiftedDelay_s : Strokes::kMaxDelay_s;
-  if (waiting_s > most_s) stroke.play_s = newest_s - (waiting_s = kDelay_s);
-  const double pace = stroke.is_lifted ? 1.0 : paceOf(waiting_s);
+  const double most_s = stroke.is_whole ? Strokes::kMaxWholeDelay_s : Strokes::kMaxDelay_s;
+  if (waiting_s > most_s) stroke.play_s = newest_s - (waiting_s = most_s);
+  const double pace = stroke.is_whole ? 1.0 : stroke.is_lifted ? std::max(paceOf(waiting_s), 1.0) : paceOf(waiting_s);
   stroke.play_s = std::min(stroke.play_s + pace * dt_s, newest_s);
   const auto next = std::ranges::upper_bound(path, stroke.play_s, {}, &StrokePoint::time_s);
   if (next == path.begin()) return path.front();  // the delay before the first point
@@ -77,12 +79,12 @@ core::Result<void> Strokes::add(const StrokePart& part) {
   if (stroke == active_.end()) {
     if (part.points.empty()) return {};  // the end of a stroke that has ended by itself
     const auto own_count = static_cast<std::size_t>(std::ranges::count_if(active_, isOfPerson));
-    if (active_.size() >= MAX_STROKES || own_count >= kPersonMaxCount) {
+    if (active_.size() >= kMaxCount || own_count >= kPersonMaxCount) {
       const bool is_own = own_count >= kPersonMaxCount;
-      return core::Error{core::ErrorCode::kUnavailable,
-                         fmt::format("the limit of {} strokes {} is reached: try again when a finger has been lifted",
-                                     is_own ? kPersonMaxCount : std::size_t{MAX_STROKES},
-                                     is_own ? "of one person" : "at the same time")};
+      return core::Error{
+          core::ErrorCode::kUnavailable,
+          fmt::format("the limit of {} strokes {} is reached: try again when a finger has been lifted",
+                      is_own ? kPersonMaxCount : kMaxCount, is_own ? "of one person" : "at the same time")};
     }
     const StrokePoint& first = part.points.front();
     active_.push_back({.person_id = part.person_id,
@@ -90,6 +92,7 @@ core::Result<void> Strokes::add(const StrokePart& part) {
                        .radius_m = part.radius_m,
                        .depth_m = part.depth_m,
                        .path = {first},
+                       .is_whole = part.ends,
                        .play_s = first.time_s - kDelay_s,
                        .x_m = first.x_m,
                        .z_m = first.z_m});
@@ -105,7 +108,9 @@ core::Result<void> Strokes::add(const StrokePart& part) {
 }
 
 void Strokes::advance(double dt_s, shared::EventUniforms& out) {
-  for (Stroke& stroke : active_) {
+  auto next = active_.begin();
+  for (; next != active_.end() && out.splash_count + 2 <= MAX_PRESSES; ++next) {
+    Stroke& stroke = *next;
     const StrokePoint at = play(stroke, dt_s);
     stroke.still_s += dt_s;
     stroke.is_lifted = stroke.is_lifted || stroke.still_s > kMaxSilence_s;
@@ -127,13 +132,14 @@ void Strokes::advance(double dt_s, shared::EventUniforms& out) {
     }
     stroke.level_ratio = level;
   }
+  std::ranges::rotate(active_, next);  // the others come first in the next step
   std::erase_if(active_, [](const Stroke& stroke) {
     return stroke.is_lifted && stroke.level_ratio <= 0.0 && stroke.play_s >= stroke.path.back().time_s;
   });
 }
 
 bool Strokes::resume(std::vector<Stroke> active) {
-  const bool is_valid = active.size() <= MAX_STROKES && std::ranges::all_of(active, [](const Stroke& stroke) {
+  const bool is_valid = active.size() <= kMaxCount && std::ranges::all_of(active, [](const Stroke& stroke) {
                           return !stroke.path.empty() && stroke.path.size() <= kPathMaxCount;
                         });
   if (is_valid) active_ = std::move(active);

@@ -58,6 +58,7 @@ void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
     one.set_z_m(point.z_m);
     one.set_pressure_ratio(point.pressure_ratio);
   }
+  out.set_is_whole(stroke.is_whole);
   out.set_play_s(stroke.play_s);
   out.set_still_s(stroke.still_s);
   out.set_x_m(stroke.x_m);
@@ -67,8 +68,18 @@ void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
 
 sim::Stroke toStroke(const v1::ActiveStroke& message) {
   sim::StrokePart part = toStrokePart(message.stroke());
-  return {part.person_id,   part.stroke_id,    part.radius_m, part.depth_m,  std::move(part.points), part.ends,
-          message.play_s(), message.still_s(), message.x_m(), message.z_m(), message.level_ratio()};
+  return {.person_id = part.person_id,
+          .stroke_id = part.stroke_id,
+          .radius_m = part.radius_m,
+          .depth_m = part.depth_m,
+          .path = std::move(part.points),
+          .is_lifted = part.ends,
+          .is_whole = message.is_whole(),
+          .play_s = message.play_s(),
+          .still_s = message.still_s(),
+          .x_m = message.x_m(),
+          .z_m = message.z_m(),
+          .level_ratio = message.level_ratio()};
 }
 
 void fill(v1::Boat& out, const core::Boat& boat) {

@@ -6,12 +6,13 @@
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
-// Maximum number of splashes (rain drops included), of crests and of strokes at the same time.
+// Maximum number of splashes (rain drops included) and of crests at the same time.
 #define MAX_SPLASHES 96
 #define MAX_CRESTS 16
-#define MAX_STROKES 64
-// A stroke moves its dent with two splashes: one fills it, one presses it at the next position.
-#define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_STROKES)
+// A stroke moves its dent with two splashes: one fills it, one presses it at the next position. So many strokes move in
+// one step, and others in the next: a block of uniforms holds 16 KiB.
+#define MAX_MOVING_STROKES 64
+#define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_MOVING_STROKES)
 // A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
 #define SPLASH_REACH 3.5f
 

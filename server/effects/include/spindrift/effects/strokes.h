@@ -37,8 +37,9 @@ struct Stroke {
   double depth_m = 0.0;
   std::vector<StrokePoint> path{};  ///< what is still to be drawn, from the point before play_s on; never empty
   bool is_lifted = false;
-  double play_s = 0.0;   ///< time on the path, up to which it is drawn
-  double still_s = 0.0;  ///< since the last part
+  bool is_whole = false;  ///< came in one part
+  double play_s = 0.0;    ///< time on the path, up to which it is drawn
+  double still_s = 0.0;   ///< since the last part
   /// As the last step left it: the position, and the dent's share of its depth.
   double x_m = 0.0;
   double z_m = 0.0;
@@ -50,19 +51,20 @@ struct Stroke {
 /// So a stroke conserves the water to the last unit, as splashes do, and moves none while the finger rests.
 class Strokes {
  public:
-  /// At most this many of one person at a time: the fingers of two hands.
+  /// Limits of strokes at the same time: of all, and of one person, the fingers of two hands.
+  static constexpr std::size_t kMaxCount = 128;
   static constexpr std::size_t kPersonMaxCount = 10;
   /// Points of a path that wait; the oldest give way.
   static constexpr std::size_t kPathMaxCount = 256;
-  /// Longest that a path may lie ahead of the play clock, while the finger is down and once it is lifted; beyond that
-  /// the finger jumps. A whole stroke may come in one part.
+  /// Longest that a path may lie ahead of the play clock, and that of a stroke that came in one part; beyond that the
+  /// finger jumps.
   static constexpr double kMaxDelay_s = 2.0;
-  static constexpr double kMaxLiftedDelay_s = 10.0;
+  static constexpr double kMaxWholeDelay_s = 10.0;
   /// A finger of which nothing has been heard for this long is lifted.
   static constexpr double kMaxSilence_s = 2.0;
 
   /// Begins a stroke or continues it. Precondition: times ascend within the part; one that begins has a point. Points
-  /// that are not later than what is there are omitted. kUnavailable: there are MAX_STROKES, or kPersonMaxCount of the
+  /// that are not later than what is there are omitted. kUnavailable: there are kMaxCount, or kPersonMaxCount of the
   /// person.
   core::Result<void> add(const StrokePart& part);
 
