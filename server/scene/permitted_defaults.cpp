@@ -15,7 +15,7 @@ constexpr int kPassCount = 2;
 /// Positions that are tried for a boat.
 constexpr int kPlaceMaxCount = 400;
 /// A finger in the water: its radius as a share of the shorter side; its depth in radii, or as a share of the water's.
-constexpr double kFingerSides = 0.03, kFingerDepthRadii = 0.45, kFingerDepthRatio = 0.2;
+constexpr double kFingerSides = 0.025, kFingerDepthRadii = 0.45, kFingerDepthRatio = 0.2;
 
 /// `issues_of` returns the violations by the message; their paths end with the names of its fields.
 template <typename Message, typename IssuesOf>

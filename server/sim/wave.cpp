@@ -235,9 +235,7 @@ void Wave::displace(shared::EventUniforms events) {
   if (!any && !had_events_) return;
   had_events_ = any;
   // Number of cells along each side of the square that the largest splash can reach.
-  float radius_m = 0.0f;
-  for (std::uint32_t k = 0; k < events.splash_count; ++k) radius_m = std::max(radius_m, events.splashes[k].radius_m);
-  const auto across = static_cast<std::uint32_t>(2 * std::ceil(SPLASH_REACH * radius_m / cell_m_)) + 4;
+  const auto across = static_cast<std::uint32_t>(2 * std::ceil(events.reach_m / cell_m_)) + 4;
   // wave/splash.comp has two ways; the one with fewer invocations is faster.
   const bool every_cell = std::uint64_t{across} * across * events.splash_count > count_.total();
   events.every_cell = every_cell;

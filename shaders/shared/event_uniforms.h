@@ -44,9 +44,11 @@ struct EventUniforms {
   uint splash_count;
   uint crest_count;
   uint every_cell;  // as in the block below
-  uint padding;
+  float reach_m;    // as in the block below
+  uint press_begin;
+  uint padding[3];
 };
-static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 16);
+static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 32);
 }  // namespace spindrift::shared
 #else
 layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
@@ -55,6 +57,8 @@ layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
   uint splash_count;
   uint crest_count;
   uint every_cell;  // wave/splash.comp: 1 = one invocation per cell of the domain, 0 = one per splash and cell of its square
+  float reach_m;     // of the largest splash
+  uint press_begin;  // the splashes from here on are those of strokes. Both parts are in the order of z
 };
 #endif
 

@@ -31,7 +31,7 @@ uniform uint tick;
 /// Horizontal velocity of the crown of splashes: outward, from a ring around the radius.
 vec2 crownAt(vec2 p) {
   vec2 crown_mps = vec2(0.0);
-  for (uint k = 0u; k < splash_count; ++k) {
+  for (uint k = 0u; k < press_begin; ++k) {  // strokes have no crown
     const EventUniform e = splashes[k];
     const vec2 r_m = acrossSides(p - vec2(e.x_m, e.z_m));
     const float distance_m = length(r_m);

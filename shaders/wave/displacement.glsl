@@ -37,12 +37,12 @@ vec2 passing(vec2 v, vec4 shares) {
   return v * mix(shares.zw, shares.xy, greaterThan(v, vec2(0.0)));
 }
 
-/// Share of a stroke's displacement through the face between two cells: 1 where the surface is within highest_m of its rest,
-/// 0 from twice that on. Stirring at the pace of a basin's own waves would pile them up. The same share for both
-/// directions, so that a dent that comes and goes pumps no water.
-float strokeShare(int i, int next, float highest_m) {
-  const int away = max(abs(texelFetch(elevation, i).x), abs(texelFetch(elevation, next).x));
-  return clamp(2.0 - metres(away) / highest_m, 0.0, 1.0);
+/// Shares of a stroke's displacement through the faces toward +x and +z: 1 where the surface is within highest_m of its
+/// rest, 0 from twice that on. `away_m`: how far it is from there at the cell and those toward +x and +z. Stirring at the pace
+/// of a basin's own waves would pile them up. The same share for both directions, so that a dent that comes and goes pumps no
+/// water.
+vec2 strokeShares(vec3 away_m, float highest_m) {
+  return clamp(2.0 - max(away_m.xx, away_m.yz) / highest_m, 0.0, 1.0);
 }
 
 /// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. The sum is an integer,

@@ -34,8 +34,8 @@ CommandRejection send(v1::Command& command) {
 TEST(StrokeCommands, WhatIsLeftOutSuitsTheWater) {
   v1::Command command = test::stroke(3, 0.0, 1.0, 2.0);
   EXPECT_EQ(send(command).reason, v1::REJECT_REASON_UNSPECIFIED);
-  EXPECT_NEAR(command.stroke().radius_m(), 0.3, 1e-9) << "of a side of 10 m";
-  EXPECT_NEAR(command.stroke().depth_m(), 0.135, 1e-9);
+  EXPECT_NEAR(command.stroke().radius_m(), 0.25, 1e-9) << "of a side of 10 m";
+  EXPECT_NEAR(command.stroke().depth_m(), 0.1125, 1e-9);
   EXPECT_EQ(command.stroke().points(0).pressure_ratio(), 1.0);
 
   v1::Command empty;

@@ -26,7 +26,7 @@ const kLongestWaveSides = 1;
 const kDeepestDepths = 0.9;
 
 /** The finger that suits the water: its radius as a share of the shorter side; its depth in radii, and at most this share of the depth. */
-const kFinger = { sides: 0.03, depthRadii: 0.45, depths: 0.2 };
+const kFinger = { sides: 0.025, depthRadii: 0.45, depths: 0.2 };
 
 /** Size of a finger in this water; undefined if the water has no depth. */
 export function fingerSize(greeting: GreetingInfo): FingerSize | undefined {
