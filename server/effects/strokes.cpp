@@ -132,7 +132,7 @@ void Strokes::advance(double dt_s, shared::EventUniforms& out) {
     }
     stroke.level_ratio = level;
   }
-  std::ranges::rotate(active_, next);  // the others come first in the next step
+  std::rotate(active_.begin(), next, active_.end());  // the others come first in the next step
   std::erase_if(active_, [](const Stroke& stroke) {
     return stroke.is_lifted && stroke.level_ratio <= 0.0 && stroke.play_s >= stroke.path.back().time_s;
   });

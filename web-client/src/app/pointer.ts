@@ -4,7 +4,7 @@ import { Vector3 } from "three";
 
 import { kClickRadiusPx } from "../scene/camera/camera_hand";
 import { pickWater } from "../scene/frames/pick";
-import { kStrokeLabel, StrokeSender, type FingerPoint } from "../ui/stroke_sender";
+import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
 import { kTapMs, TapDetector, toDeviceCoordinates, type PointerSample } from "../ui/tap";
 import type { App } from "./app";
 import { nowS } from "./picture_clock";
@@ -31,7 +31,11 @@ export class PointerHands {
   private cameraTouchMs = -Infinity;
 
   constructor(private readonly app: App) {
-    this.sender = new StrokeSender((value) => app.commands.send({ case: "stroke", value }, kStrokeLabel), {
+    const send = (value: StrokeMessage): void => {
+      // A finger stays down over a lost connection, and draws again on the next one.
+      if (app.mayDraw) app.commands.send({ case: "stroke", value }, kStrokeLabel);
+    };
+    this.sender = new StrokeSender(send, {
       nowMs: () => performance.now(),
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
@@ -44,7 +48,7 @@ export class PointerHands {
     canvas.addEventListener("pointerup", (event) => this.released(event));
     canvas.addEventListener("pointercancel", (event) => {
       this.taps.cancelled(event.pointerId);
-      this.let(event);
+      this.letGo(event);
     });
   }
 
@@ -93,12 +97,12 @@ export class PointerHands {
 
   private released(event: PointerEvent): void {
     const isTap = this.taps.released(sampleOf(event));
-    this.let(event);
+    this.letGo(event);
     const place = isTap ? this.placeUnder(event) : undefined;
     if (place) this.app.commands.send(this.app.effects.splashAt(place.xM, place.zM), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
   }
 
-  private let(event: PointerEvent): void {
+  private letGo(event: PointerEvent): void {
     if (!this.hands.has(event.pointerId)) return;
     event.stopPropagation();
     this.lift(event.pointerId);
