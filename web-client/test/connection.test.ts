@@ -27,7 +27,7 @@ describe("the connection", () => {
     expect(rig.state.name).toBe("connecting");
     rig.socket.open();
     expect(rig.socket.sent).toHaveLength(1);
-    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: 3 } } });
+    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: 4 } } });
     expect(rig.socket.sent[0]?.value).toMatchObject({ client: expect.stringMatching(/^spindrift-web \d+\.\d+\.\d+$/) });
     rig.socket.deliver(greeting());
     expect(rig.state.name).toBe("live");
