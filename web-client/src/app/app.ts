@@ -129,7 +129,10 @@ export class App {
       state: ({ state }) => {
         this.state = state;
         this.hud.connection(state);
-        if (state.name !== "live") for (const panel of [this.room, this.boats]) panel.setLive(false);
+        if (state.name !== "live") {
+          this.fingers.clear();
+          for (const panel of [this.room, this.boats]) panel.setLive(false);
+        }
         this.showRole();
       },
       greeting: ({ greeting }) => this.enter(greeting),
@@ -176,7 +179,7 @@ export class App {
         this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
       },
-      strokes: ({ list }) => this.fingers.take(list),
+      strokes: ({ fingers }) => this.fingers.take(fingers),
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
@@ -236,8 +239,7 @@ export class App {
 
   private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
-    const shape = scene.shape();
-    this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => shape?.elevationAtM(xM, zM) ?? 0, covered, atS);
+    this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 

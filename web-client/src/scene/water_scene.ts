@@ -58,6 +58,8 @@ export class WaterScene {
   private ownerColors: ReadonlyMap<number, string> = new Map();
   private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
+  /** Range of the elevations of the frame that was picked last. */
+  private ranged: { frame: SurfaceFrame; range: { minM: number; maxM: number } } | undefined;
 
   constructor(
     private readonly renderer: WebGLRenderer,
@@ -219,13 +221,21 @@ export class WaterScene {
     return this.frames.surfaces.newest();
   }
 
+  /** Returns the newest elevation; 0 before the first frame. */
+  heightAtM(xM: number, zM: number): number {
+    const frame = this.newestSurface();
+    return frame ? elevationAtM(frame, xM, zM) : 0;
+  }
+
   /** Returns the surface for picking: the newest elevations, or flat water before the first frame. */
   shape(): WaterShape | undefined {
     if (!this.greeting) return undefined;
     const { sideM, widthM } = this.greeting;
     const frame = this.newestSurface();
     if (!frame) return { sideM, widthM, minM: 0, maxM: 0, elevationAtM: () => 0 };
-    return { sideM, widthM, ...elevationRangeM(frame), elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
+    // A finger asks many times per frame.
+    if (this.ranged?.frame !== frame) this.ranged = { frame, range: elevationRangeM(frame) };
+    return { sideM, widthM, ...this.ranged.range, elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
   }
 
   /** Follows a parameter of the room, by its path in the scene. */

@@ -1,9 +1,10 @@
 // Rings over the fingers in the water, in the colours of their people, with names after a moment. One's own follows the pointer, those of
-// others are shown as soon as the server's list comes: ahead of the water by the delay of the pictures, as one's own are. Hidden from screen readers: they move too fast to be read out.
+// others are shown as soon as the server's list comes: ahead of the water by the delay of the pictures, as one's own are. Hidden from
+// screen readers: they move too fast to be read out.
 import { Matrix4, type PerspectiveCamera } from "three";
 
 import type { PersonInfo } from "../codec/people";
-import type { FingersInfo } from "../codec/strokes";
+import type { FingerInfo } from "../codec/strokes";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
 import { tagPlace } from "./tag_place";
@@ -20,7 +21,7 @@ interface Ring {
 export class FingerTags {
   private readonly element = make("div", { class: "finger-tags", "aria-hidden": "true", "data-testid": "finger-tags" });
   private readonly rings = new Map<string, Ring>();
-  private fingers: FingersInfo["fingers"] = [];
+  private fingers: readonly FingerInfo[] = [];
   private people = new Map<number, PersonInfo>();
   private readonly seen = new Matrix4();
 
@@ -33,7 +34,7 @@ export class FingerTags {
     this.people = new Map(people.map((person) => [person.personId, person]));
   }
 
-  take({ fingers }: FingersInfo): void {
+  take(fingers: readonly FingerInfo[]): void {
     this.fingers = fingers;
   }
 

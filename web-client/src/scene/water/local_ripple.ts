@@ -53,10 +53,6 @@ export class LocalRipple {
     return new Map([...this.fingers].filter(([, { liftedS }]) => liftedS === Infinity).map(([pointerId, { path }]) => [pointerId, path.at(-1)!]));
   }
 
-  clear(): void {
-    this.fingers.clear();
-  }
-
   /** Sets the dents of a picture. `behindS`: age of the water that it shows. */
   update(nowS: number, behindS: number): void {
     let count = 0;
