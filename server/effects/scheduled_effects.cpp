@@ -5,13 +5,12 @@
 
 #include <spindrift/core/random.h>
 #include <spindrift/effects/scheduled_effects.h>
+#include <spindrift/effects/strokes.h>
 #include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {
 
-/// The dent of a drop is as wide as the wave grid can represent without ringing.
-constexpr double kDropRadius_cells = 2.5;
 constexpr double kDropDuration_s = 0.08;
 constexpr double kDropDepthShare = 0.1;  ///< of the water's depth, at most
 /// Gusts at full storm: mean interval of the groups, their length, and the spread of their direction about the

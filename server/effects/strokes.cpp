@@ -1,9 +1,12 @@
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include <spindrift/core/random.h>
 #include <spindrift/effects/strokes.h>
 
 namespace spindrift::sim {
@@ -17,6 +20,18 @@ constexpr double kPress_s = 0.12;
 /// A stroke moves less water where the surface is farther than this many times its depth from its rest, and none from
 /// twice that on.
 constexpr double kHighestDepths = 2.0;
+/// The same for drops, in depths of the water: rain falls on waves, too.
+constexpr double kRainHighestDepths = 0.25;
+
+/// Drops per second under a cloud at full pressure, and their largest depth as a share of their radius.
+constexpr double kRainPerS = 90.0;
+constexpr double kDropDepthRadii = 0.5;
+/// A stroke adds at most this many splashes per step.
+constexpr std::uint32_t kStepSplashMaxCount = 2;
+
+/// A calmed disc takes this share of the flow per second at full pressure. Critical for waves of 1.3 s; shorter and
+/// longer ones decay more slowly.
+constexpr double kCalmPerS = 10.0;
 
 /// Pace of the play clock: slower while points run short, faster while they pile up, as in a room that is slower than
 /// the clock of its clients.
@@ -48,25 +63,76 @@ StrokePoint play(Stroke& stroke, double dt_s) {
   return path.size() == 1 ? path.front() : mixed(path[0], path[1], stroke.play_s);
 }
 
-/// Number of fingers at the place of one, counting those near it in part.
+/// Number of fingers with the same tool at the position of one, counting those near it in part.
 double crowdAt(const Stroke& stroke, const std::vector<Stroke>& all) {
   double count = 0.0;
   for (const Stroke& other : all) {
+    if (other.tool != stroke.tool) continue;
     const double away_m = std::hypot(other.x_m - stroke.x_m, other.z_m - stroke.z_m);
     count += std::max(0.0, 1.0 - away_m / (other.radius_m + stroke.radius_m));
   }
   return count;  // at least 1: itself
 }
 
-void press(const Stroke& stroke, double gain, shared::EventUniforms& out) {
+struct Dent {
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double radius_m = 0.0;
+  double depth_m = 0.0;
+  double highest_m = 0.0;
+};
+
+void press(const Dent& dent, double gain, shared::EventUniforms& out) {
   shared::EventUniform& splash = out.splashes[out.splash_count++];
   splash = {};
-  splash.gain_m = static_cast<float>(-stroke.depth_m * gain);
-  splash.x_m = static_cast<float>(stroke.x_m);
-  splash.z_m = static_cast<float>(stroke.z_m);
-  splash.radius_m = static_cast<float>(stroke.radius_m);
-  splash.depth_m = static_cast<float>(stroke.depth_m);
-  splash.highest_m = static_cast<float>(kHighestDepths * stroke.depth_m);
+  splash.gain_m = static_cast<float>(-dent.depth_m * gain);
+  splash.x_m = static_cast<float>(dent.x_m);
+  splash.z_m = static_cast<float>(dent.z_m);
+  splash.radius_m = static_cast<float>(dent.radius_m);
+  splash.depth_m = static_cast<float>(dent.depth_m);
+  splash.highest_m = static_cast<float>(dent.highest_m);
+}
+
+/// Fills the dent where the finger was, and presses it where the finger is.
+void moveDent(Stroke& stroke, const StrokePoint& at, double level, shared::EventUniforms& out) {
+  const auto dent = [&] {
+    return Dent{stroke.x_m, stroke.z_m, stroke.radius_m, stroke.depth_m, kHighestDepths * stroke.depth_m};
+  };
+  if (at.x_m == stroke.x_m && at.z_m == stroke.z_m) {
+    if (level != stroke.level_ratio) press(dent(), level - stroke.level_ratio, out);
+    return;
+  }
+  if (stroke.level_ratio > 0.0) press(dent(), -stroke.level_ratio, out);
+  stroke.x_m = at.x_m;
+  stroke.z_m = at.z_m;
+  if (level > 0.0) press(dent(), level, out);
+}
+
+/// Lets the drops of a step fall, evenly over the cloud's disc. `level`: share of the full rain.
+void rain(const Stroke& stroke, double level, const StrokeWater& water, shared::EventUniforms& out) {
+  core::SplitMix64 random(std::bit_cast<std::uint64_t>(stroke.play_s) ^
+                          (std::uint64_t{stroke.person_id} << 32 | stroke.stroke_id) * 0x2545f4914f6cdd1dull);
+  const double expected = std::min(level * kRainPerS * water.dt_s, double{kStepSplashMaxCount});
+  auto count = static_cast<std::uint32_t>(expected);
+  if (random.unit() < expected - count) ++count;
+  const double radius_m = kDropRadius_cells * water.cell_m;
+  for (; count > 0; --count) {
+    const double away_m = stroke.radius_m * std::sqrt(random.unit());
+    const double angle = std::numbers::pi * random.symmetric();
+    press({.x_m = stroke.x_m + away_m * std::cos(angle),
+           .z_m = stroke.z_m + away_m * std::sin(angle),
+           .radius_m = radius_m,
+           .depth_m = std::min(stroke.depth_m, kDropDepthRadii * radius_m),
+           .highest_m = kRainHighestDepths * water.depth_m},
+          0.5 + 0.5 * random.unit(), out);
+  }
+}
+
+void calm(const Stroke& stroke, double level, const StrokeWater& water, shared::EventUniforms& out) {
+  if (out.calm_count == MAX_CALMS) return;
+  out.calms[out.calm_count++] = {static_cast<float>(stroke.x_m), static_cast<float>(stroke.z_m),
+                                 static_cast<float>(stroke.radius_m),
+                                 static_cast<float>(level * (1.0 - std::exp(-kCalmPerS * water.dt_s)))};
 }
 
 }  // namespace
@@ -88,6 +154,7 @@ core::Result<void> Strokes::add(const StrokePart& part) {
     const StrokePoint& first = part.points.front();
     active_.push_back({.person_id = part.person_id,
                        .stroke_id = part.stroke_id,
+                       .tool = part.tool,
                        .radius_m = part.radius_m,
                        .depth_m = part.depth_m,
                        .path = {first},
@@ -106,12 +173,12 @@ core::Result<void> Strokes::add(const StrokePart& part) {
   return {};
 }
 
-void Strokes::advance(double dt_s, shared::EventUniforms& out) {
+void Strokes::advance(const StrokeWater& water, shared::EventUniforms& out) {
   auto next = active_.begin();
-  for (; next != active_.end() && out.splash_count + 2 <= MAX_PRESSES; ++next) {
+  for (; next != active_.end() && out.splash_count + kStepSplashMaxCount <= MAX_PRESSES; ++next) {
     Stroke& stroke = *next;
-    const StrokePoint at = play(stroke, dt_s);
-    stroke.still_s += dt_s;
+    const StrokePoint at = play(stroke, water.dt_s);
+    stroke.still_s += water.dt_s;
     stroke.is_lifted = stroke.is_lifted || stroke.still_s > kMaxSilence_s;
     const bool is_over = stroke.is_lifted && stroke.play_s >= stroke.path.back().time_s;
     const double way_m = std::hypot(at.x_m - stroke.x_m, at.z_m - stroke.z_m);
@@ -119,17 +186,14 @@ void Strokes::advance(double dt_s, shared::EventUniforms& out) {
     // fingers at one place: together they press as one.
     const double most_ratio = std::min(1.0, stroke.radius_m / std::max(way_m, 1e-9)) / crowdAt(stroke, active_);
     const double wanted = is_over ? 0.0 : at.pressure_ratio * most_ratio;
-    const double most = dt_s / kPress_s;
+    const double most = water.dt_s / kPress_s;
     const double level = stroke.level_ratio + std::clamp(wanted - stroke.level_ratio, -most, most);
-    if (way_m == 0.0) {
-      if (level != stroke.level_ratio) press(stroke, level - stroke.level_ratio, out);
-    } else {
-      if (stroke.level_ratio > 0.0) press(stroke, -stroke.level_ratio, out);
-      stroke.x_m = at.x_m;
-      stroke.z_m = at.z_m;
-      if (level > 0.0) press(stroke, level, out);
-    }
+    if (stroke.tool == StrokeTool::kFinger) moveDent(stroke, at, level, out);
+    stroke.x_m = at.x_m;
+    stroke.z_m = at.z_m;
     stroke.level_ratio = level;
+    if (stroke.tool == StrokeTool::kRain) rain(stroke, level, water, out);
+    if (stroke.tool == StrokeTool::kCalm) calm(stroke, level, water, out);
   }
   std::rotate(active_.begin(), next, active_.end());  // the others come first in the next step
   std::erase_if(active_, [](const Stroke& stroke) {

@@ -69,13 +69,17 @@ const CommandTraits& traitsOf(const v1::Command& command) {
   return CommandDesk::kindOf(command).traits;
 }
 
+core::Role roleFor(const v1::Command& command) {
+  return command.stroke().tool() == v1::STROKE_TOOL_CALM ? core::Role::kOperator : traitsOf(command).role;
+}
+
 CommandDesk::CommandDesk(const Parts& parts) : parts_(parts), heavy_budget_(kHeavyShare, kHeavyBurst) {}
 
 CommandDesk::Outcome CommandDesk::admit(Command command, const RoomSnapshot& room) {
   const core::Sender& sender = command.sender;
   const std::uint64_t command_id = command.id();
   Outcome refused;
-  if (const core::Role needed = traitsOf(command.message).role; sender.role < needed) {
+  if (const core::Role needed = roleFor(command.message); sender.role < needed) {
     refused = wire::rejection(
         v1::REJECT_REASON_FORBIDDEN, "",
         fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));

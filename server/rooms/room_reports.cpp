@@ -73,6 +73,7 @@ void RoomReports::tellStrokes(TimePoint now) {
     finger.set_x_m(stroke.x_m);
     finger.set_z_m(stroke.z_m);
     finger.set_radius_m(stroke.radius_m);
+    finger.set_tool(water::toMessage(stroke.tool));
   }
   parts_.outlets.strokesChanged(parts_.room, out);
 }

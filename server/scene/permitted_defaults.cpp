@@ -16,6 +16,8 @@ constexpr int kPassCount = 2;
 constexpr int kPlaceMaxCount = 400;
 /// A finger in the water: its radius as a share of the shorter side; its depth in radii, or as a share of the water's.
 constexpr double kFingerSides = 0.025, kFingerDepthRadii = 0.45, kFingerDepthRatio = 0.2;
+/// Radius of a cloud or a calmed disc as a share of the shorter side.
+constexpr double kDiscSides = 0.1;
 
 /// `issues_of` returns the violations by the message; their paths end with the names of its fields.
 template <typename Message, typename IssuesOf>
@@ -67,7 +69,8 @@ void completeBoat(v1::Boat& boat, const v1::Scene& scene) {
 void completeStroke(v1::Stroke& stroke, const v1::Scene& scene) {
   const WaterExtents water = waterExtentsOf(scene);
   if (stroke.points_size() == 0 && !stroke.ends()) stroke.add_points();  // in the middle
-  if (!stroke.has_radius_m()) stroke.set_radius_m(kFingerSides * water.shorterSide_m());
+  if (!stroke.has_radius_m())
+    stroke.set_radius_m((isDisc(stroke.tool()) ? kDiscSides : kFingerSides) * water.shorterSide_m());
   if (!stroke.has_depth_m())
     stroke.set_depth_m(std::min(kFingerDepthRadii * stroke.radius_m(), kFingerDepthRatio * water.depth_m));
 }

@@ -16,7 +16,8 @@ namespace {
 /// Maximum depression or crest over the depth; beyond it the bed would fall dry or the wave equation become invalid.
 constexpr double kMaxEffectDepthRatio = 0.9;
 constexpr int kStrokePointMaxCount = 64;
-/// Largest finger: its radius over the shorter side of the water, and its depth over the water's and over the radius.
+/// Largest finger: its radius over the shorter side of the water (twice that for a disc), and its depth over the
+/// water's and over the radius.
 constexpr double kStrokeMaxRadiusSides = 0.125, kStrokeMaxDepthRatio = 1.0 / 3.0, kStrokeMaxDepthRadii = 0.5;
 constexpr std::size_t kNameMaxBytes = 64;
 constexpr std::size_t kTitleMaxBytes = 200;
@@ -200,8 +201,18 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
       addRange(issues, "breaking_wave.length_m",
                metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m), side_m);
     }
+    checkPosition(wave.x_m, water.side_x_m, "breaking_wave.x_m", issues);
+    checkPosition(wave.z_m, water.side_z_m, "breaking_wave.z_m", issues);
+    if (wave.width_m > 0 && wave.side != core::Side::kDirection) {
+      addRange(issues, "breaking_wave.width_m",
+               metres(wave.width_m) + " is for waves with SIDE_DIRECTION; choose that side, or leave the width out");
+    }
   }
   return issues;
+}
+
+bool isDisc(v1::StrokeTool tool) {
+  return tool == v1::STROKE_TOOL_RAIN || tool == v1::STROKE_TOOL_CALM;
 }
 
 std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& scene) {
@@ -227,8 +238,9 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
     if (value_m > max_m)
       addRange(issues, path, metres(value_m) + " is more than " + rule + "; choose at most " + metres(max_m));
   };
-  atMost(stroke.radius_m(), kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
-         "an eighth of the side of the water");
+  const bool is_disc = isDisc(stroke.tool());
+  atMost(stroke.radius_m(), (is_disc ? 2 : 1) * kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
+         is_disc ? "a quarter of the side of the water" : "an eighth of the side of the water");
   atMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m", "a third of the water's depth");
   atMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m", "half the radius");
   return issues;

@@ -24,7 +24,7 @@ std::string nameOf(v1::RejectReason reason) {
 }
 
 bool isOperatorsCommand(const v1::Command& command) {
-  return rooms::traitsOf(command).role >= core::Role::kOperator;
+  return rooms::roleFor(command) >= core::Role::kOperator;
 }
 
 /// Players may do the same with their own boats; of an operator it may be anybody's.

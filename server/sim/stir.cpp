@@ -28,7 +28,7 @@ EffectDomain Stir::domain(const core::Scene& scene, const Derived& derived) {
 }
 
 void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population) {
-  if (events.splash_count + events.crest_count == 0) return;
+  if (events.splash_count + events.crest_count + events.calm_count == 0) return;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   population.bind();

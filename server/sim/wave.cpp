@@ -229,9 +229,9 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
-/// Adds to TRANSFER and, for crests, to FLOW; advance() has bound both.
+/// Adds to TRANSFER and, for crests and calmed discs, changes FLOW; advance() has bound both.
 void Wave::displace(shared::EventUniforms events) {
-  const bool any = events.splash_count + events.crest_count > 0;
+  const bool any = events.splash_count + events.crest_count + events.calm_count > 0;
   if (!any && !had_events_) return;
   had_events_ = any;
   // Number of cells along each side of the square that the largest splash can reach.
@@ -249,7 +249,7 @@ void Wave::displace(shared::EventUniforms events) {
     }
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
-  if (events.crest_count > 0) {
+  if (events.crest_count + events.calm_count > 0) {
     crest_.dispatch(count_.x, count_.z);
     ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }

@@ -42,12 +42,16 @@ void fill(v1::ActiveEffect& out, const core::BreakingWave& wave) {
   message.set_duration_s(wave.duration_s);
   message.set_shape(wave.shape == core::WaveShape::kSwell ? v1::WAVE_SHAPE_SWELL : v1::WAVE_SHAPE_BREAKING);
   message.set_direction_deg(wave.direction_deg);
+  message.set_width_m(wave.width_m);
+  message.set_x_m(wave.x_m);
+  message.set_z_m(wave.z_m);
 }
 
 void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
   v1::Stroke& message = *out.mutable_stroke();
   message.set_person_id(stroke.person_id);
   message.set_stroke_id(stroke.stroke_id);
+  message.set_tool(toMessage(stroke.tool));
   message.set_radius_m(stroke.radius_m);
   message.set_depth_m(stroke.depth_m);
   message.set_ends(stroke.is_lifted);
@@ -70,6 +74,7 @@ sim::Stroke toStroke(const v1::ActiveStroke& message) {
   sim::StrokePart part = toStrokePart(message.stroke());
   return {.person_id = part.person_id,
           .stroke_id = part.stroke_id,
+          .tool = part.tool,
           .radius_m = part.radius_m,
           .depth_m = part.depth_m,
           .path = std::move(part.points),
@@ -203,12 +208,34 @@ v1::Side toMessage(core::Side side) {
   return v1::SIDE_DIRECTION;
 }
 
+v1::StrokeTool toMessage(sim::StrokeTool tool) {
+  switch (tool) {
+    case sim::StrokeTool::kFinger:
+      return v1::STROKE_TOOL_FINGER;
+    case sim::StrokeTool::kRain:
+      return v1::STROKE_TOOL_RAIN;
+    case sim::StrokeTool::kCalm:
+      break;
+  }
+  return v1::STROKE_TOOL_CALM;
+}
+
+namespace {
+
+sim::StrokeTool toTool(v1::StrokeTool tool) {
+  if (tool == v1::STROKE_TOOL_RAIN) return sim::StrokeTool::kRain;
+  return tool == v1::STROKE_TOOL_CALM ? sim::StrokeTool::kCalm : sim::StrokeTool::kFinger;
+}
+
+}  // namespace
+
 sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
   sim::StrokePart out{.person_id = stroke.person_id(),
                       .stroke_id = stroke.stroke_id(),
                       .radius_m = stroke.radius_m(),
                       .depth_m = stroke.depth_m(),
-                      .ends = stroke.ends()};
+                      .ends = stroke.ends(),
+                      .tool = toTool(stroke.tool())};
   for (const v1::StrokePoint& point : stroke.points())
     out.points.push_back({point.time_s(), point.x_m(), point.z_m(), point.pressure_ratio()});
   return out;

@@ -92,4 +92,9 @@ float crestElevation(EventUniform e, vec2 place_m, vec2 ends) {
   return exp(-l * l * l * l) * (own - 0.5 * crestShape(behind, trough_m, trough_m));
 }
 
+/// Share of the flow that a calmed disc takes at a distance from its middle.
+float calmDrag(CalmUniform calm, vec2 away_m) {
+  return calm.drag_ratio * clamp(1.0 - dot(away_m, away_m) / (calm.radius_m * calm.radius_m), 0.0, 1.0);
+}
+
 #endif

@@ -13,6 +13,8 @@
 // one step, and others in the next: a block of uniforms holds 16 KiB.
 #define MAX_MOVING_STROKES 64
 #define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_MOVING_STROKES)
+// Calmed discs of a step: those of MAX_CALMS strokes; others take turns.
+#define MAX_CALMS 16
 // A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
 #define SPLASH_REACH 3.5f
 
@@ -37,28 +39,41 @@ struct EventUniform {
   float highest_m;     // stroke: it moves less water where the surface is farther than this from its rest; 0: no bound
   float unused;
 };
+
+struct CalmUniform {
+  float x_m;           // middle of a calmed disc
+  float z_m;
+  float radius_m;
+  float drag_ratio;    // share of the flow that the step takes in the middle
+};
 #ifdef __cplusplus
 struct EventUniforms {
   EventUniform splashes[MAX_PRESSES];
   EventUniform crests[MAX_CRESTS];
+  CalmUniform calms[MAX_CALMS];
   uint splash_count;
   uint crest_count;
   uint every_cell;  // as in the block below
   float reach_m;    // as in the block below
   uint press_begin;
-  uint padding[3];
+  uint calm_count;
+  uint padding[2];
 };
-static_assert(sizeof(EventUniform) == 64 && sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 32);
+static_assert(sizeof(EventUniform) == 64 && sizeof(CalmUniform) == 16);
+static_assert(sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 16 * MAX_CALMS + 32);
+static_assert(sizeof(EventUniforms) <= 16384);
 }  // namespace spindrift::shared
 #else
 layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
   EventUniform splashes[MAX_PRESSES];
   EventUniform crests[MAX_CRESTS];
+  CalmUniform calms[MAX_CALMS];
   uint splash_count;
   uint crest_count;
   uint every_cell;  // wave/splash.comp: 1 = one invocation per cell of the domain, 0 = one per splash and cell of its square
   float reach_m;     // of the largest splash
   uint press_begin;  // the splashes from here on are those of strokes. Both parts are in the order of z
+  uint calm_count;
 };
 #endif
 

@@ -3,7 +3,7 @@
 // Equation: a change of the surface by eta = div V moves the water below by -V/d horizontally and by eta (y + d)/d
 // upward. The motion has no divergence, so the pressure solver does not counteract it. A splash leaves its cavity to
 // collapse and gives its rim the crown's speed, outward and up; a crest sets its water in motion with u = c eta/d (long
-// waves). The gains of a pulse sum to 1.
+// waves). The gains of a pulse sum to 1. Calmed discs slow the particles.
 // Invariant: nothing moves by more than a quarter of the spacing in a tick, or out of the walls.
 #include "shared/groups.h"
 #include "common/event_shapes.glsl"
@@ -48,6 +48,9 @@ void main() {
     move_m.y += e.gain_m * height_ratio * eta;
     v_mps.xz += e.gain_m * eta / depth_m * e.speed_mps * d;
   }
+  float drag_ratio = 0.0;
+  for (uint k = 0u; k < calm_count; ++k) drag_ratio = max(drag_ratio, calmDrag(calms[k], x.xz - vec2(calms[k].x_m, calms[k].z_m)));
+  v_mps *= 1.0 - drag_ratio;
   x += move_m * min(1.0, 0.25 * sim.spacing_m / max(length(move_m), 1e-9));
 #if PERIODIC_X
   x.x -= (sim.max_x_m - sim.min_x_m) * (step(sim.max_x_m, x.x) - step(x.x, sim.min_x_m));

@@ -1,5 +1,5 @@
 // Crests displace water and set it in motion, so that they travel in one direction (d'Alembert; breaking wave: thesis
-// 3.6.4).
+// 3.6.4). Calmed discs slow the flow: a drag, so they move no water.
 // Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [nx x nz, units] for this step, and to FLOW [m^2/s] for
 // the next step, half a step earlier as the leapfrog needs it; raises LIMIT_ARGS as wave/momentum.comp does.
 // Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
@@ -12,6 +12,14 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 layout(std430, binding = FLOW) restrict buffer FaceFlow { StoredFlow stored_flow[]; };
 
 shared vec4 ends[MAX_CRESTS];  // crestEnds() now and half a step before
+
+/// What the calmed discs leave of the flow at a cell. Several at one position slow it as the strongest does.
+float keptFlow(vec2 p) {
+  float drag_ratio = 0.0;
+  for (uint k = 0u; k < calm_count; ++k)
+    drag_ratio = max(drag_ratio, calmDrag(calms[k], acrossSides(p - vec2(calms[k].x_m, calms[k].z_m))));
+  return 1.0 - drag_ratio;
+}
 
 void main() {
   for (uint k = gl_LocalInvocationIndex; k < crest_count; k += WAVE_GROUP_X * WAVE_GROUP_Y) {
@@ -46,6 +54,7 @@ void main() {
     const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m), ends[k].zw);
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
+  const float kept = keptFlow(p);
   if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
   if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
 #if DISPERSE
@@ -59,8 +68,8 @@ void main() {
   // Thin water takes the speed of water as deep as a tenth of the scene's: it would fly.
   const vec2 gained_mps = flow / max(0.5 * (water_m + there_m), vec2(0.1 * sim.wave_depth_m));
   const float max_mps = cell_m / sim.wave_dt_s;
-  stored_flow[i] = vec4(clamp(stored_flow[i].xy + gained_mps, -max_mps, max_mps), stored_flow[i].zw + flow);
+  stored_flow[i] = kept * vec4(clamp(stored_flow[i].xy + gained_mps, -max_mps, max_mps), stored_flow[i].zw + flow);
 #else
-  stored_flow[i] += flow;
+  stored_flow[i] = kept * (stored_flow[i] + flow);
 #endif
 }

@@ -1,5 +1,6 @@
 import { describe, expect, it } from "vitest";
 
+import { kWireMinor } from "../src/codec/greeting";
 import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
 import { backoffS } from "../src/net/backoff";
 import { socketUrl } from "../src/net/water_client";
@@ -27,7 +28,7 @@ describe("the connection", () => {
     expect(rig.state.name).toBe("connecting");
     rig.socket.open();
     expect(rig.socket.sent).toHaveLength(1);
-    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: 4 } } });
+    expect(rig.socket.sent[0]).toMatchObject({ case: "hello", value: { version: { major: 1, minor: kWireMinor } } });
     expect(rig.socket.sent[0]?.value).toMatchObject({ client: expect.stringMatching(/^spindrift-web \d+\.\d+\.\d+$/) });
     rig.socket.deliver(greeting());
     expect(rig.state.name).toBe("live");

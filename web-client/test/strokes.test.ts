@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { create, toBinary } from "@bufbuild/protobuf";
 
 import { parse } from "../src/codec/parse";
-import { ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
+import { ServerMessageSchema, StrokeTool } from "../src/gen/spindrift/v1/wire_pb";
 import { LocalRipple } from "../src/scene/water/local_ripple";
 import { StrokeSender, type StrokeMessage } from "../src/ui/stroke_sender";
 
@@ -27,7 +27,7 @@ class World {
   }
 }
 
-const kSize = { radiusM: 0.5, depthM: 0.1 };
+const kSize = { tool: StrokeTool.FINGER, radiusM: 0.5, depthM: 0.1 };
 const at = (timeMs: number, xM: number) => ({ timeMs, xM, zM: 0, pressureRatio: 1 });
 
 describe("StrokeSender", () => {

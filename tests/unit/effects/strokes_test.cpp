@@ -10,10 +10,17 @@ namespace spindrift::sim {
 namespace {
 
 constexpr double kStep_s = 0.01;
+constexpr StrokeWater kWater{.dt_s = kStep_s, .cell_m = 0.1, .depth_m = 1.0};
 
 StrokePart part(std::vector<StrokePoint> points, bool ends = false, std::uint32_t stroke_id = 1,
-                std::uint32_t person_id = 7) {
-  return {person_id, stroke_id, 0.5, 0.2, std::move(points), ends};
+                std::uint32_t person_id = 7, StrokeTool tool = StrokeTool::kFinger) {
+  return {.person_id = person_id,
+          .stroke_id = stroke_id,
+          .radius_m = 0.5,
+          .depth_m = 0.2,
+          .points = std::move(points),
+          .ends = ends,
+          .tool = tool};
 }
 
 /// A finger that moves along x with 1 m/s, from time to time.
@@ -25,7 +32,7 @@ std::vector<StrokePoint> line(double from_s, double to_s, double every_s = 0.02)
 
 shared::EventUniforms stepOf(Strokes& strokes) {
   shared::EventUniforms out{};
-  strokes.advance(kStep_s, out);
+  strokes.advance(kWater, out);
   return out;
 }
 
@@ -161,7 +168,7 @@ TEST(Strokes, LimitsAreNamed) {
   shared::EventUniforms out{};
   for (int k = 0; k < 50; ++k) {
     out = {};
-    strokes.advance(kStep_s, out);
+    strokes.advance(kWater, out);
     ASSERT_LE(out.splash_count, static_cast<std::uint32_t>(MAX_PRESSES));
   }
 }
@@ -212,6 +219,62 @@ TEST(Strokes, ResumedStrokesGoOnAsTheyWouldHave) {
     for (std::uint32_t i = 0; i < a.splash_count; ++i) ASSERT_EQ(a.splashes[i].x_m, b.splashes[i].x_m);
   }
   EXPECT_FALSE(copy.resume({Stroke{}})) << "a stroke without a path";
+}
+
+TEST(Strokes, RainFallsWithinItsDiscAtItsRateAndRepeats) {
+  const auto fall = [](double pressure_ratio) {
+    Strokes strokes;
+    EXPECT_TRUE(
+        strokes.add(part({{0.0, 2, 3, pressure_ratio}, {9.0, 2, 3, pressure_ratio}}, true, 1, 7, StrokeTool::kRain)));
+    std::vector<shared::EventUniform> drops;
+    for (int k = 0; k < 800; ++k) {
+      const auto out = stepOf(strokes);
+      drops.insert(drops.end(), out.splashes, out.splashes + out.splash_count);
+    }
+    return drops;
+  };
+  const auto drops = fall(1.0);
+  EXPECT_NEAR(static_cast<double>(drops.size()), 90 * 8, 75) << "90 per second";
+  EXPECT_NEAR(static_cast<double>(fall(0.5).size()), 45 * 8, 60);
+  double mean_x_m = 0.0, outer_count = 0.0;
+  for (const shared::EventUniform& drop : drops) {
+    const double away_m = std::hypot(drop.x_m - 2, drop.z_m - 3);
+    EXPECT_LE(away_m, 0.5 + 1e-6);
+    EXPECT_LT(drop.gain_m, 0.0F) << "a drop presses";
+    EXPECT_GE(drop.gain_m, -0.125F) << "half of its radius of 2.5 cells";
+    mean_x_m += drop.x_m / static_cast<double>(drops.size());
+    outer_count += away_m > 0.5 / std::sqrt(2.0) ? 1 : 0;
+  }
+  EXPECT_NEAR(mean_x_m, 2.0, 0.05);
+  EXPECT_NEAR(outer_count / static_cast<double>(drops.size()), 0.5, 0.08) << "half of the area";
+  const auto again = fall(1.0);
+  ASSERT_EQ(again.size(), drops.size());
+  EXPECT_EQ(again.back().x_m, drops.back().x_m);
+}
+
+TEST(Strokes, CalmSlowsTheFlowUnderItAndMovesNoWater) {
+  Strokes strokes;
+  for (std::uint32_t person = 0; person < 20; ++person)
+    ASSERT_TRUE(strokes.add(part(line(0.0, 1.0), false, 1, person, StrokeTool::kCalm)));
+  shared::EventUniforms out{};
+  for (int k = 0; k < 50; ++k) {
+    out = stepOf(strokes);
+    ASSERT_EQ(out.splash_count, 0U);
+    ASSERT_EQ(out.calm_count, static_cast<std::uint32_t>(MAX_CALMS));
+  }
+  EXPECT_GT(out.calms[0].drag_ratio, 0.0F);
+  EXPECT_LE(out.calms[0].drag_ratio, 0.1F) << "10 per second, a step of 10 ms";
+}
+
+TEST(Strokes, ToolsAtOnePositionDoNotWeakenEachOther) {
+  const auto pressed_m = [](bool with_rain) {
+    Strokes strokes;
+    EXPECT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {1.0, 0, 0, 1}}, true)));
+    if (with_rain) EXPECT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {1.0, 0, 0, 1}}, true, 2, 7, StrokeTool::kRain)));
+    for (int k = 0; k < 50; ++k) (void)stepOf(strokes);
+    return strokes.active().front().level_ratio;
+  };
+  EXPECT_EQ(pressed_m(true), pressed_m(false));
 }
 
 }  // namespace

@@ -134,6 +134,69 @@ TEST_P(StrokesOnDevice, GoOnFromASavedStateAsTheyWouldHave) {
   EXPECT_TRUE(water.copyState() == straight);
 }
 
+TEST_P(StrokesOnDevice, RainRipplesItsDiscAndKeepsTheVolumeToTheUnit) {
+  WaterSim& water = make(basin());
+  const double before_m = sum(water.copyState());
+  // A part of the disc lies outside of the water.
+  ASSERT_TRUE(water.draw({1, 1, 1.0, 0.05, {{0, -3.5, 0, 1}, {1.0, -3.5, 0, 1}}, true, StrokeTool::kRain}));
+  double near_m = 0.0, far_m = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    water.step();
+    const StateCopy state = water.copyState();
+    ASSERT_EQ(sum(state), before_m) << "tick " << k;
+    for (std::size_t z = 24; z < 40; ++z) {
+      near_m = std::max(near_m, std::abs(state.elevation_m[2 + 64 * z]));
+      far_m = std::max(far_m, std::abs(state.elevation_m[60 + 64 * z]));
+    }
+  }
+  EXPECT_GT(near_m, 0.01);
+  EXPECT_LT(far_m, 0.2 * near_m);
+}
+
+TEST_P(StrokesOnDevice, CalmTakesTheWavesFromItsDiscAndNoWater) {
+  const auto move = [](WaterSim& water, bool calmed) {
+    const double before_m = sum(water.copyState());
+    EXPECT_TRUE(water.draw({1, 1, 0.7, 0.15, circle(2.0, 3.0, 0.0, 2.0), true}));
+    for (std::uint32_t k = 0; calmed && k < 9; ++k) {
+      const double x_m = 2.6 * (k % 3) - 2.6, z_m = 2.6 * static_cast<double>(k / 3) - 2.6;
+      EXPECT_TRUE(water.draw({2, k, 2.0, 0.1, {{0, x_m, z_m, 1}, {5.0, x_m, z_m, 1}}, true, StrokeTool::kCalm}));
+    }
+    for (int k = 0; k < 240; ++k) water.step();
+    const StateCopy state = water.copyState();
+    EXPECT_EQ(sum(state), before_m);
+    return highest(state);
+  };
+  const double free_m = move(make(basin()), false);
+  EXPECT_GT(free_m, 0.01);
+  EXPECT_LT(move(make(basin()), true), 0.25 * free_m);
+}
+
+TEST_P(StrokesOnDevice, PaddleSendsItsWaveInItsDirection) {
+  WaterSim& water = make(basin());
+  const double before_m = sum(water.copyState());
+  core::BreakingWave wave{.side = core::Side::kDirection, .amplitude_m = 0.1, .length_m = 1.0, .duration_s = 0.3};
+  wave.shape = core::WaveShape::kSwell;
+  wave.width_m = 3.0;
+  wave.x_m = -1.0;
+  wave.z_m = 0.5;
+  ASSERT_TRUE(water.start(wave));
+  double ahead_m = 0.0, behind_m = 0.0, beside_m = 0.0;
+  const auto at = [](const StateCopy& state, double x_m, double z_m) {
+    return state.elevation_m[static_cast<std::size_t>((x_m + 4) * 8) + 64 * static_cast<std::size_t>((z_m + 4) * 8)];
+  };
+  for (int k = 0; k < 60; ++k) {
+    water.step();
+    const StateCopy state = water.copyState();
+    ASSERT_EQ(sum(state), before_m) << "tick " << k;
+    ahead_m = std::max(ahead_m, at(state, 0.8, 0.5));
+    behind_m = std::max(behind_m, at(state, -3.2, 0.5));
+    beside_m = std::max(beside_m, at(state, -1.0, -3.0));
+  }
+  EXPECT_GT(ahead_m, 0.05) << "of 0.1 m";
+  EXPECT_LT(behind_m, 0.5 * ahead_m);
+  EXPECT_LT(beside_m, 0.5 * ahead_m);
+}
+
 INSTANTIATE_TEST_SUITE_P(Waters, StrokesOnDevice,
                          testing::Values(std::tuple(Bulk::kLinear, Dispersion::kNone),
                                          std::tuple(Bulk::kLinear, Dispersion::kAiry),

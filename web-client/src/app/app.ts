@@ -22,6 +22,8 @@ import { PeoplePanel } from "../ui/people_panel";
 import { QualityRow } from "../ui/quality_row";
 import { RoomPanel } from "../ui/room_panel";
 import { kStrokeLabel } from "../ui/stroke_sender";
+import { ToolBar } from "../ui/tool_bar";
+import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
 import { setAddressParameter, takeLinkToken } from "./address";
@@ -45,6 +47,7 @@ export class App {
   readonly display: Display;
   readonly effects = new EffectsPanel(byId("effects"));
   readonly drawing = new DrawingRow();
+  readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning());
   readonly room = new RoomPanel(this.commands.send);
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
@@ -62,6 +65,7 @@ export class App {
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
   private readonly fingers = new FingerTags(byId("view"));
+  private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
   private readonly answerListeners: AnswerListener[];
@@ -77,7 +81,9 @@ export class App {
   private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
   private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
-  private entered: GreetingInfo | undefined;
+  entered: GreetingInfo | undefined;
+  /** What the tool at the pointer acts on; set by pointer.ts. */
+  outline: () => Outline | undefined = () => undefined;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
@@ -158,7 +164,7 @@ export class App {
         this.hud.acked(commandId, appliedTick);
         for (const listener of this.answerListeners) listener.ack(commandId, boatId);
         const label = this.commands.takeLabel(commandId);
-        // The helm sends up to 20 commands per second, each finger 30.
+        // The helm sends up to 20 commands per second, each stroke 30.
         if (label !== kHelmLabel && label !== kStrokeLabel) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
       },
       reject: ({ reason, message, ...reject }) => {
@@ -225,9 +231,9 @@ export class App {
     if (greeting.hasBed) this.ground.ask(greeting.room);
   }
 
-  /** The server takes strokes from this visitor now. */
+  /** The server takes effects from this visitor now. */
   get mayDraw(): boolean {
-    return this.state.name === "live" && this.role !== "viewer" && this.effects.finger !== undefined;
+    return this.state.name === "live" && this.role !== "viewer" && this.effects.available;
   }
 
   /** Shows the quality that is drawn, and asks for as many frames as it needs. */
@@ -240,6 +246,7 @@ export class App {
   private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
     this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
+    this.preview.update(this.mayDraw ? this.outline() : undefined, scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 
@@ -249,6 +256,7 @@ export class App {
     const isOperator = this.role === "operator";
     this.effects.setEnabled(this.state.name === "live" && isPlayer);
     this.drawing.setAllowed(this.mayDraw);
+    this.tools.setAllowed(this.mayDraw, isOperator);
     this.boats.setAllowed(isPlayer);
     this.room.setAllowed(isOperator);
     byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;

@@ -10,7 +10,7 @@ export function connectInput(app: App): void {
 }
 
 function connectButtons({ client, commands, effects }: App): void {
-  byId("splash").addEventListener("click", () => commands.send(effects.splashAt(0, 0), "Splash"));
+  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), "Splash"));
   byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), "Wave"));
   byId("retry").addEventListener("click", () => client.call("retryNow"));
 }

@@ -1,4 +1,4 @@
-// Pointers on the canvas: a tap splashes; a drag that begins on the water draws in it, each finger for itself; everything else is left to the
+// Pointers on the canvas: a tap, a drag or a long press on the water uses the tool, each finger for itself; everything else is left to the
 // camera: the right button, two fingers that come down together, a drag that begins off the water.
 import { Vector3 } from "three";
 
@@ -6,6 +6,8 @@ import { kClickRadiusPx } from "../scene/camera/camera_hand";
 import { pickWater } from "../scene/frames/pick";
 import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
 import { kTapMs, TapDetector, toDeviceCoordinates, type PointerSample } from "../ui/tap";
+import type { Outline } from "../ui/tool_preview";
+import { heldRatio, kTapStrokeS, paddleWave, paddleWidthM, strokeSize, type StrokeSize, type Tool, type ToolScale, type WaterPlace } from "../ui/tools";
 import type { App } from "./app";
 import { nowS } from "./picture_clock";
 
@@ -15,6 +17,13 @@ const kTogetherMs = 150;
 /** A pointer that began on the water. */
 interface Hand {
   down: PointerEvent;
+  /** As they were when it came down. */
+  tool: Tool;
+  scale: ToolScale;
+  /** Of a tool that draws strokes. */
+  size: StrokeSize | undefined;
+  from: WaterPlace;
+  at: WaterPlace;
   /** What it has drawn before it counts as a stroke. */
   points: FingerPoint[];
   draws: boolean;
@@ -29,6 +38,8 @@ export class PointerHands {
   private isHandingOver = false;
   /** Time at which a touch went to the camera. */
   private cameraTouchMs = -Infinity;
+  /** Where the mouse is, while it presses nothing. */
+  private hover: PointerEvent | undefined;
 
   constructor(private readonly app: App) {
     const send = (value: StrokeMessage): void => {
@@ -46,10 +57,12 @@ export class PointerHands {
     document.addEventListener("pointerdown", () => (app.display.views.takesPointers = true));
     canvas.addEventListener("pointermove", (event) => this.moved(event));
     canvas.addEventListener("pointerup", (event) => this.released(event));
+    canvas.addEventListener("pointerleave", () => (this.hover = undefined));
     canvas.addEventListener("pointercancel", (event) => {
       this.taps.cancelled(event.pointerId);
       this.letGo(event);
     });
+    app.outline = () => this.outline();
   }
 
   /** Lifts all fingers. */
@@ -59,12 +72,12 @@ export class PointerHands {
 
   private pressed(event: PointerEvent): void {
     if (this.isHandingOver) return;
+    this.hover = undefined;
     if (event.button === 0) this.taps.pressed(sampleOf(event));
     const { app, hands } = this;
     const isTouch = event.pointerType === "touch";
-    const size = app.effects.finger;
     const button = app.drawing.drawsFirst ? 0 : 2;
-    if (!app.mayDraw || !size || event.button !== button || (isTouch && !app.drawing.drawsFirst)) return;
+    if (!app.mayDraw || event.button !== button || (isTouch && !app.drawing.drawsFirst)) return;
     const partner = isTouch ? [...hands.values()].find(({ down, draws }) => !draws && event.timeStamp - down.timeStamp < kTogetherMs && down.pointerType === "touch") : undefined;
     if (partner) return this.handOver(partner.down, event);
     const place = this.placeUnder(event);
@@ -74,20 +87,28 @@ export class PointerHands {
     }
     app.display.views.takesPointers = false;
     app.display.canvas.setPointerCapture(event.pointerId);
-    app.display.scene.ripple.press(event.pointerId, place.xM, place.zM, size, nowS());
+    const { tool } = app.tools;
+    const scale = { ...app.tools.scale };
+    const size = strokeSize(tool, app.entered!, scale);
+    if (size && tool.name === "finger") app.display.scene.ripple.press(event.pointerId, place.xM, place.zM, size, nowS());
     const timer = window.setTimeout(() => this.begin(event.pointerId), kTapMs);
-    hands.set(event.pointerId, { down: event, points: [pointOf(event, place)], draws: false, timer });
+    hands.set(event.pointerId, { down: event, tool, scale, size, from: place, at: place, points: [pointOf(event, place, scale)], draws: false, timer });
   }
 
   private moved(event: PointerEvent): void {
     const hand = this.hands.get(event.pointerId);
-    if (!hand) return;
+    if (!hand) {
+      if (event.pointerType === "mouse") this.hover = event.buttons === 0 ? event : undefined;
+      return;
+    }
     event.stopPropagation();
     const coalesced = event.getCoalescedEvents();
     for (const each of coalesced.length > 0 ? coalesced : [event]) {
       const place = this.placeUnder(each);
       if (!place) continue;
-      const point = pointOf(each, place);
+      hand.at = place;
+      if (!hand.size) continue;
+      const point = pointOf(each, place, hand.scale);
       if (hand.draws) this.sender.move(event.pointerId, point);
       else hand.points.push(point);
       this.app.display.scene.ripple.move(event.pointerId, place.xM, place.zM, nowS());
@@ -97,9 +118,38 @@ export class PointerHands {
 
   private released(event: PointerEvent): void {
     const isTap = this.taps.released(sampleOf(event));
+    const hand = this.hands.get(event.pointerId);
     this.letGo(event);
+    if (hand) return this.use(hand, isTap, event.timeStamp - hand.down.timeStamp);
     const place = isTap ? this.placeUnder(event) : undefined;
-    if (place) this.app.commands.send(this.app.effects.splashAt(place.xM, place.zM), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
+    if (place) this.tap(place, this.app.tools.tool, this.app.tools.scale);
+  }
+
+  /** A press with a tool has ended. */
+  private use({ tool, scale, from, at }: Hand, isTap: boolean, heldMs: number): void {
+    const { app } = this;
+    if (tool.name === "splash") {
+      this.splash(at, { ...scale, sizeRatio: scale.sizeRatio * heldRatio((heldMs - kTapMs / 2) / 1000) });
+    } else if (tool.name === "paddle") {
+      const wave = paddleWave(from, at, app.entered!, scale);
+      if (!wave) return app.tools.explain();
+      app.commands.send(wave, "Paddle");
+      app.tools.wasUsed();
+    } else if (isTap) {
+      this.tap(at, tool, scale);
+    }
+  }
+
+  private tap(place: WaterPlace, tool: Tool, scale: ToolScale): void {
+    const forS = kTapStrokeS[tool.name];
+    const size = strokeSize(tool, this.app.entered!, scale);
+    if (tool.name === "paddle") this.app.tools.explain();
+    else if (forS === undefined || !size) this.splash(place, tool.name === "splash" ? scale : undefined);
+    else this.sender.stay(place, size, forS, scale.strengthRatio);
+  }
+
+  private splash(place: WaterPlace, scale: ToolScale | undefined): void {
+    this.app.commands.send(this.app.effects.splashAt(place, scale), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
   }
 
   private letGo(event: PointerEvent): void {
@@ -108,16 +158,15 @@ export class PointerHands {
     this.lift(event.pointerId);
   }
 
-  /** The pointer draws from now on. */
+  /** The pointer draws from now on, if its tool draws. */
   private begin(pointerId: number): void {
     const hand = this.hands.get(pointerId);
-    const size = this.app.effects.finger;
-    if (!hand || hand.draws || !size) return;
+    if (!hand || hand.draws || !hand.size) return;
     hand.draws = true;
     window.clearTimeout(hand.timer);
     this.taps.cancelled(pointerId);
-    this.sender.begin(pointerId, hand.points.splice(0), size);
-    this.app.drawing.hasDrawn();
+    this.sender.begin(pointerId, hand.points.splice(0), hand.size);
+    this.app.tools.wasUsed();
   }
 
   private lift(pointerId: number): void {
@@ -138,7 +187,23 @@ export class PointerHands {
     this.isHandingOver = false;
   }
 
-  private placeUnder(event: PointerEvent): { xM: number; zM: number } | undefined {
+  /** What the tool acts on: of the first hand, or of the mouse where it is. A finger has its ring. */
+  private outline(): Outline | undefined {
+    const { app } = this;
+    const [hand] = this.hands.values();
+    const at = hand?.at ?? (this.hover && this.placeUnder(this.hover));
+    const { tool, scale } = hand ?? app.tools;
+    if (!at || !app.entered || tool.name === "finger") return undefined;
+    if (tool.name === "paddle") {
+      const widthM = paddleWidthM(app.entered.waterExtents.sideM, scale.sizeRatio);
+      return hand && { kind: "paddle", from: hand.from, to: at, widthM };
+    }
+    const heldS = hand ? (performance.now() - hand.down.timeStamp - kTapMs / 2) / 1000 : 0;
+    const radiusM = strokeSize(tool, app.entered, scale)?.radiusM ?? app.effects.splashRadiusM * scale.sizeRatio * heldRatio(heldS);
+    return { kind: "disc", at, radiusM };
+  }
+
+  private placeUnder(event: PointerEvent): WaterPlace | undefined {
     const { canvas, scene } = this.app.display;
     const shape = scene.shape();
     if (!shape) return undefined;
@@ -154,6 +219,7 @@ function sampleOf(event: PointerEvent): PointerSample {
 }
 
 /** Only pens tell their pressure well enough. */
-function pointOf(event: PointerEvent, place: { xM: number; zM: number }): FingerPoint {
-  return { timeMs: event.timeStamp, ...place, pressureRatio: event.pointerType === "pen" && event.pressure > 0 ? event.pressure : 1 };
+function pointOf(event: PointerEvent, place: WaterPlace, { strengthRatio }: ToolScale): FingerPoint {
+  const pressureRatio = strengthRatio * (event.pointerType === "pen" && event.pressure > 0 ? event.pressure : 1);
+  return { timeMs: event.timeStamp, ...place, pressureRatio };
 }

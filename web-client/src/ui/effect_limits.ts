@@ -4,9 +4,8 @@ import { getOption, type DescField } from "@bufbuild/protobuf";
 import type { GreetingInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
 import { BoatSchema, BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v1/scene_pb";
-import { ControlBoatSchema, SetSpeedSchema, StrokeSchema } from "../gen/spindrift/v1/wire_pb";
+import { ControlBoatSchema, SetSpeedSchema } from "../gen/spindrift/v1/wire_pb";
 import type { SliderRange } from "./slider_row";
-import type { FingerSize } from "./stroke_sender";
 
 interface EffectRange extends SliderRange {
   default: number;
@@ -24,19 +23,6 @@ export interface EffectLimits {
 const kWidestRadiusSides = 0.5;
 const kLongestWaveSides = 1;
 const kDeepestDepths = 0.9;
-
-/** The finger that suits the water: its radius as a share of the shorter side; its depth in radii, and at most this share of the depth. */
-const kFinger = { sides: 0.025, depthRadii: 0.45, depths: 0.2 };
-
-/** Size of a finger in this water; undefined if the water has no depth. */
-export function fingerSize(greeting: GreetingInfo): FingerSize | undefined {
-  const { sideM, depthM } = greeting.waterExtents;
-  if (!(depthM > 0 && Number.isFinite(depthM))) return undefined;
-  const { field } = StrokeSchema;
-  const within = (of: DescField, value: number): number => Math.min(Math.max(value, getOption(of, parameter).min), getOption(of, parameter).max);
-  const radiusM = within(field.radiusM, kFinger.sides * sideM);
-  return { radiusM, depthM: within(field.depthM, Math.min(kFinger.depthRadii * radiusM, kFinger.depths * depthM)) };
-}
 
 function range(field: DescField, largest: number): EffectRange {
   const { label, unit, min, max, step, default: fallback } = getOption(field, parameter);

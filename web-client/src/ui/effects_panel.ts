@@ -3,10 +3,10 @@ import type { GreetingInfo } from "../codec/greeting";
 import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { byId } from "./dom";
-import { clampTo, effectLimits, fingerSize, type EffectLimits } from "./effect_limits";
+import { clampTo, effectLimits, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";
 import { SliderRow } from "./slider_row";
-import type { FingerSize } from "./stroke_sender";
+import { splashOf, type ToolScale, type WaterPlace } from "./tools";
 
 type EffectKey = keyof EffectLimits;
 const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM", "waveDirectionDeg"];
@@ -33,8 +33,7 @@ const kShapes: readonly Choice[] = [
 ];
 
 export class EffectsPanel {
-  /** Size of a finger in the room's water; undefined: there is no water to draw in. */
-  finger: FingerSize | undefined;
+  private limits: EffectLimits | undefined;
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
   private readonly buttons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
@@ -48,8 +47,7 @@ export class EffectsPanel {
 
   /** Keeps the values that the new room allows. */
   enter(greeting: GreetingInfo): void {
-    const limits = effectLimits(greeting);
-    this.finger = fingerSize(greeting);
+    const limits = (this.limits = effectLimits(greeting));
     this.root.hidden = !limits;
     if (!limits) {
       this.values = undefined;
@@ -85,10 +83,14 @@ export class EffectsPanel {
     for (const button of this.buttons) button.disabled = !isEnabled || !this.available;
   }
 
-  splashAt(xM: number, zM: number): CommandAction | undefined {
-    if (!this.values) return undefined;
-    const { splashRadiusM: radiusM, splashDepthM: depthM } = this.values;
-    return { case: "splash", value: { xM, zM, radiusM, depthM } };
+  /** `scale`: over what the sliders say. */
+  splashAt(place: WaterPlace, scale: ToolScale = { sizeRatio: 1, strengthRatio: 1 }): CommandAction | undefined {
+    return this.values && this.limits && splashOf(place, this.values, this.limits, scale);
+  }
+
+  /** Radius of a splash [m]. */
+  get splashRadiusM(): number {
+    return this.values?.splashRadiusM ?? 0;
   }
 
   breakingWave(): CommandAction | undefined {

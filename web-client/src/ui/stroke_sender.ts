@@ -3,6 +3,7 @@ import type { MessageInitShape } from "@bufbuild/protobuf";
 
 import type { StrokeSchema } from "../gen/spindrift/v1/wire_pb";
 import type { SenderWorld } from "./latest_sender";
+import type { StrokeSize } from "./tools";
 
 export interface FingerPoint {
   timeMs: number;
@@ -14,12 +15,6 @@ export interface FingerPoint {
 
 /** Label of its commands. */
 export const kStrokeLabel = "Stroke";
-
-/** Size of the dent that a finger presses. */
-export interface FingerSize {
-  radiusM: number;
-  depthM: number;
-}
 
 export type StrokeMessage = MessageInitShape<typeof StrokeSchema>;
 
@@ -52,14 +47,20 @@ export class StrokeSender {
   ) {}
 
   /** A finger begins a stroke, with what it has drawn already. */
-  begin(pointerId: number, points: readonly FingerPoint[], { radiusM, depthM }: FingerSize): void {
+  begin(pointerId: number, points: readonly FingerPoint[], size: StrokeSize): void {
     const first = points[0];
     if (!first) return;
     const finger: Finger = { strokeId: this.nextId++, beganMs: first.timeMs, sentMs: this.world.nowMs(), last: first, unsent: [first] };
     this.fingers.set(pointerId, finger);
     for (const point of points.slice(1)) add(finger, point);
-    this.post(finger, { radiusM, depthM });
+    this.post(finger, size);
     this.timer ??= this.world.setTimer(() => this.flush(), this.intervalMs);
+  }
+
+  /** Sends a stroke that stays at a place for a while. */
+  stay({ xM, zM }: { xM: number; zM: number }, size: StrokeSize, forS: number, pressureRatio: number): void {
+    const points = [0, forS].map((timeS) => ({ timeS, xM, zM, pressureRatio }));
+    this.send({ strokeId: this.nextId++, points, ends: true, ...size });
   }
 
   move(pointerId: number, point: FingerPoint): void {

@@ -38,6 +38,9 @@ void checkCells(const v1::WaveScene& wave, std::vector<FieldIssue>& issues);
 /// Returns the violations by a splash or a breaking wave in this scene; paths start with "splash" or "breaking_wave".
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene);
 
+/// Returns true for tools that act on a disc around the finger: rain and calm.
+bool isDisc(v1::StrokeTool tool);
+
 /// Returns the violations by a stroke in this scene; paths start with "stroke".
 std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& scene);
 

@@ -9,6 +9,7 @@
 namespace spindrift::water {
 
 v1::Side toMessage(core::Side side);
+v1::StrokeTool toMessage(sim::StrokeTool tool);
 sim::StrokePart toStrokePart(const v1::Stroke& stroke);
 v1::WaterState toMessage(const sim::SavedState& state);
 

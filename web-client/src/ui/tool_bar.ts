@@ -1,0 +1,93 @@
+// The row of tools at the edge of the water, the line that says what the chosen one does, and its sliders. Keys 1 to 5 choose, too.
+import { byId, isTyping, make, setText } from "./dom";
+import { keepChoice, keptChoice } from "./kept";
+import { SliderRow } from "./slider_row";
+import { kTools, type Tool, type ToolName, type ToolScale } from "./tools";
+
+const kToolKey = "tool";
+const kHintKey = "has-drawn";
+const kHintS = 12;
+const kSizeRange = { label: "Tool size", unit: "%", min: 40, max: 250, step: 5 };
+const kStrengthRange = { label: "Tool strength", unit: "%", min: 20, max: 100, step: 5 };
+
+export class ToolBar {
+  private readonly hint = byId("hint");
+  private readonly buttons = new Map<ToolName, HTMLButtonElement>();
+  private readonly scales = new Map<ToolName, ToolScale>(kTools.map(({ name }) => [name, { sizeRatio: 1, strengthRatio: 1 }]));
+  private readonly size = new SliderRow("tool-size", kSizeRange, 100, "Size of the chosen tool; 100 % suits this water.", (percent) => (this.scale.sizeRatio = percent / 100));
+  private readonly strength = new SliderRow("tool-strength", kStrengthRange, 100, "Strength of the chosen tool.", (percent) => (this.scale.strengthRatio = percent / 100));
+  private current: Tool = kTools[0]!;
+  private hintTimer = 0;
+  private isGreeted = false;
+
+  /** `bar`: where the buttons go; `rows`: the sliders. */
+  constructor(
+    private readonly bar: HTMLElement,
+    rows: HTMLElement,
+    private readonly viewTurns: () => string,
+  ) {
+    for (const [k, { name, label, does }] of kTools.entries()) {
+      const button = make("button", { type: "button", "data-testid": `tool-${name}`, title: `${does} (key ${k + 1})`, class: "glass" }, [label]);
+      button.addEventListener("click", () => this.choose(name, true));
+      this.buttons.set(name, button);
+      bar.append(button);
+    }
+    rows.append(this.size.element, this.strength.element);
+    window.addEventListener("keydown", (event) => {
+      const tool = kTools[Number(event.key) - 1];
+      if (!tool || event.ctrlKey || event.altKey || event.metaKey || isTyping(event.target) || bar.hidden || this.buttons.get(tool.name)!.hidden) return;
+      this.choose(tool.name, true);
+    });
+    const kept = keptChoice(kToolKey);
+    this.choose(kTools.find(({ name }) => name === kept)?.name ?? "finger", false);
+  }
+
+  get tool(): Tool {
+    return this.current;
+  }
+
+  get scale(): ToolScale {
+    return this.scales.get(this.current.name)!;
+  }
+
+  /** `mayDraw`: there is water that this visitor may change. */
+  setAllowed(mayDraw: boolean, isOperator: boolean): void {
+    this.bar.hidden = !mayDraw;
+    this.size.element.hidden = this.strength.element.hidden = !mayDraw;
+    for (const { name, isOperators } of kTools) this.buttons.get(name)!.hidden = isOperators === true && !isOperator;
+    if (mayDraw && this.current.isOperators && !isOperator) this.choose("finger", false);
+    if (!mayDraw) this.hint.hidden = true;
+    else if (!this.isGreeted) this.greet();
+  }
+
+  /** The tool was used: no hint is needed any more. */
+  wasUsed(): void {
+    this.hint.hidden = true;
+    keepChoice(kHintKey, "1");
+  }
+
+  /** Says what the tool does. */
+  explain(text = this.current.does): void {
+    setText(this.hint, text);
+    this.hint.hidden = false;
+    window.clearTimeout(this.hintTimer);
+    this.hintTimer = window.setTimeout(() => (this.hint.hidden = true), 1000 * kHintS);
+  }
+
+  private choose(name: ToolName, isByUser: boolean): void {
+    this.current = kTools.find((tool) => tool.name === name)!;
+    for (const [each, button] of this.buttons) button.setAttribute("aria-pressed", String(each === name));
+    const { sizeRatio, strengthRatio } = this.scale;
+    this.size.show(100 * sizeRatio, "");
+    this.strength.show(100 * strengthRatio, "");
+    if (!isByUser) return;
+    keepChoice(kToolKey, name);
+    this.explain();
+  }
+
+  /** On the first visit. */
+  private greet(): void {
+    this.isGreeted = true;
+    if (keptChoice(kHintKey) === undefined) this.explain(`${this.current.does} ${this.viewTurns()}`);
+  }
+}
