@@ -4,16 +4,12 @@
 #include <cassert>
 #include <utility>
 
-#include <glad/gl.h>
 #include <spdlog/spdlog.h>
 
 namespace spindrift::gpu {
 namespace {
 
 constexpr std::size_t kMaxFaults = 64;
-constexpr std::array<GLbitfield, AccessTracker::kKindCount> kBits = {
-    GL_SHADER_STORAGE_BARRIER_BIT, GL_TEXTURE_FETCH_BARRIER_BIT, GL_UNIFORM_BARRIER_BIT, GL_COMMAND_BARRIER_BIT,
-    GL_BUFFER_UPDATE_BARRIER_BIT};
 constexpr std::array<const char*, AccessTracker::kKindCount> kKindNames = {
     "Barrier::kStorage", "Barrier::kTexel", "Barrier::kUniform", "Barrier::kIndirect", "Barrier::kBufferUpdate"};
 
@@ -38,7 +34,7 @@ void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buff
   table[binding] = &buffer;
 }
 
-std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
+Barrier AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
   // Most drivers order uploads and copies with shader reads anyway. A store over data that an operation still reads or
   // writes is not ordered. Uniform blocks and indirect arguments written by an operation need nothing.
   bool is_needed = false;
@@ -52,8 +48,8 @@ std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAc
     const BufferAccess* const buffer = at(texels_, unit.binding);
     is_needed |= buffer && buffer->update_write > barrier_at_[kTexel];
   }
-  const std::uint32_t bits = is_needed ? kBits[kStorage] | kBits[kTexel] : 0;
-  if (is_needed) barrier(bits);
+  const Barrier needed = is_needed ? Barrier::kStorageAndTexel : Barrier{};
+  barrier(needed);
 
   if (checks_) check(program, indirect);
 
@@ -76,26 +72,26 @@ std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAc
       buffer->shader_writer = program.path;
     }
   }
-  return bits;
+  return needed;
 }
 
-std::uint32_t AccessTracker::beforeUpdate(BufferAccess* from, BufferAccess* to) {
+Barrier AccessTracker::beforeUpdate(BufferAccess* from, BufferAccess* to) {
   bool is_needed = false;
   for (const BufferAccess* const buffer : {from, to}) {
     is_needed |= buffer && buffer->shader_write > barrier_at_[kUpdate];
   }
   is_needed |= to && to->shader_read > barrier_at_[kUpdate];
-  const std::uint32_t bits = is_needed ? kBits[kUpdate] : 0;
-  if (is_needed) barrier(bits);
+  const Barrier needed = is_needed ? Barrier::kBufferUpdate : Barrier{};
+  barrier(needed);
   ++now_;
   if (from) from->update_read = now_;
   if (to) to->update_write = now_;
-  return bits;
+  return needed;
 }
 
-void AccessTracker::barrier(std::uint32_t bits) {
+void AccessTracker::barrier(Barrier readers) {
   for (std::size_t kind = 0; kind < kKindCount; ++kind) {
-    if ((bits & kBits[kind]) != 0) barrier_at_[kind] = now_;
+    if ((static_cast<std::uint32_t>(readers) >> kind & 1u) != 0) barrier_at_[kind] = now_;
   }
 }
 

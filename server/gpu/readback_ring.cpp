@@ -68,7 +68,7 @@ bool ReadbackRing::Recording::copyFrom(const Buffer& source, std::size_t source_
   if (!fits(source_offset_bytes, source.sizeBytes()) || !fits(offset_bytes, state.slot_bytes)) return false;
   if (size_bytes == 0) return true;
   Context& ctx = ring_->ctx_;
-  ctx.barrierBits(ctx.accesses().beforeUpdate(source.access(), nullptr));
+  ctx.beforeUpdate(source.access(), nullptr);
   glCopyNamedBufferSubData(source.id(), ring_->buffer_id_, static_cast<GLintptr>(source_offset_bytes),
                            static_cast<GLintptr>(index_ * state.stride_bytes + offset_bytes),
                            static_cast<GLsizeiptr>(size_bytes));
