@@ -9,7 +9,6 @@
 #include <spindrift/gpu/program.h>
 
 #include "compiled_program.h"
-#include "program_resources.h"
 
 namespace spindrift::gpu {
 namespace {
