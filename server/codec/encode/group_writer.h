@@ -6,14 +6,15 @@
 #include <bit>
 #include <cassert>
 #include <cstdlib>
+#include <vector>
 
 #if defined(__SSE2__)
 #include <emmintrin.h>
 #endif
 
+#include "prefix_code.h"
 #include "processor.h"
 #include "residual_coder.h"
-#include "residual_codes.h"
 
 namespace spindrift::codec {
 
@@ -172,6 +173,14 @@ SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count)
   const int doubled_log2 = 2 * (bits - 16) + (thousands > 1189 ? 1 : 0) + (thousands > 1682 ? 1 : 0);
   return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 5, static_cast<int>(kResidualClassCount) - 1));
 }
+
+/// The writers of all fixed codes.
+struct ResidualWriters {
+  std::vector<PrefixWriter> of_class;       ///< [c - 5], c = 5..17
+  std::vector<PrefixWriter> of_class_step;  ///< one per code of the class step: three
+  [[nodiscard]] const PrefixWriter& ofClass(std::uint32_t c) const { return of_class[c - kLastSparseClass - 1]; }
+};
+const ResidualWriters& residualWriters();
 
 /// Writes groups; made by ResidualEncoder::begin() and handed back with end().
 struct GroupWriter {

@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "surface_fit.h"
-
 namespace spindrift::codec {
 
 PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {

@@ -1,7 +1,7 @@
-#include "surface_fit.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "surface_predictor.h"
 
 namespace spindrift::codec {
 namespace {
@@ -33,6 +33,8 @@ std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<d
   return x;
 }
 
+/// Planes of fewer samples per side have too few positions for a guess.
+constexpr std::size_t kGuessedResolution = 64;
 constexpr std::size_t kCount = W::kTermCount;
 constexpr std::size_t kWanted = kCount;
 /// Samples per run, runs per row, and number of rows that the fit reads.

@@ -11,10 +11,9 @@
 #include "decode/prefix_slots.h"
 #include "decode/residual_reader.h"
 #include "encode/particle_order.h"
-#include "encode/predicted_row.h"
 #include "encode/prefix_code.h"
 #include "encode/residual_coder.h"
-#include "encode/surface_fit.h"
+#include "encode/surface_predictor.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
