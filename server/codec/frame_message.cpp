@@ -6,7 +6,7 @@
 
 #include <google/protobuf/io/coded_stream.h>
 
-#include <spindrift/codec/gauge_message.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/crc32c.h>
 
@@ -76,6 +76,15 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   at = CodedOutputStream::WriteVarint32ToArray(payload_size, at);
   assert(at == bytes.data() + prefix_size);
   return core::share(std::move(bytes));
+}
+
+void writeGauge(const core::DiagnosticsView::GaugeNow& gauge, v1::GaugeReading& out) {
+  out.set_name(gauge.name);
+  out.set_elevation_m(gauge.elevation_m);
+  out.set_velocity_x_mps(gauge.velocity_x_mps);
+  out.set_velocity_z_mps(gauge.velocity_z_mps);
+  out.set_highest_m(gauge.highest_m);
+  out.set_lowest_m(gauge.lowest_m);
 }
 
 core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
