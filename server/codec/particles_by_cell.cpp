@@ -100,9 +100,7 @@ core::SharedBytes PackedParticles::encode(const core::FrameView& frame, core::Le
 core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame) {
   if (!frame.has_particles_by_cell()) return invalid("codec: not particles_by_cell");
   const v1::ParticlesByCell& header = frame.particles_by_cell();
-  if (header.count() > kParticleMaxCount) {
-    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
-  }
+  if (auto error = checkCount(header.count(), kParticleMaxCount)) return *error;
   const double min_m[3] = {header.min_x_m(), header.min_y_m(), header.min_z_m()};
   for (const double min : min_m) {
     if (auto error = checkRange("min_m", min, -kMaxMagnitude)) return *error;
@@ -122,13 +120,7 @@ core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame)
   if (!readParticles(payload.data(), payload.size(), shape, words.data()))
     return invalid("payload: it does not hold " + std::to_string(count) + " particles; the frame is damaged");
 
-  ParticleSamples out;
-  out.count = header.count();
-  out.radius_m = header.radius_m();
-  out.position_m.resize(3 * count);
-  out.velocity_mps.resize(3 * count);
-  out.tint.resize(count);
-  out.foam.resize(count);
+  ParticleSamples out = particlesOf(header);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* at = words.data() + i * kParticleWordBytes;
     std::array<std::uint16_t, 3> place;  // x, z, y
