@@ -5,9 +5,9 @@
 #include <cstring>
 
 #include "format/particle_format.h"
+#include "format/short_vectors.h"
 #include "prefix_slots.h"
 #include "residual_reader.h"
-#include "short_vectors.h"
 
 namespace spindrift::codec {
 namespace {
