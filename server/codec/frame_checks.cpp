@@ -1,7 +1,6 @@
 #include "frame_checks.h"
 
 #include <cmath>
-#include <utility>
 
 #include <spindrift/core/crc32c.h>
 #include <spindrift/core/text.h>

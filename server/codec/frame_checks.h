@@ -1,7 +1,6 @@
 // Checks that a client makes on the frames of every layer before it uses their numbers.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>

@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <numbers>
-#include <optional>
 #include <string>
 #include <tuple>
 

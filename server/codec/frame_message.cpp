@@ -28,10 +28,6 @@ constexpr std::uint32_t kPayloadTag = tagOf(v1::LayerFrame::kPayloadFieldNumber,
 static_assert(kFrameTag < 0x80 && kCrcTag < 0x80 && kPayloadTag < 0x80, "tags are written as one byte");
 constexpr std::size_t kCrcFieldBytes = 1 + 4;
 
-std::uint8_t* appendMessage(const google::protobuf::MessageLite& message, std::uint8_t* at) {
-  return message.SerializeWithCachedSizesToArray(at);
-}
-
 }  // namespace
 
 // The payload is written by hand so that it is copied exactly once. Serialized parts of a message may be concatenated;
@@ -67,11 +63,11 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   std::uint8_t* at = bytes.data();
   *at++ = static_cast<std::uint8_t>(kFrameTag);
   at = CodedOutputStream::WriteVarint32ToArray(frame_size, at);
-  at = appendMessage(head, at);
+  at = head.SerializeWithCachedSizesToArray(at);
   *at++ = static_cast<std::uint8_t>(kCrcTag);
   at = CodedOutputStream::WriteLittleEndian32ToArray(crc, at);
-  at = appendMessage(tail, at);
-  at = appendMessage(codec, at);
+  at = tail.SerializeWithCachedSizesToArray(at);
+  at = codec.SerializeWithCachedSizesToArray(at);
   *at++ = static_cast<std::uint8_t>(kPayloadTag);
   at = CodedOutputStream::WriteVarint32ToArray(payload_size, at);
   assert(at == bytes.data() + prefix_size);

@@ -54,10 +54,7 @@ class ProgramCache {
  public:
   core::Result<std::shared_ptr<CompiledProgram>> get(Context& ctx, std::string_view shader_path,
                                                      const Defines& defines);
-  /// Number of programs held, used or unused.
-  [[nodiscard]] std::size_t size() const { return entries_.size(); }
   std::uint64_t newHandle() { return ++last_handle_; }
-  void clear() { entries_.clear(); }
   /// Recompiles the programs that depend on one of these files of the context's shader folder. Errors are logged, and
   /// the old program stays in use.
   void reload(Context& ctx, const std::set<std::string>& files);

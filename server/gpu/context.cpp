@@ -105,7 +105,7 @@ Context::~Context() {
     spdlog::error("readback slots of buffer {} are still held while their context is destroyed", retired.buffer_id);
     glDeleteBuffers(1, &retired.buffer_id);
   }
-  programs_->clear();
+  programs_.reset();
   staging_.reset();
   glFinish();
   glDebugMessageCallback(nullptr, nullptr);

@@ -23,13 +23,9 @@ std::string text(const GLubyte* value) {
   return value ? reinterpret_cast<const char*>(value) : "";
 }
 
-bool hasWord(std::string_view words, std::string_view word) {
-  while (!words.empty()) {
-    const std::size_t end = std::min(words.find(' '), words.size());
-    if (words.substr(0, end) == word) return true;
-    words.remove_prefix(std::min(end + 1, words.size()));
-  }
-  return false;
+/// `words`: separated by blanks.
+bool hasWord(const std::string& words, const std::string& word) {
+  return (" " + words + " ").find(" " + word + " ") != std::string::npos;
 }
 
 std::string eglErrorText() {

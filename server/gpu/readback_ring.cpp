@@ -142,40 +142,29 @@ std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
 }
 
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
-  assert(ctx_.isOwnedHere());
-  ctx_.collectRetired();
-  // Fences are passed in order: after the first pending fence all others are pending.
-  std::size_t done = 0;
-  while (done < in_flight_.size() && in_flight_[done].fence.poll() != Fence::Status::kPending) ++done;
-  return take(done);
+  return wait(std::chrono::nanoseconds(0));
 }
 
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::chrono::nanoseconds limit) {
   assert(ctx_.isOwnedHere());
   ctx_.collectRetired();
   const auto end = std::chrono::steady_clock::now() + limit;
-  std::size_t done = 0;
-  while (done < in_flight_.size() &&
-         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
-    ++done;
-  }
-  return take(done);
-}
-
-std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::size_t count) {
   std::vector<std::shared_ptr<const Slot>> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    InFlight& flight = in_flight_[i];
-    if (flight.fence.poll() == Fence::Status::kFailed) {
+  // Fences are passed in order: after the first pending fence all others are pending.
+  auto flight = in_flight_.begin();
+  for (; flight != in_flight_.end(); ++flight) {
+    const Fence::Status status = flight->fence.wait(end - std::chrono::steady_clock::now());
+    if (status == Fence::Status::kPending) break;
+    if (status == Fence::Status::kFailed) {
       ++lost_count_;
-      state_->free(flight.index);
+      state_->free(flight->index);
       continue;
     }
-    const std::byte* const start = state_->mapped + flight.index * state_->stride_bytes;
-    out.push_back(
-        std::shared_ptr<const Slot>(new Slot(state_, flight.index, flight.tag, std::span(start, flight.used_bytes))));
+    const std::byte* const start = state_->mapped + flight->index * state_->stride_bytes;
+    out.push_back(std::shared_ptr<const Slot>(
+        new Slot(state_, flight->index, flight->tag, std::span(start, flight->used_bytes))));
   }
-  in_flight_.erase(in_flight_.begin(), in_flight_.begin() + static_cast<std::ptrdiff_t>(count));
+  in_flight_.erase(in_flight_.begin(), flight);
   return out;
 }
 

@@ -124,7 +124,8 @@ struct GroupWriter {
   BitCursor out;
   std::uint32_t residual_sum = 0;
 
-  /// The same as ResidualEncoder::putGroup().
+  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 at the edge; along a line both are
+  /// the class of the group before. Returns the group's class.
   SPINDRIFT_INLINE std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
                                           std::uint32_t above) {
     assert(count >= 1 && count <= kGroupMaxCount);

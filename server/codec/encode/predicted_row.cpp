@@ -1,7 +1,6 @@
 // The encoder spends most of its time on a surface here: each prediction reads 25 samples. With AVX2 it multiplies
 // pairs of 16-bit samples and computes sixteen predictions at a time.
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "processor.h"

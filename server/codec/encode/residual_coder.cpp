@@ -26,14 +26,6 @@ const ResidualWriters& residualWriters() {
   return kWriters;
 }
 
-std::uint32_t ResidualEncoder::putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
-                                        std::uint32_t above) {
-  GroupWriter writer = begin(1);
-  const std::uint32_t group_class = writer.putGroup(residuals, count, left, above);
-  end(writer);
-  return group_class;
-}
-
 GroupWriter ResidualEncoder::begin(std::size_t group_count) {
   return {residualWriters(), bits_.begin(group_count * GroupWriter::kGroupMaxBytes)};
 }
