@@ -148,7 +148,7 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
 }
 
 bool PlaneKeeper::take(core::ByteView message) {
-  has_frame_ = false;
+  head_.reset();
   auto parsed = parseServerMessage(message);
   if (!parsed || !parsed->has_frame()) return false;
   v1::LayerFrame& frame = *parsed->mutable_frame();
@@ -164,12 +164,11 @@ bool PlaneKeeper::take(core::ByteView message) {
   if (error) return false;
   frame.clear_payload();
   head_ = std::move(frame);
-  has_frame_ = true;
   return true;
 }
 
 core::SharedBytes PlaneKeeper::keyframe() {
-  if (!has_frame_) return nullptr;
+  if (!head_) return nullptr;
   const PlaneRow& planes = history_->memory.row();
   const auto planeOf = [&](const std::int16_t* (PlaneRow::*row)(std::size_t) const) {
     SurfacePlane out;
@@ -181,7 +180,7 @@ core::SharedBytes PlaneKeeper::keyframe() {
   const PlaneChainEncoder::Form form =
       PlaneChainEncoder::keyframeOf(planeOf(&PlaneRow::row), planeOf(&PlaneRow::earlierRow), residuals);
   v1::ServerMessage message;
-  v1::LayerFrame& frame = *message.mutable_frame() = head_;
+  v1::LayerFrame& frame = *message.mutable_frame() = *head_;
   const auto setWeights = [&](auto& header) {
     header.mutable_weights()->Assign(form.weights.of.begin(), form.weights.of.end());
     header.mutable_earlier_weights()->Assign(form.earlier_weights.of.begin(), form.earlier_weights.of.end());

@@ -37,24 +37,20 @@ Fence::Status Fence::wait(std::chrono::nanoseconds timeout) {
                                            static_cast<GLuint64>(slice.count()));
     // Check the loss first: on a lost device a fence may report that it was passed, or that the wait failed.
     if (ctx_->isLost()) {
-      finish(Status::kFailed);
+      status_ = Status::kFailed;
     } else if (status == GL_WAIT_FAILED) {
       spdlog::error("OpenGL refuses to wait for a fence (error {}); the work before it is lost", glGetError());
       ctx_->countError();
-      finish(Status::kFailed);
+      status_ = Status::kFailed;
     } else if (status != GL_TIMEOUT_EXPIRED) {
-      finish(Status::kPassed);
+      status_ = Status::kPassed;
     } else if (left <= slice) {
       break;
     }
     left -= slice;
   }
+  if (status_ != Status::kPending) sync_.reset();
   return status_;
-}
-
-void Fence::finish(Status status) {
-  sync_.reset();
-  status_ = status;
 }
 
 }  // namespace spindrift::gpu

@@ -17,15 +17,11 @@ namespace spindrift::gpu {
 /// State shared by the views and the ring; it outlives the ring.
 struct ReadbackRing::State {
   State(std::size_t bytes, std::size_t count)
-      : slot_bytes(bytes),
-        stride_bytes((bytes + 63) / 64 * 64),
-        is_used(std::make_unique<std::atomic<bool>[]>(count)),
-        slot_count(count) {}
+      : slot_bytes(bytes), stride_bytes((bytes + 63) / 64 * 64), is_used(count) {}
 
   [[nodiscard]] std::size_t usedCount() const {
-    std::size_t used = 0;
-    for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
-    return used;
+    const auto isSet = [](const std::atomic<bool>& used) { return used.load(std::memory_order_acquire); };
+    return static_cast<std::size_t>(std::ranges::count_if(is_used, isSet));
   }
   /// Frees a slot after its last reader. Release order: the reader's accesses happen before the device writes here
   /// again.
@@ -33,8 +29,7 @@ struct ReadbackRing::State {
 
   const std::size_t slot_bytes;
   const std::size_t stride_bytes;
-  const std::unique_ptr<std::atomic<bool>[]> is_used;
-  const std::size_t slot_count;
+  std::vector<std::atomic<bool>> is_used;
   const std::byte* mapped = nullptr;
 };
 
@@ -132,7 +127,7 @@ ReadbackRing::~ReadbackRing() {
 
 std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
   assert(ctx_.isOwnedHere());
-  for (std::size_t i = 0; i < state_->slot_count; ++i) {
+  for (std::size_t i = 0; i < state_->is_used.size(); ++i) {
     if (state_->is_used[i].load(std::memory_order_acquire)) continue;
     state_->is_used[i].store(true, std::memory_order_relaxed);
     return Recording(*this, i);

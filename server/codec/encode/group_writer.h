@@ -20,7 +20,7 @@ namespace spindrift::codec {
 class GroupRows {
  public:
   /// Loads eight rows of eight residuals, `stride` apart.
-  SPINDRIFT_INLINE GroupRows(const std::int16_t* first, std::size_t stride) {
+  SPINDRIFT_INLINE explicit GroupRows(const std::int16_t* first, std::size_t stride = 8) {
     for (std::size_t j = 0; j < 8; ++j) rows_[j] = loadVector<Shorts>(first + j * stride);
   }
   SPINDRIFT_INLINE void store(ResidualGroup& out) const {
@@ -126,17 +126,10 @@ struct GroupWriter {
 
   /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 at the edge; along a line both are
   /// the class of the group before. Returns the group's class.
-  SPINDRIFT_INLINE std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
+  SPINDRIFT_INLINE std::uint32_t putGroup(const GroupRows& rows, std::size_t count, std::uint32_t left,
                                           std::uint32_t above) {
     assert(count >= 1 && count <= kGroupMaxCount);
-    const GroupRows rows(residuals.of.data(), 8);
     return rows.areZero() ? putZeros(left, above) : putRows(rows, count, left, above);
-  }
-  /// Writes a whole group from eight rows of eight, `stride` apart.
-  SPINDRIFT_INLINE std::uint32_t putTile(const std::int16_t* first, std::size_t stride, std::uint32_t left,
-                                         std::uint32_t above) {
-    const GroupRows rows(first, stride);
-    return rows.areZero() ? putZeros(left, above) : putRows(rows, kGroupMaxCount, left, above);
   }
   /// Writes a group of one residual; `before`: the class of the group before it.
   SPINDRIFT_INLINE std::uint32_t putOne(std::int16_t residual, std::uint32_t before) {

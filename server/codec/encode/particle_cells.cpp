@@ -54,14 +54,14 @@ SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items,
     for (std::size_t k = 0; k < kGroupMaxCount; ++k)
       values.of[k] =
           static_cast<std::int16_t>((static_cast<std::int32_t>(words[k] << bits.up) >> bits.down) & bits.mask);
-    const int raised = 2 * GroupRows(values.of.data(), 8).sum() + static_cast<int>(count);
+    const int raised = 2 * GroupRows(values.of.data()).sum() + static_cast<int>(count);
     // Rounds to nearest. Both branches floor: the shift does, and the division is corrected for negative values.
     const int mean = count == kGroupMaxCount ? raised >> 7 : raised / doubled - (raised % doubled < 0 ? 1 : 0);
     state.mean_class = out.putOne(static_cast<std::int16_t>(mean - state.mean), state.mean_class);
     state.mean = mean;
     for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value - mean);
     for (std::size_t k = count; k < kGroupMaxCount; ++k) values.of[k] = 0;
-    state.group_class = out.putGroup(values, count, state.group_class, state.group_class);
+    state.group_class = out.putGroup(GroupRows(values.of.data()), count, state.group_class, state.group_class);
   }
   return out;
 }

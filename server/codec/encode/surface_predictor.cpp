@@ -66,11 +66,11 @@ SPINDRIFT_INLINE GroupWriter putTiles(std::span<const std::int16_t> residuals, s
     const std::int16_t* first = residuals.data() + tile * kTile;
     const std::size_t columns = std::min(kTile, n - tile * kTile);
     if (rows == kTile && columns == kTile) {
-      left = writer.putTile(first, n, left, classes[tile]);
+      left = writer.putGroup(GroupRows(first, n), kGroupMaxCount, left, classes[tile]);
     } else {
       ResidualGroup group;
       for (std::size_t j = 0; j < rows; ++j) std::copy_n(first + j * n, columns, group.of.data() + j * columns);
-      left = writer.putGroup(group, rows * columns, left, classes[tile]);
+      left = writer.putGroup(GroupRows(group.of.data()), rows * columns, left, classes[tile]);
     }
     classes[tile] = left;
   }

@@ -87,7 +87,7 @@ TEST(Residuals, RoundTripAtEverySize) {
         if (k % 3 == 0 && random() % 8 != 0) group.residuals.of[i] = 0;
       }
       GroupWriter writer = out.begin(1);
-      group.group_class = writer.putGroup(group.residuals, group.count, group.left, group.above);
+      group.group_class = writer.putGroup(GroupRows(group.residuals.of.data()), group.count, group.left, group.above);
       out.end(writer);
       groups.push_back(group);
     }

@@ -31,7 +31,6 @@ class Fence {
   struct DeleteSync {
     void operator()(void* sync) const;
   };
-  void finish(Status status);
 
   Context* ctx_ = nullptr;
   std::unique_ptr<void, DeleteSync> sync_;  ///< GLsync; null once the result is final
