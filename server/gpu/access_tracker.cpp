@@ -21,15 +21,14 @@ std::string quoted(const BufferAccess& buffer) {
 
 void AccessTracker::remove(BufferAccess& buffer) {
   buffers_.erase(&buffer);
-  for (Table* const table : {&storage_, &uniforms_, &texels_}) {
-    std::replace(table->begin(), table->end(), &buffer, static_cast<BufferAccess*>(nullptr));
-  }
+  for (auto& table : bound_) std::ranges::replace(table, &buffer, nullptr);
 }
 
-void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buffer) {
+void AccessTracker::bind(Kind kind, std::uint32_t binding, BufferAccess& buffer) {
   constexpr std::uint32_t kMaxBinding = 1024;  // far above the limits of drivers, which refuse larger numbers
   assert(binding < kMaxBinding);
   if (binding >= kMaxBinding) return;
+  std::vector<BufferAccess*>& table = bound_[kind];
   if (binding >= table.size()) table.resize(binding + 1, nullptr);
   table[binding] = &buffer;
 }
@@ -39,13 +38,13 @@ Barrier AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* 
   // writes is not ordered. Uniform blocks and indirect arguments written by an operation need nothing.
   bool is_needed = false;
   for (const ProgramUses::Block& block : program.storage) {
-    const BufferAccess* const buffer = at(storage_, block.binding);
+    const BufferAccess* const buffer = at(kStorage, block.binding);
     if (!buffer) continue;
     is_needed |= buffer->update_write > barrier_at_[kStorage];
     is_needed |= block.is_written && buffer->update_read > barrier_at_[kStorage];
   }
   for (const ProgramUses::Block& unit : program.texels) {
-    const BufferAccess* const buffer = at(texels_, unit.binding);
+    const BufferAccess* const buffer = at(kTexel, unit.binding);
     is_needed |= buffer && buffer->update_write > barrier_at_[kTexel];
   }
   const Barrier needed = is_needed ? Barrier::kStorageAndTexel : Barrier{};
@@ -55,13 +54,13 @@ Barrier AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* 
 
   ++now_;
   for (const ProgramUses::Block& unit : program.texels) {
-    if (BufferAccess* const buffer = at(texels_, unit.binding)) {
+    if (BufferAccess* const buffer = at(kTexel, unit.binding)) {
       buffer->shader_read = now_;
       buffer->shader_reader = program.path;
     }
   }
   for (const ProgramUses::Block& block : program.storage) {
-    BufferAccess* const buffer = at(storage_, block.binding);
+    BufferAccess* const buffer = at(kStorage, block.binding);
     if (!buffer) continue;
     if (block.is_read) {
       buffer->shader_read = now_;
@@ -96,8 +95,8 @@ void AccessTracker::barrier(Barrier readers) {
 }
 
 void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
-  const auto bound = [&](const Table& table, const ProgramUses::Block& block, const char* what) {
-    const BufferAccess* const buffer = at(table, block.binding);
+  const auto bound = [&](Kind kind, const ProgramUses::Block& block, const char* what) {
+    const BufferAccess* const buffer = at(kind, block.binding);
     if (!buffer) {
       fault(std::string(program.path) + " uses " + what + " " + std::to_string(block.binding) + " (" + block.name +
             "), where no buffer is bound");
@@ -106,7 +105,7 @@ void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
   };
   if (indirect) checkRead(program, *indirect, kIndirect);
   for (const ProgramUses::Block& block : program.uniforms) {
-    const BufferAccess* const buffer = bound(uniforms_, block, "uniform binding");
+    const BufferAccess* const buffer = bound(kUniform, block, "uniform binding");
     if (!buffer) continue;
     checkRead(program, *buffer, kUniform);
     if (buffer->size_bytes < block.size_bytes) {
@@ -116,10 +115,10 @@ void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
     }
   }
   for (const ProgramUses::Block& unit : program.texels) {
-    if (const BufferAccess* const buffer = bound(texels_, unit, "texture unit")) checkRead(program, *buffer, kTexel);
+    if (const BufferAccess* const buffer = bound(kTexel, unit, "texture unit")) checkRead(program, *buffer, kTexel);
   }
   for (const ProgramUses::Block& block : program.storage) {
-    const BufferAccess* const buffer = bound(storage_, block, "storage binding");
+    const BufferAccess* const buffer = bound(kStorage, block, "storage binding");
     if (!buffer) continue;
     if (block.is_read) checkRead(program, *buffer, kStorage);
     if (block.is_written) checkWrite(program, *buffer);

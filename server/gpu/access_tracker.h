@@ -64,9 +64,8 @@ class AccessTracker {
   void remove(BufferAccess& buffer);
   [[nodiscard]] const std::set<BufferAccess*>& buffers() const { return buffers_; }
 
-  void bindStorage(std::uint32_t binding, BufferAccess& buffer) { bind(storage_, binding, buffer); }
-  void bindUniform(std::uint32_t binding, BufferAccess& buffer) { bind(uniforms_, binding, buffer); }
-  void bindTexel(std::uint32_t unit, BufferAccess& buffer) { bind(texels_, unit, buffer); }
+  /// `kind`: kStorage or kUniform, or kTexel with the texture unit as `binding`.
+  void bind(Kind kind, std::uint32_t binding, BufferAccess& buffer);
 
   /// Called before a dispatch. Returns the barrier needed after earlier uploads, clears and copies, or 0; the caller
   /// issues it. `indirect`: the buffer with the group counts, or null.
@@ -80,10 +79,9 @@ class AccessTracker {
   [[nodiscard]] bool hasFaults() const { return !faults_.empty(); }
 
  private:
-  using Table = std::vector<BufferAccess*>;
-  static void bind(Table& table, std::uint32_t binding, BufferAccess& buffer);
-  static BufferAccess* at(const Table& table, std::uint32_t binding) {
-    return binding < table.size() ? table[binding] : nullptr;
+  /// Returns the buffer that is bound there, or null.
+  [[nodiscard]] BufferAccess* at(Kind kind, std::uint32_t binding) const {
+    return binding < bound_[kind].size() ? bound_[kind][binding] : nullptr;
   }
 
   void check(const ProgramUses& program, BufferAccess* indirect);
@@ -95,10 +93,8 @@ class AccessTracker {
   std::uint64_t now_ = 0;
   std::array<std::uint64_t, kKindCount> barrier_at_{};
   std::set<BufferAccess*> buffers_;
-  Table storage_;
-  Table uniforms_;
-  Table texels_;
-  std::set<std::string> known_faults_;  ///< bounded, see fault()
+  std::array<std::vector<BufferAccess*>, kIndirect> bound_;  ///< by kind and binding
+  std::set<std::string> known_faults_;                       ///< bounded, see fault()
   std::vector<std::string> faults_;
 };
 

@@ -142,13 +142,13 @@ void Buffer::copyFrom(const Buffer& source, std::size_t source_offset_bytes, std
 
 void Buffer::bindStorage(std::uint32_t binding) const {
   BufferAccess& buffer = current();
-  buffer.ctx.accesses().bindStorage(binding, buffer);
+  buffer.ctx.accesses().bind(AccessTracker::kStorage, binding, buffer);
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer.buffer_id);
 }
 
 void Buffer::bindUniform(std::uint32_t binding) const {
   BufferAccess& buffer = current();
-  buffer.ctx.accesses().bindUniform(binding, buffer);
+  buffer.ctx.accesses().bind(AccessTracker::kUniform, binding, buffer);
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.buffer_id);
 }
 
@@ -195,7 +195,7 @@ core::Result<TexelBuffer> TexelBuffer::create(Context& ctx, std::string_view nam
 
 void TexelBuffer::bindTexel(std::uint32_t unit) const {
   BufferAccess& buffer = current();
-  buffer.ctx.accesses().bindTexel(unit, buffer);
+  buffer.ctx.accesses().bind(AccessTracker::kTexel, unit, buffer);
   glBindTextureUnit(unit, buffer.texture_id);
 }
 

@@ -48,9 +48,8 @@ core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
   }
   if (const std::string uuid = uuidOf(text); !uuid.empty())
     return DeviceChoice{.kind = DeviceChoice::Kind::kName, .name = uuid};
-  return core::Error{core::ErrorCode::kInvalidInput,
-                     "device \"" + std::string(text) + "\" is not auto, software, an index from 0 to " +
-                         std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`"};
+  return core::invalid("device \"" + std::string(text) + "\" is not auto, software, an index from 0 to " +
+                       std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`");
 }
 
 std::vector<DeviceInfo> listDevices() {

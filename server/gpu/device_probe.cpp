@@ -9,8 +9,8 @@
 
 #include <spindrift/gpu/embedded_shader.h>
 
-#include "device_advice.h"
 #include "device_needs.h"
+#include "device_selection.h"
 #include "gl_errors.h"
 
 namespace spindrift::gpu {

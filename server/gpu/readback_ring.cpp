@@ -83,9 +83,8 @@ core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, s
   ctx.collectRetired();
   const std::string title = "readback ring \"" + std::string(name) + "\": ";
   if (slot_bytes == 0 || slot_count == 0) {
-    return core::Error{core::ErrorCode::kInvalidInput, title + "needs at least 1 slot of at least 1 byte, not " +
-                                                           std::to_string(slot_count) + " of " +
-                                                           std::to_string(slot_bytes)};
+    return core::invalid(title + "needs at least 1 slot of at least 1 byte, not " + std::to_string(slot_count) +
+                         " of " + std::to_string(slot_bytes));
   }
   auto state = std::make_shared<State>(slot_bytes, slot_count);
   const std::size_t size_bytes = state->stride_bytes * slot_count;
