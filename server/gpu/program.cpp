@@ -53,6 +53,10 @@ void Program::Uncount::operator()(Context* ctx) const {
   --ctx->ledgerEntry().program_count;
 }
 
+std::uint32_t Program::id() const {
+  return compiled_ ? compiled_->id : 0;
+}
+
 std::array<std::uint32_t, 3> Program::groupSize() const {
   assert(compiled_);
   return compiled_->group_size;

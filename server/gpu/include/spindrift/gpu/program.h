@@ -46,6 +46,7 @@ class Program {
   /// original file and line; a path that was not embedded is an error too.
   static core::Result<Program> create(Context& ctx, std::string_view shader_path, const Defines& defines = {});
 
+  [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when empty
   explicit operator bool() const { return compiled_ != nullptr; }
 
   /// Returns the local size from the linked program; host code takes it from nowhere else.
