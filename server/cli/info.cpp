@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/core/version.h>
-#include <spindrift/gpu/info.h>
+#include <spindrift/gpu/device.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/wire/client_message.h>
 

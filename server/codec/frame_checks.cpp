@@ -1,9 +1,7 @@
 #include "frame_checks.h"
 
 #include <cmath>
-#include <utility>
 
-#include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/crc32c.h>
 #include <spindrift/core/text.h>
 
@@ -13,6 +11,11 @@ std::optional<core::Error> checkRange(const char* name, double value, double min
   if (value >= min && value <= kMaxMagnitude) return std::nullopt;
   return invalid(std::string(name) + ": " + core::formatNumber(value) + " is not a finite number from " +
                  core::formatNumber(min) + " to " + core::formatNumber(kMaxMagnitude) + "; the frame is damaged");
+}
+
+std::optional<core::Error> checkCount(std::size_t count, std::size_t max) {
+  if (count <= max) return std::nullopt;
+  return invalid("count: " + std::to_string(count) + " is above " + std::to_string(max));
 }
 
 std::optional<core::Error> checkExtents(const PlaneExtents& extents) {

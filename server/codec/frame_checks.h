@@ -1,10 +1,11 @@
 // Checks that a client makes on the frames of every layer before it uses their numbers.
 #pragma once
 
-#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/bytes.h>
 #include <spindrift/core/cell_counts.h>
 #include <spindrift/core/result.h>
@@ -20,6 +21,21 @@ using core::viewOf;
 
 /// Requires min <= value <= kMaxMagnitude; NaN is out of range too.
 std::optional<core::Error> checkRange(const char* name, double value, double min);
+
+/// Requires count <= max.
+std::optional<core::Error> checkCount(std::size_t count, std::size_t max);
+
+/// Returns room for the particles of a header, and what it says of all of them.
+template <typename Header>
+ParticleSamples particlesOf(const Header& header) {
+  const std::size_t count = header.count();
+  return {.count = header.count(),
+          .radius_m = header.radius_m(),
+          .position_m = std::vector<float>(3 * count),
+          .velocity_mps = std::vector<float>(3 * count),
+          .tint = core::Bytes(count),
+          .foam = core::Bytes(count)};
+}
 
 /// Samples and extent of a plane, as the headers of all planes have them: what is left out along z is as along x.
 struct PlaneExtents {

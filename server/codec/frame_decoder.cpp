@@ -1,11 +1,9 @@
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstring>
 #include <numbers>
-#include <optional>
 #include <string>
-#include <utility>
+#include <tuple>
 
 #include <google/protobuf/stubs/logging.h>
 
@@ -21,57 +19,12 @@ static_assert(std::endian::native == std::endian::little, "payload integers are 
 constexpr std::size_t kSampleBytes = 2;
 constexpr std::size_t kParticleBytes = 12;
 constexpr std::size_t kBodyBytes = 28;
+
 template <typename Integer>
 Integer load(const std::uint8_t* at) {
   Integer value{};
   std::memcpy(&value, at, sizeof value);
   return value;
-}
-
-std::optional<core::Error> checkSurface(const v1::LayerFrame& frame) {
-  if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
-  const v1::SurfaceFixed16& header = frame.surface_fixed16();
-  const PlaneExtents extents = extentsOf(header);
-  if (auto error = checkExtents(extents)) return error;
-  // With a quantum of 0 all samples would be flat whatever the payload.
-  if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return error;
-  return checkPlainFrame(frame, v1::LAYER_SURFACE, extents.count.total() * kSampleBytes);
-}
-
-std::optional<core::Error> checkParticles(const v1::LayerFrame& frame) {
-  if (!frame.has_particles_fixed12()) {
-    return invalid("codec: not particles_fixed12, the only particle codec known here");
-  }
-  const v1::ParticlesFixed12& header = frame.particles_fixed12();
-  if (header.count() > kParticleMaxCount) {
-    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
-  }
-  if (auto error = checkRange("min_x_m", header.min_x_m(), -kMaxMagnitude)) return error;
-  if (auto error = checkRange("min_y_m", header.min_y_m(), -kMaxMagnitude)) return error;
-  if (auto error = checkRange("min_z_m", header.min_z_m(), -kMaxMagnitude)) return error;
-  if (auto error = checkRange("max_x_m", header.max_x_m(), header.min_x_m())) return error;
-  if (auto error = checkRange("max_y_m", header.max_y_m(), header.min_y_m())) return error;
-  if (auto error = checkRange("max_z_m", header.max_z_m(), header.min_z_m())) return error;
-  if (auto error = checkRange("max_speed_mps", header.max_speed_mps(), 0.0)) return error;
-  if (auto error = checkRange("radius_m", header.radius_m(), 0.0)) return error;
-  return checkPlainFrame(frame, v1::LAYER_PARTICLES, header.count() * kParticleBytes);
-}
-
-std::optional<core::Error> checkFoam(const v1::LayerFrame& frame) {
-  if (!frame.has_foam_fixed8()) return invalid("codec: not foam_fixed8, the only foam codec known here");
-  const v1::FoamFixed8& header = frame.foam_fixed8();
-  const PlaneExtents extents = extentsOf(header);
-  if (auto error = checkExtents(extents)) return error;
-  return checkPlainFrame(frame, v1::LAYER_FOAM, extents.count.total());
-}
-
-std::optional<core::Error> checkBodies(const v1::LayerFrame& frame) {
-  if (!frame.has_bodies_fixed28()) return invalid("codec: not bodies_fixed28, the only codec of bodies known here");
-  const std::size_t count = frame.bodies_fixed28().count();
-  if (count > kBodyMaxCount) {
-    return invalid("count: " + std::to_string(count) + " is above " + std::to_string(kBodyMaxCount));
-  }
-  return checkPlainFrame(frame, v1::LAYER_BODIES, count * kBodyBytes);
 }
 
 }  // namespace
@@ -93,14 +46,14 @@ core::Result<v1::ServerMessage> parseServerMessage(core::ByteView bytes) {
 }
 
 core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
-  if (auto error = checkSurface(frame)) return *error;
+  if (!frame.has_surface_fixed16()) return invalid("codec: not surface_fixed16, the only surface codec known here");
   const v1::SurfaceFixed16& header = frame.surface_fixed16();
   const PlaneExtents extents = extentsOf(header);
-  SurfaceSamples out;
-  out.count = extents.count;
-  out.length_m = extents.length_m;
-  out.width_m = extents.width_m;
-  out.quantum_m = header.quantum_m();
+  if (auto error = checkExtents(extents)) return *error;
+  // With a quantum of 0 all samples would be flat whatever the payload.
+  if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return *error;
+  if (auto error = checkPlainFrame(frame, v1::LAYER_SURFACE, extents.count.total() * kSampleBytes)) return *error;
+  SurfaceSamples out{extents.count, extents.length_m, extents.width_m, header.quantum_m(), {}};
   const core::ByteView payload = viewOf(frame.payload());
   out.elevation_m.resize(payload.size() / kSampleBytes);
   for (std::size_t i = 0; i < out.elevation_m.size(); ++i) {
@@ -110,16 +63,21 @@ core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
 }
 
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
-  if (auto error = checkParticles(frame)) return *error;
+  if (!frame.has_particles_fixed12())
+    return invalid("codec: not particles_fixed12, the only particle codec known here");
   const v1::ParticlesFixed12& header = frame.particles_fixed12();
+  if (auto error = checkCount(header.count(), kParticleMaxCount)) return *error;
+  const std::tuple<const char*, double, double> ranges[] = {
+      {"min_x_m", header.min_x_m(), -kMaxMagnitude},   {"min_y_m", header.min_y_m(), -kMaxMagnitude},
+      {"min_z_m", header.min_z_m(), -kMaxMagnitude},   {"max_x_m", header.max_x_m(), header.min_x_m()},
+      {"max_y_m", header.max_y_m(), header.min_y_m()}, {"max_z_m", header.max_z_m(), header.min_z_m()},
+      {"max_speed_mps", header.max_speed_mps(), 0.0},  {"radius_m", header.radius_m(), 0.0}};
+  for (const auto& [name, value, min] : ranges) {
+    if (auto error = checkRange(name, value, min)) return *error;
+  }
   const std::size_t count = header.count();
-  ParticleSamples out;
-  out.count = header.count();
-  out.radius_m = header.radius_m();
-  out.position_m.resize(3 * count);
-  out.velocity_mps.resize(3 * count);
-  out.tint.resize(count);
-  out.foam.resize(count);
+  if (auto error = checkPlainFrame(frame, v1::LAYER_PARTICLES, count * kParticleBytes)) return *error;
+  ParticleSamples out = particlesOf(header);
   const auto position = [](std::uint16_t value, double min_m, double max_m) {
     return static_cast<float>(min_m + value / 65535.0 * (max_m - min_m));
   };
@@ -140,24 +98,24 @@ core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame) {
 }
 
 core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
-  if (auto error = checkFoam(frame)) return *error;
+  if (!frame.has_foam_fixed8()) return invalid("codec: not foam_fixed8, the only foam codec known here");
   const PlaneExtents extents = extentsOf(frame.foam_fixed8());
-  FoamSamples out;
-  out.count = extents.count;
-  out.length_m = extents.length_m;
-  out.width_m = extents.width_m;
+  if (auto error = checkExtents(extents)) return *error;
+  if (auto error = checkPlainFrame(frame, v1::LAYER_FOAM, extents.count.total())) return *error;
   const core::ByteView payload = viewOf(frame.payload());
-  out.foam.assign(payload.begin(), payload.end());
-  return out;
+  return FoamSamples{extents.count, extents.length_m, extents.width_m, {payload.begin(), payload.end()}};
 }
 
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) {
-  if (auto error = checkBodies(frame)) return *error;
+  if (!frame.has_bodies_fixed28()) return invalid("codec: not bodies_fixed28, the only codec of bodies known here");
+  const std::size_t count = frame.bodies_fixed28().count();
+  if (auto error = checkCount(count, kBodyMaxCount)) return *error;
+  if (auto error = checkPlainFrame(frame, v1::LAYER_BODIES, count * kBodyBytes)) return *error;
   const core::ByteView payload = viewOf(frame.payload());
   const auto angle = [](std::int16_t value) { return value / 32767.0 * std::numbers::pi; };
   const auto ratio = [](std::uint8_t byte) { return std::max(static_cast<std::int8_t>(byte) / 127.0, -1.0); };
   std::vector<BodySample> out;
-  for (std::size_t i = 0; i < frame.bodies_fixed28().count(); ++i) {
+  for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* at = payload.data() + i * kBodyBytes;
     BodySample body;
     body.boat_id = load<std::uint32_t>(at);

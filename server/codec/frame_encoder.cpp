@@ -1,16 +1,14 @@
-#include <array>
 #include <bit>
 #include <cassert>
 #include <cstddef>
 #include <optional>
 #include <span>
-#include <utility>
 
 #include <spindrift/codec/frame_encoder.h>
 
 #include "frame_checks.h"
 #include "frame_message.h"
-#include "layer_codec.h"
+#include "packed_codecs.h"
 
 namespace spindrift::codec {
 namespace {
@@ -18,107 +16,88 @@ namespace {
 static_assert(std::endian::native == std::endian::little, "packed words are sent as they lie in memory");
 
 /// Returns a keyframe with the first bytes of the words as its payload.
-EncodedFrame plain(const core::FrameView& frame, v1::Layer layer, core::Level level, const v1::LayerFrame& codec,
-                   std::span<const std::uint32_t> words, std::size_t byte_count) {
+core::SharedBytes plain(const core::FrameView& frame, v1::Layer layer, core::Level level, const v1::LayerFrame& codec,
+                        std::span<const std::uint32_t> words, std::size_t byte_count) {
   assert(byte_count <= words.size_bytes() && byte_count + 4 > words.size_bytes());
   const auto* payload = reinterpret_cast<const std::uint8_t*>(words.data());
-  return {.keyframe = serializeFrame(frame, layer, level, std::nullopt, codec, {payload, byte_count}),
-          .delta = nullptr};
+  return serializeFrame(frame, layer, level, std::nullopt, codec, {payload, byte_count});
 }
 
-class SurfaceFixed16Codec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
-    if (!frame.at(level).surface) return {};
-    const core::SurfaceView& surface = *frame.at(level).surface;
-    v1::LayerFrame codec;
-    v1::SurfaceFixed16& header = *codec.mutable_surface_fixed16();
-    setExtents({surface.count, surface.length_m, surface.width_m}, header);
-    header.set_quantum_m(surface.quantum_m);
-    return plain(frame, v1::LAYER_SURFACE, level, codec, surface.words, 2 * surface.count.total());
-  }
-};
+core::SharedBytes plainSurface(const core::FrameView& frame, core::Level level) {
+  if (!frame.at(level).surface) return nullptr;
+  const core::SurfaceView& surface = *frame.at(level).surface;
+  v1::LayerFrame codec;
+  v1::SurfaceFixed16& header = *codec.mutable_surface_fixed16();
+  setExtents({surface.count, surface.length_m, surface.width_m}, header);
+  header.set_quantum_m(surface.quantum_m);
+  return plain(frame, v1::LAYER_SURFACE, level, codec, surface.words, 2 * surface.count.total());
+}
 
-class ParticlesFixed12Codec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
-    if (!frame.at(level).particles) return {};
-    const core::ParticleView& particles = *frame.at(level).particles;
-    assert(particles.words.size() == std::size_t{3} * particles.count);
-    v1::LayerFrame codec;
-    v1::ParticlesFixed12& header = *codec.mutable_particles_fixed12();
-    header.set_count(particles.count);
-    header.set_min_x_m(particles.min_m[0]);
-    header.set_min_y_m(particles.min_m[1]);
-    header.set_min_z_m(particles.min_m[2]);
-    header.set_max_x_m(particles.max_m[0]);
-    header.set_max_y_m(particles.max_m[1]);
-    header.set_max_z_m(particles.max_m[2]);
-    header.set_max_speed_mps(particles.max_speed_mps);
-    header.set_radius_m(particles.radius_m);
-    return plain(frame, v1::LAYER_PARTICLES, level, codec, particles.words, particles.words.size_bytes());
-  }
-};
+core::SharedBytes plainParticles(const core::FrameView& frame, core::Level level) {
+  if (!frame.at(level).particles) return nullptr;
+  const core::ParticleView& particles = *frame.at(level).particles;
+  assert(particles.words.size() == std::size_t{3} * particles.count);
+  v1::LayerFrame codec;
+  v1::ParticlesFixed12& header = *codec.mutable_particles_fixed12();
+  header.set_count(particles.count);
+  header.set_min_x_m(particles.min_m[0]);
+  header.set_min_y_m(particles.min_m[1]);
+  header.set_min_z_m(particles.min_m[2]);
+  header.set_max_x_m(particles.max_m[0]);
+  header.set_max_y_m(particles.max_m[1]);
+  header.set_max_z_m(particles.max_m[2]);
+  header.set_max_speed_mps(particles.max_speed_mps);
+  header.set_radius_m(particles.radius_m);
+  return plain(frame, v1::LAYER_PARTICLES, level, codec, particles.words, particles.words.size_bytes());
+}
 
-class FoamFixed8Codec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
-    if (!frame.at(level).foam) return {};
-    const core::FoamView& foam = *frame.at(level).foam;
-    v1::LayerFrame codec;
-    setExtents({foam.count, foam.length_m, foam.width_m}, *codec.mutable_foam_fixed8());
-    return plain(frame, v1::LAYER_FOAM, level, codec, foam.words, foam.count.total());
-  }
-};
+core::SharedBytes plainFoam(const core::FrameView& frame, core::Level level) {
+  if (!frame.at(level).foam) return nullptr;
+  const core::FoamView& foam = *frame.at(level).foam;
+  v1::LayerFrame codec;
+  setExtents({foam.count, foam.length_m, foam.width_m}, *codec.mutable_foam_fixed8());
+  return plain(frame, v1::LAYER_FOAM, level, codec, foam.words, foam.count.total());
+}
 
-class BodiesFixed28Codec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
-    if (!frame.bodies) return {};
-    assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
-    v1::LayerFrame codec;
-    codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
-    return plain(frame, v1::LAYER_BODIES, level, codec, frame.bodies->words, frame.bodies->words.size_bytes());
-  }
-};
-
-class DiagnosticsCodec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level, bool) override {
-    return {serializeDiagnostics(frame), nullptr};
-  }
-};
-
-/// Returns null for a stream that does not exist.
-std::unique_ptr<LayerCodec> makeCodec(Stream stream) {
-  const bool is_packed = stream.packing == v1::PACKING_PACKED;
-  switch (stream.layer) {
-    case v1::LAYER_SURFACE:
-      return is_packed ? makeSurfacePredictedCodec() : std::make_unique<SurfaceFixed16Codec>();
-    case v1::LAYER_PARTICLES:
-      return is_packed ? makeParticlesByCellCodec() : std::make_unique<ParticlesFixed12Codec>();
-    case v1::LAYER_FOAM:
-      return is_packed ? makeFoamPredictedCodec() : std::make_unique<FoamFixed8Codec>();
-    case v1::LAYER_BODIES:
-      return is_packed ? nullptr : std::make_unique<BodiesFixed28Codec>();
-    case v1::LAYER_DIAGNOSTICS:
-      return is_packed ? nullptr : std::make_unique<DiagnosticsCodec>();
-    default:
-      return nullptr;
-  }
+core::SharedBytes plainBodies(const core::FrameView& frame) {
+  if (!frame.bodies) return nullptr;
+  assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
+  v1::LayerFrame codec;
+  codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
+  return plain(frame, v1::LAYER_BODIES, core::Level::kFull, codec, frame.bodies->words,
+               frame.bodies->words.size_bytes());
 }
 
 }  // namespace
 
-FrameEncoder::FrameEncoder() = default;
+struct FrameEncoder::Packed {
+  PackedPlanes surface, foam;
+  PackedParticles particles;
+};
+
+FrameEncoder::FrameEncoder() : packed_(std::make_unique<Packed[]>(core::kLevelCount)) {}
 FrameEncoder::~FrameEncoder() = default;
 
 EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, core::Level level, bool wants_keyframe) {
   if (!hasLevels(stream.layer) && level != core::Level::kFull) return {};
-  std::unique_ptr<LayerCodec>& codec = codecs_.at(indexOf(stream))[core::indexOf(level)];
-  if (!codec) codec = makeCodec(stream);
-  if (!codec) return {};
-  return codec->encode(frame, level, wants_keyframe);
+  const bool is_packed = stream.packing == v1::PACKING_PACKED;
+  Packed& packed = packed_[core::indexOf(level)];
+  switch (stream.layer) {
+    case v1::LAYER_SURFACE:
+      if (is_packed) return packed.surface.encodeSurface(frame, level, wants_keyframe);
+      return {plainSurface(frame, level), nullptr};
+    case v1::LAYER_PARTICLES:
+      return {is_packed ? packed.particles.encode(frame, level) : plainParticles(frame, level), nullptr};
+    case v1::LAYER_FOAM:
+      if (is_packed) return packed.foam.encodeFoam(frame, level, wants_keyframe);
+      return {plainFoam(frame, level), nullptr};
+    case v1::LAYER_BODIES:
+      return {is_packed ? nullptr : plainBodies(frame), nullptr};
+    case v1::LAYER_DIAGNOSTICS:
+      return {is_packed ? nullptr : serializeDiagnostics(frame), nullptr};
+    default:
+      return {};
+  }
 }
 
 }  // namespace spindrift::codec

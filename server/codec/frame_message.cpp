@@ -6,7 +6,7 @@
 
 #include <google/protobuf/io/coded_stream.h>
 
-#include <spindrift/codec/gauge_message.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/crc32c.h>
 
@@ -27,10 +27,6 @@ constexpr std::uint32_t kCrcTag = tagOf(v1::LayerFrame::kCrc32CFieldNumber, kWir
 constexpr std::uint32_t kPayloadTag = tagOf(v1::LayerFrame::kPayloadFieldNumber, kWireLengthDelimited);
 static_assert(kFrameTag < 0x80 && kCrcTag < 0x80 && kPayloadTag < 0x80, "tags are written as one byte");
 constexpr std::size_t kCrcFieldBytes = 1 + 4;
-
-std::uint8_t* appendMessage(const google::protobuf::MessageLite& message, std::uint8_t* at) {
-  return message.SerializeWithCachedSizesToArray(at);
-}
 
 }  // namespace
 
@@ -67,15 +63,24 @@ core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, 
   std::uint8_t* at = bytes.data();
   *at++ = static_cast<std::uint8_t>(kFrameTag);
   at = CodedOutputStream::WriteVarint32ToArray(frame_size, at);
-  at = appendMessage(head, at);
+  at = head.SerializeWithCachedSizesToArray(at);
   *at++ = static_cast<std::uint8_t>(kCrcTag);
   at = CodedOutputStream::WriteLittleEndian32ToArray(crc, at);
-  at = appendMessage(tail, at);
-  at = appendMessage(codec, at);
+  at = tail.SerializeWithCachedSizesToArray(at);
+  at = codec.SerializeWithCachedSizesToArray(at);
   *at++ = static_cast<std::uint8_t>(kPayloadTag);
   at = CodedOutputStream::WriteVarint32ToArray(payload_size, at);
   assert(at == bytes.data() + prefix_size);
   return core::share(std::move(bytes));
+}
+
+void writeGauge(const core::DiagnosticsView::GaugeNow& gauge, v1::GaugeReading& out) {
+  out.set_name(gauge.name);
+  out.set_elevation_m(gauge.elevation_m);
+  out.set_velocity_x_mps(gauge.velocity_x_mps);
+  out.set_velocity_z_mps(gauge.velocity_z_mps);
+  out.set_highest_m(gauge.highest_m);
+  out.set_lowest_m(gauge.lowest_m);
 }
 
 core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {

@@ -5,13 +5,10 @@
 #include <cstring>
 
 #include <spindrift/codec/frame_decoder.h>
-#include <spindrift/codec/frame_encoder.h>
 
 #include "decode/particle_reader.h"
-#include "encode/particle_cells.h"
-#include "frame_checks.h"
 #include "frame_message.h"
-#include "layer_codec.h"
+#include "packed_codecs.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
@@ -50,45 +47,6 @@ Grid gridOf(const core::ParticleView& particles) {
   return grid;
 }
 
-class ParticlesByCellCodec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool) override {
-    if (!frame.at(level).particles) return {};
-    const core::ParticleView& particles = *frame.at(level).particles;
-    const Grid grid = gridOf(particles);
-    const double velocity_quantum_mps = std::max(2 * grid.quantum_m() / kAdvance_s, particles.max_speed_mps / 127);
-    v1::LayerFrame codec;
-    v1::ParticlesByCell& header = *codec.mutable_particles_by_cell();
-    header.set_count(particles.count);
-    header.set_min_x_m(particles.min_m[0]);
-    header.set_min_y_m(particles.min_m[1]);
-    header.set_min_z_m(particles.min_m[2]);
-    header.set_cells_x_count(grid.cells.cells_count[0]);
-    header.set_cells_y_count(grid.cells.cells_count[1]);
-    header.set_cells_z_count(grid.cells.cells_count[2]);
-    header.set_cell_m(grid.cell_m);
-    header.set_offset_bits(grid.cells.offset_bits);
-    header.set_velocity_quantum_mps(velocity_quantum_mps);
-    header.set_radius_m(particles.radius_m);
-
-    ParticleScale scale;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      scale.place[axis] =
-          static_cast<float>((particles.max_m[axis] - particles.min_m[axis]) / (65535.0 * grid.quantum_m()));
-    }
-    scale.speed = static_cast<float>(particles.max_speed_mps / (127.0 * velocity_quantum_mps));
-    cells_.encode(particles.words, scale, grid.cells, residuals_);
-    payload_.clear();
-    residuals_.finish(payload_);
-    return {serializeFrame(frame, v1::LAYER_PARTICLES, level, std::nullopt, codec, payload_), nullptr};
-  }
-
- private:
-  ParticleCellsEncoder cells_;
-  ResidualEncoder residuals_;
-  core::Bytes payload_;
-};
-
 core::Result<Grid> checkedGrid(const v1::ParticlesByCell& header) {
   const Grid grid{.cells = {.cells_count = {header.cells_x_count(), header.cells_y_count(), header.cells_z_count()},
                             .offset_bits = header.offset_bits()},
@@ -108,16 +66,41 @@ core::Result<Grid> checkedGrid(const v1::ParticlesByCell& header) {
 
 }  // namespace
 
-std::unique_ptr<LayerCodec> makeParticlesByCellCodec() {
-  return std::make_unique<ParticlesByCellCodec>();
+core::SharedBytes PackedParticles::encode(const core::FrameView& frame, core::Level level) {
+  if (!frame.at(level).particles) return nullptr;
+  const core::ParticleView& particles = *frame.at(level).particles;
+  const Grid grid = gridOf(particles);
+  const double velocity_quantum_mps = std::max(2 * grid.quantum_m() / kAdvance_s, particles.max_speed_mps / 127);
+  v1::LayerFrame codec;
+  v1::ParticlesByCell& header = *codec.mutable_particles_by_cell();
+  header.set_count(particles.count);
+  header.set_min_x_m(particles.min_m[0]);
+  header.set_min_y_m(particles.min_m[1]);
+  header.set_min_z_m(particles.min_m[2]);
+  header.set_cells_x_count(grid.cells.cells_count[0]);
+  header.set_cells_y_count(grid.cells.cells_count[1]);
+  header.set_cells_z_count(grid.cells.cells_count[2]);
+  header.set_cell_m(grid.cell_m);
+  header.set_offset_bits(grid.cells.offset_bits);
+  header.set_velocity_quantum_mps(velocity_quantum_mps);
+  header.set_radius_m(particles.radius_m);
+
+  ParticleScale scale;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    scale.place[axis] =
+        static_cast<float>((particles.max_m[axis] - particles.min_m[axis]) / (65535.0 * grid.quantum_m()));
+  }
+  scale.speed = static_cast<float>(particles.max_speed_mps / (127.0 * velocity_quantum_mps));
+  cells_.encode(particles.words, scale, grid.cells, residuals_);
+  payload_.clear();
+  residuals_.finish(payload_);
+  return serializeFrame(frame, v1::LAYER_PARTICLES, level, std::nullopt, codec, payload_);
 }
 
 core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame) {
   if (!frame.has_particles_by_cell()) return invalid("codec: not particles_by_cell");
   const v1::ParticlesByCell& header = frame.particles_by_cell();
-  if (header.count() > kParticleMaxCount) {
-    return invalid("count: " + std::to_string(header.count()) + " is above " + std::to_string(kParticleMaxCount));
-  }
+  if (auto error = checkCount(header.count(), kParticleMaxCount)) return *error;
   const double min_m[3] = {header.min_x_m(), header.min_y_m(), header.min_z_m()};
   for (const double min : min_m) {
     if (auto error = checkRange("min_m", min, -kMaxMagnitude)) return *error;
@@ -137,13 +120,7 @@ core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame)
   if (!readParticles(payload.data(), payload.size(), shape, words.data()))
     return invalid("payload: it does not hold " + std::to_string(count) + " particles; the frame is damaged");
 
-  ParticleSamples out;
-  out.count = header.count();
-  out.radius_m = header.radius_m();
-  out.position_m.resize(3 * count);
-  out.velocity_mps.resize(3 * count);
-  out.tint.resize(count);
-  out.foam.resize(count);
+  ParticleSamples out = particlesOf(header);
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* at = words.data() + i * kParticleWordBytes;
     std::array<std::uint16_t, 3> place;  // x, z, y

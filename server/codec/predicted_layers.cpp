@@ -1,104 +1,21 @@
 // Encoder and decoder of packed planes: SurfacePredicted and FoamPredicted in wire.proto.
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include <spindrift/codec/frame_decoder.h>
-#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/crc32c.h>
 
-#include "encode/plane_chain.h"
-#include "frame_checks.h"
 #include "frame_message.h"
-#include "layer_codec.h"
+#include "packed_codecs.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
 namespace {
-
-/// Writes the forms of a plane as messages; `headerOf` returns a LayerFrame with the codec's member but without
-/// weights.
-class PlaneMessages {
- public:
-  template <typename Header>
-  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, core::Level level, bool wants_keyframe,
-                      Header header_of) {
-    const PlaneChainEncoder::Forms forms = chain_.encode(wants_keyframe);
-    const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
-                             std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
-      if (!form) return nullptr;
-      v1::LayerFrame codec;
-      auto& header = header_of(codec);
-      header.mutable_weights()->Add(form->weights.of.begin(), form->weights.of.end());
-      if (!base_tick)
-        header.mutable_earlier_weights()->Add(form->earlier_weights.of.begin(), form->earlier_weights.of.end());
-      return serializeFrame(frame, layer, level, base_tick, codec, form->payload);
-    };
-    EncodedFrame out{.keyframe = message(forms.keyframe, std::nullopt), .delta = message(forms.delta, tick_)};
-    tick_ = frame.tick;
-    return out;
-  }
-  void restart() { chain_.restart(); }
-  /// The plane that encode() encodes next.
-  SurfacePlane& plane() { return chain_.next(); }
-
- private:
-  PlaneChainEncoder chain_;
-  std::uint64_t tick_ = 0;  ///< of the newest encoded plane
-};
-
-class SurfacePredictedCodec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
-    if (!frame.at(level).surface) return {};
-    const core::SurfaceView& surface = *frame.at(level).surface;
-    const PlaneExtents extents{surface.count, surface.length_m, surface.width_m};
-    if (extents_ != extents || quantum_m_ != surface.quantum_m) messages_.restart();
-    extents_ = extents;
-    quantum_m_ = surface.quantum_m;
-    messages_.plane().resize(surface.count);
-    messages_.plane().assign(
-        std::span(reinterpret_cast<const std::int16_t*>(surface.words.data()), surface.count.total()));
-    return messages_.encode(frame, v1::LAYER_SURFACE, level, wants_keyframe,
-                            [&](v1::LayerFrame& codec) -> v1::SurfacePredicted& {
-                              v1::SurfacePredicted& header = *codec.mutable_surface_predicted();
-                              setExtents(extents, header);
-                              header.set_quantum_m(surface.quantum_m);
-                              return header;
-                            });
-  }
-
- private:
-  PlaneMessages messages_;
-  PlaneExtents extents_;
-  double quantum_m_ = 0.0;
-};
-
-class FoamPredictedCodec final : public LayerCodec {
- public:
-  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe) override {
-    if (!frame.at(level).foam) return {};
-    const core::FoamView& foam = *frame.at(level).foam;
-    const PlaneExtents extents{foam.count, foam.length_m, foam.width_m};
-    if (extents_ != extents) messages_.restart();
-    extents_ = extents;
-    messages_.plane().resize(foam.count);
-    messages_.plane().assign(std::span(reinterpret_cast<const std::uint8_t*>(foam.words.data()), foam.count.total()));
-    return messages_.encode(frame, v1::LAYER_FOAM, level, wants_keyframe,
-                            [&](v1::LayerFrame& codec) -> v1::FoamPredicted& {
-                              v1::FoamPredicted& header = *codec.mutable_foam_predicted();
-                              setExtents(extents, header);
-                              return header;
-                            });
-  }
-
- private:
-  PlaneMessages messages_;
-  PlaneExtents extents_;
-};
 
 constexpr double kFoamQuantum = 1.0;
 
@@ -110,13 +27,59 @@ bool takeWeights(const Field& field, SurfaceWeights& weights) {
   return true;
 }
 
+/// Returns the converted samples of a plane; `row`: which plane.
+template <typename Value, typename Convert = std::identity>
+std::vector<Value> valuesOf(const PlaneRow& planes, const std::int16_t* (PlaneRow::*row)(std::size_t) const,
+                            Convert convert = {}) {
+  std::vector<Value> out(planes.countX() * planes.countZ());
+  for (std::size_t z = 0; z < planes.countZ(); ++z) {
+    const std::int16_t* const first = (planes.*row)(z);
+    std::transform(first, first + planes.countX(), out.data() + z * planes.countX(), convert);
+  }
+  return out;
+}
+
 }  // namespace
 
-std::unique_ptr<LayerCodec> makeSurfacePredictedCodec() {
-  return std::make_unique<SurfacePredictedCodec>();
+template <typename Sample, typename View, typename Header>
+EncodedFrame PackedPlanes::encode(const core::FrameView& frame, v1::Layer layer, core::Level level, bool wants_keyframe,
+                                  const View& view, double quantum_m, Header* (v1::LayerFrame::*header_of)()) {
+  const PlaneExtents extents{view.count, view.length_m, view.width_m};
+  if (extents_ != extents || quantum_m_ != quantum_m) chain_.restart();
+  extents_ = extents;
+  quantum_m_ = quantum_m;
+  chain_.next().resize(view.count);
+  chain_.next().assign(std::span(reinterpret_cast<const Sample*>(view.words.data()), view.count.total()));
+  const PlaneChainEncoder::Forms forms = chain_.encode(wants_keyframe);
+  const auto message = [&](const std::optional<PlaneChainEncoder::Form>& form,
+                           std::optional<std::uint64_t> base_tick) -> core::SharedBytes {
+    if (!form) return nullptr;
+    v1::LayerFrame codec;
+    Header& header = *(codec.*header_of)();
+    setExtents(extents, header);
+    if constexpr (requires { header.set_quantum_m(quantum_m); }) header.set_quantum_m(quantum_m);
+    header.mutable_weights()->Add(form->weights.of.begin(), form->weights.of.end());
+    if (!base_tick)
+      header.mutable_earlier_weights()->Add(form->earlier_weights.of.begin(), form->earlier_weights.of.end());
+    return serializeFrame(frame, layer, level, base_tick, codec, form->payload);
+  };
+  EncodedFrame out{.keyframe = message(forms.keyframe, std::nullopt), .delta = message(forms.delta, tick_)};
+  tick_ = frame.tick;
+  return out;
 }
-std::unique_ptr<LayerCodec> makeFoamPredictedCodec() {
-  return std::make_unique<FoamPredictedCodec>();
+
+EncodedFrame PackedPlanes::encodeSurface(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
+  const auto& surface = frame.at(level).surface;
+  if (!surface) return {};
+  return encode<std::int16_t>(frame, v1::LAYER_SURFACE, level, wants_keyframe, *surface, surface->quantum_m,
+                              &v1::LayerFrame::mutable_surface_predicted);
+}
+
+EncodedFrame PackedPlanes::encodeFoam(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
+  const auto& foam = frame.at(level).foam;
+  if (!foam) return {};
+  return encode<std::uint8_t>(frame, v1::LAYER_FOAM, level, wants_keyframe, *foam, kFoamQuantum,
+                              &v1::LayerFrame::mutable_foam_predicted);
 }
 
 /// The planes that a client has decoded, and their header values.
@@ -178,20 +141,14 @@ core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& 
   const v1::SurfacePredicted& header = frame.surface_predicted();
   if (auto error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m())) return *error;
   const PlaneExtents& extents = history_->extents;
-  SurfaceSamples out{extents.count, extents.length_m, extents.width_m, header.quantum_m(), {}};
-  const PlaneRow& plane = history_->memory.row();
-  const std::size_t nx = out.count.x;
   const double quantum_m = header.quantum_m();
-  out.elevation_m.resize(out.count.total());
-  for (std::size_t z = 0; z < out.count.z; ++z) {
-    std::transform(plane.row(z), plane.row(z) + nx, out.elevation_m.begin() + static_cast<std::ptrdiff_t>(z * nx),
-                   [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); });
-  }
-  return out;
+  const auto elevationOf = [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); };
+  return SurfaceSamples{extents.count, extents.length_m, extents.width_m, quantum_m,
+                        valuesOf<float>(history_->memory.row(), &PlaneRow::row, elevationOf)};
 }
 
 bool PlaneKeeper::take(core::ByteView message) {
-  has_frame_ = false;
+  head_.reset();
   auto parsed = parseServerMessage(message);
   if (!parsed || !parsed->has_frame()) return false;
   v1::LayerFrame& frame = *parsed->mutable_frame();
@@ -207,30 +164,23 @@ bool PlaneKeeper::take(core::ByteView message) {
   if (error) return false;
   frame.clear_payload();
   head_ = std::move(frame);
-  has_frame_ = true;
   return true;
 }
 
 core::SharedBytes PlaneKeeper::keyframe() {
-  if (!has_frame_) return nullptr;
+  if (!head_) return nullptr;
   const PlaneRow& planes = history_->memory.row();
   const auto planeOf = [&](const std::int16_t* (PlaneRow::*row)(std::size_t) const) {
-    std::vector<std::int16_t> samples;
-    samples.reserve(planes.countX() * planes.countZ());
-    for (std::size_t z = 0; z < planes.countZ(); ++z) {
-      const std::int16_t* const first = (planes.*row)(z);
-      samples.insert(samples.end(), first, first + planes.countX());
-    }
     SurfacePlane out;
     out.resize(history_->extents.count);
-    out.assign(std::span<const std::int16_t>(samples));
+    out.assign(std::span<const std::int16_t>(valuesOf<std::int16_t>(planes, row)));
     return out;
   };
   ResidualEncoder residuals;
   const PlaneChainEncoder::Form form =
       PlaneChainEncoder::keyframeOf(planeOf(&PlaneRow::row), planeOf(&PlaneRow::earlierRow), residuals);
   v1::ServerMessage message;
-  v1::LayerFrame& frame = *message.mutable_frame() = head_;
+  v1::LayerFrame& frame = *message.mutable_frame() = *head_;
   const auto setWeights = [&](auto& header) {
     header.mutable_weights()->Assign(form.weights.of.begin(), form.weights.of.end());
     header.mutable_earlier_weights()->Assign(form.earlier_weights.of.begin(), form.earlier_weights.of.end());
@@ -253,15 +203,9 @@ core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame)
   const v1::FoamPredicted& header = frame.foam_predicted();
   if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kFoamQuantum)) return *error;
   const PlaneExtents& extents = history_->extents;
-  FoamSamples out{extents.count, extents.length_m, extents.width_m, {}};
-  const PlaneRow& plane = history_->memory.row();
-  const std::size_t nx = out.count.x;
-  out.foam.resize(out.count.total());
-  for (std::size_t z = 0; z < out.count.z; ++z) {
-    std::transform(plane.row(z), plane.row(z) + nx, out.foam.begin() + static_cast<std::ptrdiff_t>(z * nx),
-                   [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); });
-  }
-  return out;
+  const auto foamOf = [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); };
+  return FoamSamples{extents.count, extents.length_m, extents.width_m,
+                     valuesOf<std::uint8_t>(history_->memory.row(), &PlaneRow::row, foamOf)};
 }
 
 }  // namespace spindrift::codec

@@ -4,16 +4,12 @@
 #include <cassert>
 #include <utility>
 
-#include <glad/gl.h>
 #include <spdlog/spdlog.h>
 
 namespace spindrift::gpu {
 namespace {
 
 constexpr std::size_t kMaxFaults = 64;
-constexpr std::array<GLbitfield, AccessTracker::kKindCount> kBits = {
-    GL_SHADER_STORAGE_BARRIER_BIT, GL_TEXTURE_FETCH_BARRIER_BIT, GL_UNIFORM_BARRIER_BIT, GL_COMMAND_BARRIER_BIT,
-    GL_BUFFER_UPDATE_BARRIER_BIT};
 constexpr std::array<const char*, AccessTracker::kKindCount> kKindNames = {
     "Barrier::kStorage", "Barrier::kTexel", "Barrier::kUniform", "Barrier::kIndirect", "Barrier::kBufferUpdate"};
 
@@ -25,47 +21,46 @@ std::string quoted(const BufferAccess& buffer) {
 
 void AccessTracker::remove(BufferAccess& buffer) {
   buffers_.erase(&buffer);
-  for (Table* const table : {&storage_, &uniforms_, &texels_}) {
-    std::replace(table->begin(), table->end(), &buffer, static_cast<BufferAccess*>(nullptr));
-  }
+  for (auto& table : bound_) std::ranges::replace(table, &buffer, nullptr);
 }
 
-void AccessTracker::bind(Table& table, std::uint32_t binding, BufferAccess& buffer) {
+void AccessTracker::bind(Kind kind, std::uint32_t binding, BufferAccess& buffer) {
   constexpr std::uint32_t kMaxBinding = 1024;  // far above the limits of drivers, which refuse larger numbers
   assert(binding < kMaxBinding);
   if (binding >= kMaxBinding) return;
+  std::vector<BufferAccess*>& table = bound_[kind];
   if (binding >= table.size()) table.resize(binding + 1, nullptr);
   table[binding] = &buffer;
 }
 
-std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
+Barrier AccessTracker::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
   // Most drivers order uploads and copies with shader reads anyway. A store over data that an operation still reads or
   // writes is not ordered. Uniform blocks and indirect arguments written by an operation need nothing.
   bool is_needed = false;
   for (const ProgramUses::Block& block : program.storage) {
-    const BufferAccess* const buffer = at(storage_, block.binding);
+    const BufferAccess* const buffer = at(kStorage, block.binding);
     if (!buffer) continue;
     is_needed |= buffer->update_write > barrier_at_[kStorage];
     is_needed |= block.is_written && buffer->update_read > barrier_at_[kStorage];
   }
   for (const ProgramUses::Block& unit : program.texels) {
-    const BufferAccess* const buffer = at(texels_, unit.binding);
+    const BufferAccess* const buffer = at(kTexel, unit.binding);
     is_needed |= buffer && buffer->update_write > barrier_at_[kTexel];
   }
-  const std::uint32_t bits = is_needed ? kBits[kStorage] | kBits[kTexel] : 0;
-  if (is_needed) barrier(bits);
+  const Barrier needed = is_needed ? Barrier::kStorageAndTexel : Barrier{};
+  barrier(needed);
 
   if (checks_) check(program, indirect);
 
   ++now_;
   for (const ProgramUses::Block& unit : program.texels) {
-    if (BufferAccess* const buffer = at(texels_, unit.binding)) {
+    if (BufferAccess* const buffer = at(kTexel, unit.binding)) {
       buffer->shader_read = now_;
       buffer->shader_reader = program.path;
     }
   }
   for (const ProgramUses::Block& block : program.storage) {
-    BufferAccess* const buffer = at(storage_, block.binding);
+    BufferAccess* const buffer = at(kStorage, block.binding);
     if (!buffer) continue;
     if (block.is_read) {
       buffer->shader_read = now_;
@@ -76,32 +71,32 @@ std::uint32_t AccessTracker::beforeDispatch(const ProgramUses& program, BufferAc
       buffer->shader_writer = program.path;
     }
   }
-  return bits;
+  return needed;
 }
 
-std::uint32_t AccessTracker::beforeUpdate(BufferAccess* from, BufferAccess* to) {
+Barrier AccessTracker::beforeUpdate(BufferAccess* from, BufferAccess* to) {
   bool is_needed = false;
   for (const BufferAccess* const buffer : {from, to}) {
     is_needed |= buffer && buffer->shader_write > barrier_at_[kUpdate];
   }
   is_needed |= to && to->shader_read > barrier_at_[kUpdate];
-  const std::uint32_t bits = is_needed ? kBits[kUpdate] : 0;
-  if (is_needed) barrier(bits);
+  const Barrier needed = is_needed ? Barrier::kBufferUpdate : Barrier{};
+  barrier(needed);
   ++now_;
   if (from) from->update_read = now_;
   if (to) to->update_write = now_;
-  return bits;
+  return needed;
 }
 
-void AccessTracker::barrier(std::uint32_t bits) {
+void AccessTracker::barrier(Barrier readers) {
   for (std::size_t kind = 0; kind < kKindCount; ++kind) {
-    if ((bits & kBits[kind]) != 0) barrier_at_[kind] = now_;
+    if ((static_cast<std::uint32_t>(readers) >> kind & 1u) != 0) barrier_at_[kind] = now_;
   }
 }
 
 void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
-  const auto bound = [&](const Table& table, const ProgramUses::Block& block, const char* what) {
-    const BufferAccess* const buffer = at(table, block.binding);
+  const auto bound = [&](Kind kind, const ProgramUses::Block& block, const char* what) {
+    const BufferAccess* const buffer = at(kind, block.binding);
     if (!buffer) {
       fault(std::string(program.path) + " uses " + what + " " + std::to_string(block.binding) + " (" + block.name +
             "), where no buffer is bound");
@@ -110,7 +105,7 @@ void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
   };
   if (indirect) checkRead(program, *indirect, kIndirect);
   for (const ProgramUses::Block& block : program.uniforms) {
-    const BufferAccess* const buffer = bound(uniforms_, block, "uniform binding");
+    const BufferAccess* const buffer = bound(kUniform, block, "uniform binding");
     if (!buffer) continue;
     checkRead(program, *buffer, kUniform);
     if (buffer->size_bytes < block.size_bytes) {
@@ -120,10 +115,10 @@ void AccessTracker::check(const ProgramUses& program, BufferAccess* indirect) {
     }
   }
   for (const ProgramUses::Block& unit : program.texels) {
-    if (const BufferAccess* const buffer = bound(texels_, unit, "texture unit")) checkRead(program, *buffer, kTexel);
+    if (const BufferAccess* const buffer = bound(kTexel, unit, "texture unit")) checkRead(program, *buffer, kTexel);
   }
   for (const ProgramUses::Block& block : program.storage) {
-    const BufferAccess* const buffer = bound(storage_, block, "storage binding");
+    const BufferAccess* const buffer = bound(kStorage, block, "storage binding");
     if (!buffer) continue;
     if (block.is_read) checkRead(program, *buffer, kStorage);
     if (block.is_written) checkWrite(program, *buffer);

@@ -13,7 +13,6 @@
 #include <spindrift/gpu/embedded_shader.h>
 
 #include "device_needs.h"
-#include "program_resources.h"
 #include "shader_folder.h"
 #include "shuffled_groups.h"
 
@@ -22,22 +21,76 @@ namespace {
 
 constexpr std::string_view kVersionLine = "#version 450 core\n";  // the same as in embed_shaders.py
 
-std::string shaderLog(GLuint id) {
+/// Returns the log of a shader or a program; `get` and `getLog`: OpenGL's functions for it.
+std::string logOf(GLuint id, PFNGLGETPROGRAMIVPROC get, PFNGLGETPROGRAMINFOLOGPROC getLog) {
   GLint length = 0;
-  glGetShaderiv(id, GL_INFO_LOG_LENGTH, &length);
+  get(id, GL_INFO_LOG_LENGTH, &length);
   std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-  glGetShaderInfoLog(id, length, &length, log.data());
+  getLog(id, length, &length, log.data());
   log.resize(static_cast<std::size_t>(length));
   return log;
 }
 
-std::string programLog(GLuint id) {
+std::string resourceName(GLuint program, GLenum interface, GLuint index) {
+  constexpr GLenum kLength = GL_NAME_LENGTH;
   GLint length = 0;
-  glGetProgramiv(id, GL_INFO_LOG_LENGTH, &length);
-  std::string log(static_cast<std::size_t>(std::max(length, 1)), '\0');
-  glGetProgramInfoLog(id, length, &length, log.data());
-  log.resize(static_cast<std::size_t>(length));
-  return log;
+  glGetProgramResourceiv(program, interface, index, 1, &kLength, 1, nullptr, &length);
+  std::string name(static_cast<std::size_t>(std::max(length, 1)), '\0');
+  GLsizei written = 0;
+  glGetProgramResourceName(program, interface, index, static_cast<GLsizei>(name.size()), &written, name.data());
+  name.resize(static_cast<std::size_t>(written));
+  return name;
+}
+
+void addBlocks(GLuint program, bool is_storage, std::map<std::string, BlockLayout>& out) {
+  const GLenum interface = is_storage ? GL_SHADER_STORAGE_BLOCK : GL_UNIFORM_BLOCK;
+  const GLenum member_interface = is_storage ? GL_BUFFER_VARIABLE : GL_UNIFORM;
+  GLint count = 0;
+  glGetProgramInterfaceiv(program, interface, GL_ACTIVE_RESOURCES, &count);
+  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+    const std::string name = resourceName(program, interface, i);
+    constexpr GLenum kProperties[] = {GL_BUFFER_BINDING, GL_BUFFER_DATA_SIZE, GL_NUM_ACTIVE_VARIABLES};
+    GLint values[3] = {0, 0, 0};
+    glGetProgramResourceiv(program, interface, i, 3, kProperties, 3, nullptr, values);
+    BlockLayout block;
+    block.is_storage = is_storage;
+    block.binding = static_cast<std::uint32_t>(values[0]);
+    block.size_bytes = static_cast<std::uint32_t>(values[1]);
+    std::vector<GLint> members(static_cast<std::size_t>(values[2]));
+    constexpr GLenum kMembers = GL_ACTIVE_VARIABLES;
+    if (!members.empty()) {
+      glGetProgramResourceiv(program, interface, i, 1, &kMembers, values[2], nullptr, members.data());
+    }
+    for (const GLint member : members) {
+      const auto index = static_cast<GLuint>(member);
+      std::string member_name = resourceName(program, member_interface, index);
+      // Members of a block with an instance name come as "Block.member".
+      if (member_name.starts_with(name + ".")) member_name.erase(0, name.size() + 1);
+      constexpr GLenum kOffset = GL_OFFSET;
+      GLint offset = 0;
+      glGetProgramResourceiv(program, member_interface, index, 1, &kOffset, 1, nullptr, &offset);
+      block.offsets.emplace(std::move(member_name), static_cast<std::uint32_t>(offset));
+    }
+    out.emplace(name, std::move(block));
+  }
+}
+
+/// Returns the texture unit of each used samplerBuffer, usamplerBuffer and isamplerBuffer, by name.
+std::map<std::string, std::uint32_t> texelUnitsOf(std::uint32_t program_id) {
+  std::map<std::string, std::uint32_t> out;
+  GLint count = 0;
+  glGetProgramInterfaceiv(program_id, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
+  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+    constexpr GLenum kProperties[] = {GL_TYPE, GL_LOCATION};
+    GLint values[2] = {0, -1};
+    glGetProgramResourceiv(program_id, GL_UNIFORM, i, 2, kProperties, 2, nullptr, values);
+    const auto type = static_cast<GLenum>(values[0]);
+    if (type != GL_SAMPLER_BUFFER && type != GL_INT_SAMPLER_BUFFER && type != GL_UNSIGNED_INT_SAMPLER_BUFFER) continue;
+    GLint unit = 0;
+    glGetUniformiv(program_id, values[1], &unit);
+    out.emplace(resourceName(program_id, GL_UNIFORM, i), static_cast<std::uint32_t>(unit));
+  }
+  return out;
 }
 
 /// Reads the qualifiers of the storage block from the text: `restrict readonly buffer Name {`. OpenGL has no query for
@@ -65,19 +118,11 @@ ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
   ProgramUses uses;
   uses.path = shader.path;
   for (auto& [name, layout] : blocksOf(program)) {
-    ProgramUses::Block block;
-    block.name = name;
-    block.binding = layout.binding;
-    block.size_bytes = layout.size_bytes;
+    ProgramUses::Block block{.name = name, .binding = layout.binding, .size_bytes = layout.size_bytes};
     if (layout.is_storage) readQualifiers(shader.text, block);
     (layout.is_storage ? uses.storage : uses.uniforms).push_back(std::move(block));
   }
-  for (const auto& [name, unit] : texelUnitsOf(program)) {
-    ProgramUses::Block block;
-    block.name = name;
-    block.binding = unit;
-    uses.texels.push_back(std::move(block));
-  }
+  for (const auto& [name, unit] : texelUnitsOf(program)) uses.texels.push_back({.name = name, .binding = unit});
   return uses;
 }
 
@@ -132,6 +177,13 @@ core::Error refused(const Context& ctx, std::string_view shader_path, const char
 
 }  // namespace
 
+std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id) {
+  std::map<std::string, BlockLayout> out;
+  addBlocks(program_id, false, out);
+  addBlocks(program_id, true, out);
+  return out;
+}
+
 core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context& ctx, std::string_view shader_path,
                                                                         const Defines& defines) {
   assert(ctx.isOwnedHere());
@@ -164,7 +216,7 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   glCompileShader(shader);
   GLint is_fine = GL_FALSE;
   glGetShaderiv(shader, GL_COMPILE_STATUS, &is_fine);
-  const std::string log = translateLog(source, shaderLog(shader));
+  const std::string log = translateLog(source, logOf(shader, glGetShaderiv, glGetShaderInfoLog));
   if (!is_fine) {
     glDeleteShader(shader);
     return refused(ctx, shader_path, "compile", log);
@@ -181,7 +233,8 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   waitForCompiler(ctx, program->id);
   glGetProgramiv(program->id, GL_LINK_STATUS, &is_fine);
   if (!is_fine) {
-    return refused(ctx, shader_path, "link", translateLog(source, programLog(program->id)));
+    return refused(ctx, shader_path, "link",
+                   translateLog(source, logOf(program->id, glGetProgramiv, glGetProgramInfoLog)));
   }
   GLint size[3] = {0, 0, 0};
   glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
@@ -209,16 +262,16 @@ CompiledProgram::~CompiledProgram() {
 
 core::Result<std::shared_ptr<CompiledProgram>> ProgramCache::get(Context& ctx, std::string_view shader_path,
                                                                  const Defines& defines) {
-  std::string key(shader_path);
-  for (const auto& [name, value] : defines) key += "\n" + name + " " + value;
-  if (const auto known = by_key_.find(key); known != by_key_.end()) {
-    entries_.splice(entries_.end(), entries_, known->second);
-    return known->second->program;
+  const auto known = std::ranges::find_if(
+      entries_, [&](const Entry& entry) { return entry.shader_path == shader_path && entry.defines == defines; });
+  if (known != entries_.end()) {
+    entries_.splice(entries_.end(), entries_, known);
+    return known->program;
   }
   auto compiled = CompiledProgram::compile(ctx, shader_path, defines);
   if (!compiled) return compiled.error();
   dropUnused();
-  by_key_[key] = entries_.insert(entries_.end(), Entry{key, std::string(shader_path), defines, *compiled});
+  entries_.push_back({std::string(shader_path), defines, *compiled});
   return *compiled;
 }
 
@@ -246,7 +299,6 @@ void ProgramCache::dropUnused() {
       ++entry;
       continue;
     }
-    by_key_.erase(entry->key);
     entry = entries_.erase(entry);
     --unused;
   }

@@ -45,15 +45,16 @@ struct CompiledProgram {
   std::vector<UniformValue> touched;
 };
 
+/// Returns the linked program's uniform and storage blocks by the name after `uniform` or `buffer`, without those that
+/// the driver found unused.
+std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id);
+
 /// Programs by shader and defines. At most kMaxUnused unused programs are kept, for the next room of the same kind.
 class ProgramCache {
  public:
   core::Result<std::shared_ptr<CompiledProgram>> get(Context& ctx, std::string_view shader_path,
                                                      const Defines& defines);
-  /// Number of programs held, used or unused.
-  [[nodiscard]] std::size_t size() const { return entries_.size(); }
   std::uint64_t newHandle() { return ++last_handle_; }
-  void clear() { entries_.clear(); }
   /// Recompiles the programs that depend on one of these files of the context's shader folder. Errors are logged, and
   /// the old program stays in use.
   void reload(Context& ctx, const std::set<std::string>& files);
@@ -61,7 +62,6 @@ class ProgramCache {
  private:
   static constexpr std::size_t kMaxUnused = 256;  // a room has about 30; the scenes use about 90 variants together
   struct Entry {
-    std::string key;
     std::string shader_path;
     Defines defines;
     std::shared_ptr<CompiledProgram> program;
@@ -69,7 +69,6 @@ class ProgramCache {
   void dropUnused();
 
   std::list<Entry> entries_;  ///< least recently asked for first
-  std::map<std::string, std::list<Entry>::iterator> by_key_;
   std::uint64_t last_handle_ = 0;
 };
 

@@ -2,9 +2,7 @@
 #include <array>
 #include <cassert>
 #include <cstdlib>
-#include <mutex>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include <glad/gl.h>
@@ -56,28 +54,7 @@ void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum s
   }
 }
 
-GLbitfield bitsOf(Barrier readers) {
-  const auto mask = static_cast<std::uint32_t>(readers);
-  const auto has = [mask](Barrier b) { return (mask & static_cast<std::uint32_t>(b)) != 0; };
-  GLbitfield bits = 0;
-  if (has(Barrier::kStorage)) bits |= GL_SHADER_STORAGE_BARRIER_BIT;
-  if (has(Barrier::kTexel)) bits |= GL_TEXTURE_FETCH_BARRIER_BIT;
-  if (has(Barrier::kUniform)) bits |= GL_UNIFORM_BARRIER_BIT;
-  if (has(Barrier::kIndirect)) bits |= GL_COMMAND_BARRIER_BIT;
-  if (has(Barrier::kBufferUpdate)) bits |= GL_BUFFER_UPDATE_BARRIER_BIT;
-  return bits;
-}
-
 }  // namespace
-
-struct Context::Egl {
-  egl::Handles handles;
-};
-
-struct Context::Messages {
-  std::mutex mutex;  // a driver may call back on its own thread
-  std::set<std::uint32_t> known;
-};
 
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice) {
   const auto checks = checksFromEnvironment();
@@ -88,17 +65,16 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice, const Checks& checks) {
   core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close, Machine::real());
   if (!chosen) return chosen.error();
-  return std::unique_ptr<Context>(new Context(std::make_unique<Egl>(Egl{chosen->handles}), std::move(chosen->info),
-                                              std::move(chosen->why), checks, choice.shader_folder));
+  return std::unique_ptr<Context>(
+      new Context(chosen->handles, std::move(chosen->info), std::move(chosen->why), checks, choice.shader_folder));
 }
 
-Context::Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks,
+Context::Context(const egl::Handles& handles, DeviceInfo device, std::string why, const Checks& checks,
                  const std::string& shader_folder)
-    : egl_(std::move(egl)),
+    : egl_(std::make_unique<egl::Handles>(handles)),
       device_(std::move(device)),
       why_(std::move(why)),
       checks_(checks),
-      messages_(std::make_unique<Messages>()),
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
       programs_(std::make_unique<ProgramCache>()),
@@ -129,11 +105,11 @@ Context::~Context() {
     spdlog::error("readback slots of buffer {} are still held while their context is destroyed", retired.buffer_id);
     glDeleteBuffers(1, &retired.buffer_id);
   }
-  programs_->clear();
+  programs_.reset();
   staging_.reset();
   glFinish();
   glDebugMessageCallback(nullptr, nullptr);
-  egl::close(egl_->handles);
+  egl::close(*egl_);
   if (accesses_->hasFaults()) {
     spdlog::critical(
         "the barrier checker found faults (see above) that takeFaults() did not return: ending the process");
@@ -142,26 +118,41 @@ Context::~Context() {
 }
 
 bool Context::makeCurrent() {
-  return egl::makeCurrent(egl_->handles);
+  return egl::makeCurrent(*egl_);
 }
 
 bool Context::isOwnedHere() const {
-  return eglGetCurrentContext() == egl_->handles.context;
+  return eglGetCurrentContext() == egl_->context;
 }
 
 void Context::release() {
   assert(isOwnedHere());
-  egl::makeCurrent({egl_->handles.display, EGL_NO_CONTEXT});
+  egl::makeCurrent({egl_->display, EGL_NO_CONTEXT});
 }
 
 void Context::barrier(Barrier readers) {
   assert(isOwnedHere());
-  const GLbitfield bits = bitsOf(readers);
-  accesses_->barrier(bits);
-  barrierBits(bits);
+  accesses_->barrier(readers);
+  issue(readers);
 }
 
-void Context::barrierBits(std::uint32_t bits) {
+void Context::beforeDispatch(const ProgramUses& program, BufferAccess* indirect) {
+  issue(accesses_->beforeDispatch(program, indirect));
+}
+
+void Context::beforeUpdate(BufferAccess* from, BufferAccess* to) {
+  issue(accesses_->beforeUpdate(from, to));
+}
+
+void Context::issue(Barrier readers) {
+  /// In the order of the bits of Barrier.
+  constexpr std::array<GLbitfield, AccessTracker::kKindCount> kBits = {
+      GL_SHADER_STORAGE_BARRIER_BIT, GL_TEXTURE_FETCH_BARRIER_BIT, GL_UNIFORM_BARRIER_BIT, GL_COMMAND_BARRIER_BIT,
+      GL_BUFFER_UPDATE_BARRIER_BIT};
+  GLbitfield bits = 0;
+  for (std::size_t kind = 0; kind < kBits.size(); ++kind) {
+    if ((static_cast<std::uint32_t>(readers) >> kind & 1u) != 0) bits |= kBits[kind];
+  }
   if (bits == 0) return;
   glMemoryBarrier(bits);
   ++ledger_.barrier_count;
@@ -194,8 +185,8 @@ bool Context::isLost() {
 }
 
 bool Context::isNewMessage(std::uint32_t id) {
-  const std::lock_guard lock(messages_->mutex);
-  return messages_->known.size() < kMaxKnownMessages && messages_->known.insert(id).second;
+  const std::lock_guard lock(messages_mutex_);
+  return known_messages_.size() < kMaxKnownMessages && known_messages_.insert(id).second;
 }
 
 std::vector<std::string> Context::takeFaults() {
@@ -206,7 +197,7 @@ void Context::poisonScratch() {
   assert(isOwnedHere());
   for (BufferAccess* const buffer : accesses_->buffers()) {
     if (!buffer->is_scratch) continue;
-    barrierBits(accesses_->beforeUpdate(nullptr, buffer));
+    beforeUpdate(nullptr, buffer);
     constexpr std::uint8_t kSetBits = 0xff;
     glClearNamedBufferData(buffer->buffer_id, GL_R8UI, GL_RED_INTEGER, GL_UNSIGNED_BYTE, &kSetBits);
   }

@@ -3,7 +3,9 @@
 #include <filesystem>
 #include <system_error>
 
+#include <spindrift/gpu/context.h>
 #include <spindrift/gpu/device.h>
+#include <spindrift/gpu/embedded_shader.h>
 
 #include "device_probe.h"
 #include "device_selection.h"
@@ -46,14 +48,29 @@ core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
   }
   if (const std::string uuid = uuidOf(text); !uuid.empty())
     return DeviceChoice{.kind = DeviceChoice::Kind::kName, .name = uuid};
-  return core::Error{core::ErrorCode::kInvalidInput,
-                     "device \"" + std::string(text) + "\" is not auto, software, an index from 0 to " +
-                         std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`"};
+  return core::invalid("device \"" + std::string(text) + "\" is not auto, software, an index from 0 to " +
+                       std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`");
 }
 
 std::vector<DeviceInfo> listDevices() {
   const egl::CurrentGuard guard;
   return describeDevices(egl::candidates(), openUsable, egl::close);
+}
+
+GpuInfo collectInfo(const DeviceChoice& choice) {
+  const egl::CurrentGuard guard;
+  GpuInfo info;
+  // Without a display EGL may refuse the query; an old libEGL has no client version.
+  if (const char* version = eglQueryString(EGL_NO_DISPLAY, EGL_VERSION)) info.egl_client_version = version;
+  info.devices = listDevices();
+  if (const auto context = Context::create(choice)) {
+    info.chosen = (*context)->device();
+    info.why = (*context)->why();
+  } else {
+    info.why = context.error().message;
+  }
+  info.shader_count = embeddedShaders().size();
+  return info;
 }
 
 }  // namespace spindrift::gpu

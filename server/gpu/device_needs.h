@@ -24,6 +24,9 @@ inline constexpr DeviceLimits kNeededLimits = {
     .max_combined_texture_units = 40,  // the same numbers; OpenGL promises 96
 };
 
+/// Reads the limits of the current context.
+DeviceLimits currentLimits();
+
 /// Returns an empty string when `limits` meet all of `needs`, otherwise one line with each limit that is too low, its
 /// value and the needed value.
 std::string missingLimits(const DeviceLimits& limits, const DeviceLimits& needs = kNeededLimits);

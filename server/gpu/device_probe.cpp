@@ -1,5 +1,6 @@
 #include "device_probe.h"
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -8,8 +9,8 @@
 
 #include <spindrift/gpu/embedded_shader.h>
 
-#include "device_advice.h"
 #include "device_needs.h"
+#include "device_selection.h"
 #include "gl_errors.h"
 
 namespace spindrift::gpu {
@@ -46,9 +47,7 @@ std::string compile(GLuint& program) {
   GLsizei length = 0;
   if (program != 0) glGetProgramInfoLog(program, static_cast<GLsizei>(log.size()), &length, log.data());
   std::string said = translateLog(*shader, std::string_view(log.data(), static_cast<std::size_t>(length)));
-  for (char& c : said) {
-    if (c == '\n') c = ' ';
-  }
+  std::ranges::replace(said, '\n', ' ');
   return "does not compile: " + (said.empty() ? "the driver does not say why" : said);
 }
 

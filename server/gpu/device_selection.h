@@ -1,4 +1,5 @@
-// Selects a device. Plain logic without EGL, so that tests can use imaginary devices. Private to this module.
+// Selects a device, and says what to do about those that do not work. Plain logic without EGL, so that tests can use
+// imaginary devices and machines. Private to this module.
 #pragma once
 
 #include <functional>
@@ -8,10 +9,20 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
 
-#include "device_advice.h"
 #include "egl_display.h"
 
 namespace spindrift::gpu {
+
+/// Settings of a machine that decide which devices work, besides their drivers.
+struct Machine {
+  std::function<const char*(const char* name)> variable;      ///< std::getenv
+  std::function<int(const std::string& file)> opening_error;  ///< errno of opening a file for reading and writing, or 0
+
+  static Machine real();
+};
+
+/// Returns what keeps this process from a device's file, and what to do; empty if nothing does.
+std::string fileAdvice(const std::string& file, const Machine& machine);
 
 struct Selection {
   egl::Handles handles;

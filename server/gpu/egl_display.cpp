@@ -4,11 +4,13 @@
 #include <array>
 #include <mutex>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <EGL/eglext.h>
 #include <glad/gl.h>
 
+#include "device_needs.h"
 #include "device_selection.h"
 
 namespace spindrift::gpu::egl {
@@ -21,39 +23,26 @@ std::string text(const GLubyte* value) {
   return value ? reinterpret_cast<const char*>(value) : "";
 }
 
-bool hasWord(std::string_view words, std::string_view word) {
-  while (!words.empty()) {
-    const std::size_t end = std::min(words.find(' '), words.size());
-    if (words.substr(0, end) == word) return true;
-    words.remove_prefix(std::min(end + 1, words.size()));
-  }
-  return false;
+/// `words`: separated by blanks.
+bool hasWord(const std::string& words, const std::string& word) {
+  return (" " + words + " ").find(" " + word + " ") != std::string::npos;
 }
 
 std::string eglErrorText() {
+  constexpr std::pair<EGLint, const char*> kErrors[] = {{EGL_SUCCESS, "no EGL error"},
+                                                        {EGL_NOT_INITIALIZED, "EGL_NOT_INITIALIZED"},
+                                                        {EGL_BAD_ACCESS, "EGL_BAD_ACCESS"},
+                                                        {EGL_BAD_ALLOC, "EGL_BAD_ALLOC"},
+                                                        {EGL_BAD_ATTRIBUTE, "EGL_BAD_ATTRIBUTE"},
+                                                        {EGL_BAD_CONFIG, "EGL_BAD_CONFIG"},
+                                                        {EGL_BAD_DISPLAY, "EGL_BAD_DISPLAY"},
+                                                        {EGL_BAD_MATCH, "EGL_BAD_MATCH"},
+                                                        {EGL_BAD_PARAMETER, "EGL_BAD_PARAMETER"}};
   const EGLint code = eglGetError();
-  switch (code) {
-    case EGL_SUCCESS:
-      return "no EGL error";
-    case EGL_NOT_INITIALIZED:
-      return "EGL_NOT_INITIALIZED";
-    case EGL_BAD_ACCESS:
-      return "EGL_BAD_ACCESS";
-    case EGL_BAD_ALLOC:
-      return "EGL_BAD_ALLOC";
-    case EGL_BAD_ATTRIBUTE:
-      return "EGL_BAD_ATTRIBUTE";
-    case EGL_BAD_CONFIG:
-      return "EGL_BAD_CONFIG";
-    case EGL_BAD_DISPLAY:
-      return "EGL_BAD_DISPLAY";
-    case EGL_BAD_MATCH:
-      return "EGL_BAD_MATCH";
-    case EGL_BAD_PARAMETER:
-      return "EGL_BAD_PARAMETER";
-    default:
-      return "EGL error " + std::to_string(code);
+  for (const auto& [known, name] : kErrors) {
+    if (code == known) return name;
   }
+  return "EGL error " + std::to_string(code);
 }
 
 /// Returns the core entry point of EGL 1.5, otherwise the extension's. Both must be queried before any display exists.
@@ -84,36 +73,12 @@ bool isSoftwareRenderer(std::string_view renderer) {
                      [&](std::string_view name) { return renderer.find(name) != std::string_view::npos; });
 }
 
-std::int64_t limit(GLenum name) {
-  GLint64 value = 0;
-  glGetInteger64v(name, &value);
-  return value;
-}
-
-std::int64_t limit(GLenum name, GLuint index) {
-  GLint64 value = 0;
-  glGetInteger64i_v(name, index, &value);
-  return value;
-}
-
 void describeCurrent(DeviceInfo& info) {
   info.name = text(glGetString(GL_RENDERER));
   info.vendor = text(glGetString(GL_VENDOR));
   info.gl_version = text(glGetString(GL_VERSION));
   info.glsl_version = text(glGetString(GL_SHADING_LANGUAGE_VERSION));
-  DeviceLimits& limits = info.limits;
-  limits.max_ssbo_bytes = limit(GL_MAX_SHADER_STORAGE_BLOCK_SIZE);
-  limits.max_texel_buffer_elements = limit(GL_MAX_TEXTURE_BUFFER_SIZE);
-  limits.max_uniform_block_bytes = limit(GL_MAX_UNIFORM_BLOCK_SIZE);
-  limits.max_work_group_invocations = limit(GL_MAX_COMPUTE_WORK_GROUP_INVOCATIONS);
-  limits.max_work_group_count_x = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0);
-  limits.max_work_group_count_y = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 1);
-  limits.max_work_group_count_z = limit(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 2);
-  limits.max_shared_memory_bytes = limit(GL_MAX_COMPUTE_SHARED_MEMORY_SIZE);
-  limits.max_ssbo_bindings = limit(GL_MAX_SHADER_STORAGE_BUFFER_BINDINGS);
-  limits.max_compute_ssbo_blocks = limit(GL_MAX_COMPUTE_SHADER_STORAGE_BLOCKS);
-  limits.max_compute_texture_units = limit(GL_MAX_COMPUTE_TEXTURE_IMAGE_UNITS);
-  limits.max_combined_texture_units = limit(GL_MAX_COMBINED_TEXTURE_IMAGE_UNITS);
+  info.limits = currentLimits();
 }
 
 /// Returns the UUID of EGL_EXT_device_persistent_id as DeviceInfo has it, or an empty string.

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cassert>
-#include <utility>
 
 #include <glad/gl.h>
 #include <spdlog/spdlog.h>
@@ -13,31 +12,15 @@ Fence Fence::insert(Context& ctx) {
   assert(ctx.isOwnedHere());
   Fence fence;
   fence.ctx_ = &ctx;
-  fence.sync_ = glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0);
+  fence.sync_.reset(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
   fence.status_ = fence.sync_ ? Status::kPending : Status::kFailed;
   fence.number_ = ctx.fenceDelay().insert();
   glFlush();  // without it a polled fence may never be passed
   return fence;
 }
 
-Fence::~Fence() {
-  if (sync_) glDeleteSync(static_cast<GLsync>(sync_));
-}
-
-Fence::Fence(Fence&& other) noexcept
-    : ctx_(other.ctx_),
-      sync_(std::exchange(other.sync_, nullptr)),
-      status_(std::exchange(other.status_, Status::kPassed)),
-      number_(other.number_) {}
-
-Fence& Fence::operator=(Fence&& other) noexcept {
-  // The temporary releases the old contents.
-  Fence moved(std::move(other));
-  std::swap(ctx_, moved.ctx_);
-  std::swap(sync_, moved.sync_);
-  std::swap(status_, moved.status_);
-  std::swap(number_, moved.number_);
-  return *this;
+void Fence::DeleteSync::operator()(void* sync) const {
+  glDeleteSync(static_cast<GLsync>(sync));
 }
 
 Fence::Status Fence::wait(std::chrono::nanoseconds timeout) {
@@ -50,29 +33,24 @@ Fence::Status Fence::wait(std::chrono::nanoseconds timeout) {
   std::chrono::nanoseconds left = std::max(timeout, std::chrono::nanoseconds(0));
   while (status_ == Status::kPending) {
     const std::chrono::nanoseconds slice = std::min(left, kSlice);
-    const GLenum status =
-        glClientWaitSync(static_cast<GLsync>(sync_), GL_SYNC_FLUSH_COMMANDS_BIT, static_cast<GLuint64>(slice.count()));
+    const GLenum status = glClientWaitSync(static_cast<GLsync>(sync_.get()), GL_SYNC_FLUSH_COMMANDS_BIT,
+                                           static_cast<GLuint64>(slice.count()));
     // Check the loss first: on a lost device a fence may report that it was passed, or that the wait failed.
     if (ctx_->isLost()) {
-      finish(Status::kFailed);
+      status_ = Status::kFailed;
     } else if (status == GL_WAIT_FAILED) {
       spdlog::error("OpenGL refuses to wait for a fence (error {}); the work before it is lost", glGetError());
       ctx_->countError();
-      finish(Status::kFailed);
+      status_ = Status::kFailed;
     } else if (status != GL_TIMEOUT_EXPIRED) {
-      finish(Status::kPassed);
+      status_ = Status::kPassed;
     } else if (left <= slice) {
       break;
     }
     left -= slice;
   }
+  if (status_ != Status::kPending) sync_.reset();
   return status_;
-}
-
-void Fence::finish(Status status) {
-  glDeleteSync(static_cast<GLsync>(sync_));
-  sync_ = nullptr;
-  status_ = status;
 }
 
 }  // namespace spindrift::gpu

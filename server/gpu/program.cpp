@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
-#include <utility>
 
 #include <glad/gl.h>
 #include <spdlog/spdlog.h>
@@ -10,7 +9,6 @@
 #include <spindrift/gpu/program.h>
 
 #include "compiled_program.h"
-#include "program_resources.h"
 
 namespace spindrift::gpu {
 namespace {
@@ -36,46 +34,23 @@ UniformValue* findLocation(std::vector<UniformValue>& values, std::int32_t locat
 
 }  // namespace
 
-Program::Program() = default;
-
 core::Result<Program> Program::create(Context& ctx, std::string_view shader_path, const Defines& defines) {
   assert(ctx.isOwnedHere());
   auto compiled = ctx.programs().get(ctx, shader_path, defines);
   if (!compiled) return compiled.error();
   Program program;
-  program.ctx_ = &ctx;
   program.path_ = shader_path;
   program.compiled_ = *std::move(compiled);
   program.generation_ = program.compiled_->generation;
   program.handle_ = ctx.programs().newHandle();
+  program.ctx_.reset(&ctx);
   ++ctx.ledgerEntry().program_count;
   return program;
 }
 
-Program::~Program() {
-  if (!compiled_) return;
-  assert(ctx_->isOwnedHere());
-  --ctx_->ledgerEntry().program_count;
-}
-
-Program::Program(Program&& other) noexcept
-    : ctx_(other.ctx_),
-      path_(std::move(other.path_)),
-      compiled_(std::move(other.compiled_)),
-      handle_(other.handle_),
-      generation_(other.generation_),
-      uniforms_(std::move(other.uniforms_)) {}
-
-Program& Program::operator=(Program&& other) noexcept {
-  // The temporary releases the old contents.
-  Program moved(std::move(other));
-  std::swap(ctx_, moved.ctx_);
-  std::swap(path_, moved.path_);
-  std::swap(compiled_, moved.compiled_);
-  std::swap(handle_, moved.handle_);
-  std::swap(generation_, moved.generation_);
-  std::swap(uniforms_, moved.uniforms_);
-  return *this;
+void Program::Uncount::operator()(Context* ctx) const {
+  assert(ctx->isOwnedHere());
+  --ctx->ledgerEntry().program_count;
 }
 
 std::uint32_t Program::id() const {
@@ -140,7 +115,7 @@ void Program::prepare(const Buffer* arguments) {
     for (const UniformValue& value : uniforms_) apply(compiled_->id, value);
     compiled_->uniforms_of = handle_;
   }
-  ctx_->barrierBits(ctx_->accesses().beforeDispatch(compiled_->uses, arguments ? arguments->access() : nullptr));
+  ctx_->beforeDispatch(compiled_->uses, arguments ? arguments->access() : nullptr);
   glUseProgram(compiled_->id);
 }
 

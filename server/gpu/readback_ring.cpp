@@ -17,15 +17,11 @@ namespace spindrift::gpu {
 /// State shared by the views and the ring; it outlives the ring.
 struct ReadbackRing::State {
   State(std::size_t bytes, std::size_t count)
-      : slot_bytes(bytes),
-        stride_bytes((bytes + 63) / 64 * 64),
-        is_used(std::make_unique<std::atomic<bool>[]>(count)),
-        slot_count(count) {}
+      : slot_bytes(bytes), stride_bytes((bytes + 63) / 64 * 64), is_used(count) {}
 
   [[nodiscard]] std::size_t usedCount() const {
-    std::size_t used = 0;
-    for (std::size_t i = 0; i < slot_count; ++i) used += is_used[i].load(std::memory_order_acquire);
-    return used;
+    const auto isSet = [](const std::atomic<bool>& used) { return used.load(std::memory_order_acquire); };
+    return static_cast<std::size_t>(std::ranges::count_if(is_used, isSet));
   }
   /// Frees a slot after its last reader. Release order: the reader's accesses happen before the device writes here
   /// again.
@@ -33,8 +29,7 @@ struct ReadbackRing::State {
 
   const std::size_t slot_bytes;
   const std::size_t stride_bytes;
-  const std::unique_ptr<std::atomic<bool>[]> is_used;
-  const std::size_t slot_count;
+  std::vector<std::atomic<bool>> is_used;
   const std::byte* mapped = nullptr;
 };
 
@@ -68,7 +63,7 @@ bool ReadbackRing::Recording::copyFrom(const Buffer& source, std::size_t source_
   if (!fits(source_offset_bytes, source.sizeBytes()) || !fits(offset_bytes, state.slot_bytes)) return false;
   if (size_bytes == 0) return true;
   Context& ctx = ring_->ctx_;
-  ctx.barrierBits(ctx.accesses().beforeUpdate(source.access(), nullptr));
+  ctx.beforeUpdate(source.access(), nullptr);
   glCopyNamedBufferSubData(source.id(), ring_->buffer_id_, static_cast<GLintptr>(source_offset_bytes),
                            static_cast<GLintptr>(index_ * state.stride_bytes + offset_bytes),
                            static_cast<GLsizeiptr>(size_bytes));
@@ -88,9 +83,8 @@ core::Result<std::unique_ptr<ReadbackRing>> ReadbackRing::create(Context& ctx, s
   ctx.collectRetired();
   const std::string title = "readback ring \"" + std::string(name) + "\": ";
   if (slot_bytes == 0 || slot_count == 0) {
-    return core::Error{core::ErrorCode::kInvalidInput, title + "needs at least 1 slot of at least 1 byte, not " +
-                                                           std::to_string(slot_count) + " of " +
-                                                           std::to_string(slot_bytes)};
+    return core::invalid(title + "needs at least 1 slot of at least 1 byte, not " + std::to_string(slot_count) +
+                         " of " + std::to_string(slot_bytes));
   }
   auto state = std::make_shared<State>(slot_bytes, slot_count);
   const std::size_t size_bytes = state->stride_bytes * slot_count;
@@ -132,7 +126,7 @@ ReadbackRing::~ReadbackRing() {
 
 std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
   assert(ctx_.isOwnedHere());
-  for (std::size_t i = 0; i < state_->slot_count; ++i) {
+  for (std::size_t i = 0; i < state_->is_used.size(); ++i) {
     if (state_->is_used[i].load(std::memory_order_acquire)) continue;
     state_->is_used[i].store(true, std::memory_order_relaxed);
     return Recording(*this, i);
@@ -142,40 +136,29 @@ std::optional<ReadbackRing::Recording> ReadbackRing::begin() {
 }
 
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::poll() {
-  assert(ctx_.isOwnedHere());
-  ctx_.collectRetired();
-  // Fences are passed in order: after the first pending fence all others are pending.
-  std::size_t done = 0;
-  while (done < in_flight_.size() && in_flight_[done].fence.poll() != Fence::Status::kPending) ++done;
-  return take(done);
+  return wait(std::chrono::nanoseconds(0));
 }
 
 std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::chrono::nanoseconds limit) {
   assert(ctx_.isOwnedHere());
   ctx_.collectRetired();
   const auto end = std::chrono::steady_clock::now() + limit;
-  std::size_t done = 0;
-  while (done < in_flight_.size() &&
-         in_flight_[done].fence.wait(end - std::chrono::steady_clock::now()) != Fence::Status::kPending) {
-    ++done;
-  }
-  return take(done);
-}
-
-std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::take(std::size_t count) {
   std::vector<std::shared_ptr<const Slot>> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    InFlight& flight = in_flight_[i];
-    if (flight.fence.poll() == Fence::Status::kFailed) {
+  // Fences are passed in order: after the first pending fence all others are pending.
+  auto flight = in_flight_.begin();
+  for (; flight != in_flight_.end(); ++flight) {
+    const Fence::Status status = flight->fence.wait(end - std::chrono::steady_clock::now());
+    if (status == Fence::Status::kPending) break;
+    if (status == Fence::Status::kFailed) {
       ++lost_count_;
-      state_->free(flight.index);
+      state_->free(flight->index);
       continue;
     }
-    const std::byte* const start = state_->mapped + flight.index * state_->stride_bytes;
-    out.push_back(
-        std::shared_ptr<const Slot>(new Slot(state_, flight.index, flight.tag, std::span(start, flight.used_bytes))));
+    const std::byte* const start = state_->mapped + flight->index * state_->stride_bytes;
+    out.push_back(std::shared_ptr<const Slot>(
+        new Slot(state_, flight->index, flight->tag, std::span(start, flight->used_bytes))));
   }
-  in_flight_.erase(in_flight_.begin(), in_flight_.begin() + static_cast<std::ptrdiff_t>(count));
+  in_flight_.erase(in_flight_.begin(), flight);
   return out;
 }
 

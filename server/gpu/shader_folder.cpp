@@ -11,11 +11,9 @@ namespace spindrift::gpu {
 namespace {
 
 namespace fs = std::filesystem;
-using core::Error;
+using core::invalid;
 
 constexpr auto kLookInterval = std::chrono::milliseconds(300);
-
-using core::invalid;
 
 /// Returns the text after `#NAME` in a line, without surrounding blanks; nullopt if the line is not this directive.
 std::optional<std::string_view> directive(std::string_view line, std::string_view name) {
@@ -38,22 +36,6 @@ std::string guardOf(const std::string& name) {
   return out;
 }
 
-/// Adds consecutive lines of one file to a source.
-class Lines {
- public:
-  Lines(ShaderFolder::Source& out, const std::string& name) : out_(out), name_(out.names.emplace_back(name)) {}
-
-  /// `number`: line number in the file, from 1.
-  void add(std::string_view line, std::uint32_t number) {
-    out_.text.append(line).push_back('\n');
-    out_.lines.push_back({++out_.line_count, name_, number});
-  }
-
- private:
-  ShaderFolder::Source& out_;
-  const std::string& name_;
-};
-
 }  // namespace
 
 ShaderFolder::ShaderFolder(fs::path root) : root_(std::move(root)), times_(times()) {}
@@ -74,8 +56,12 @@ core::Result<void> ShaderFolder::expand(const std::string& name, const std::vect
   out.files.insert(name);
   std::vector<std::string> inside = stack;
   inside.push_back(name);
-  Lines lines(out, name);
+  const std::string& file_name = out.names.emplace_back(name);
   std::uint32_t number = 0;
+  const auto add = [&](std::string_view line) {
+    out.text.append(line).push_back('\n');
+    out.lines.push_back({static_cast<std::uint32_t>(out.lines.size() + 1), file_name, number});
+  };
   for (std::string line; std::getline(file, line);) {
     ++number;
     const std::string where = name + ":" + std::to_string(number);
@@ -84,7 +70,7 @@ core::Result<void> ShaderFolder::expand(const std::string& name, const std::vect
     // <...> is the C++ side of a header in shared/.
     const bool is_dropped = (directive(line, "pragma") == "once") || (included && included->starts_with('<'));
     if (!included || is_dropped) {
-      lines.add(is_dropped ? "" : line, number);
+      add(is_dropped ? "" : line);
       continue;
     }
     const std::size_t end = included->find('"', 1);
@@ -94,10 +80,10 @@ core::Result<void> ShaderFolder::expand(const std::string& name, const std::vect
     if (other.find("..") != std::string::npos || !fs::is_regular_file(root_ / other))
       return invalid(where + ": no file \"" + other + "\" below " + root_.string());
     // Includes a file once, at the first place that the preprocessor reaches.
-    lines.add("#ifndef " + guardOf(other), number);
-    lines.add("#define " + guardOf(other), number);
+    add("#ifndef " + guardOf(other));
+    add("#define " + guardOf(other));
     if (auto done = expand(other, inside, out); !done) return done;
-    lines.add("#endif", number);
+    add("#endif");
   }
   return {};
 }

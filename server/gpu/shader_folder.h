@@ -24,7 +24,6 @@ class ShaderFolder {
   /// drops.
   struct Source {
     std::string text;
-    std::uint32_t line_count = 0;  ///< in `text`
     std::vector<LineRange> lines;
     std::deque<std::string> names;  ///< file names that `lines` points to; a deque, because elements must not move
     std::set<std::string> files;    ///< all files that were read, relative to the root

@@ -46,14 +46,14 @@ bool Staging::await(Fence& fence, const char* what) {
   return false;
 }
 
-bool Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<const std::byte> bytes) {
-  if (!prepare(up_, true)) return false;
+void Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<const std::byte> bytes) {
+  if (!prepare(up_, true)) return;
   while (!bytes.empty()) {
     if (up_used_bytes_ == kPartBytes) {
       up_fences_[up_part_] = Fence::insert(ctx_);
       const std::size_t next = (up_part_ + 1) % kPartCount;
       // After a failure the part stays full, and the next upload tries again.
-      if (!await(up_fences_[next], "take an upload")) return false;
+      if (!await(up_fences_[next], "take an upload")) return;
       up_part_ = next;
       up_used_bytes_ = 0;
     }
@@ -67,10 +67,9 @@ bool Staging::upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::spa
     offset_bytes += now_bytes;
     bytes = bytes.subspan(now_bytes);
   }
-  return true;
 }
 
-bool Staging::download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes) {
+void Staging::download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes) {
   bool is_done = prepare(down_, false);
   std::span<std::byte> left = bytes;
   while (is_done && !left.empty()) {
@@ -85,7 +84,6 @@ bool Staging::download(std::uint32_t buffer_id, std::size_t offset_bytes, std::s
     left = left.subspan(now_bytes);
   }
   if (!is_done) std::ranges::fill(bytes, std::byte{0});
-  return is_done;
 }
 
 }  // namespace spindrift::gpu

@@ -21,11 +21,11 @@ class Staging {
   Staging& operator=(const Staging&) = delete;
 
   /// Copies `bytes` into the buffer. Returns before the device has finished; waits only when the whole ring is in
-  /// flight. Returns false, logged and counted in Context::debugErrorCount(), when the ring cannot be mapped or the
-  /// device does not finish within kLimit. Also returns false, without a log line, when the device was lost.
-  bool upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<const std::byte> bytes);
-  /// Copies out of the buffer and waits for it. Returns false as upload() does; `bytes` is then filled with zeros.
-  bool download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes);
+  /// flight. Gives up, logged and counted in Context::debugErrorCount(), when the ring cannot be mapped or the device
+  /// does not finish within kLimit, and without a log line when the device was lost.
+  void upload(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<const std::byte> bytes);
+  /// Copies out of the buffer and waits for it. Gives up as upload() does; `bytes` is then filled with zeros.
+  void download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes);
 
  private:
   static constexpr std::size_t kPartBytes = std::size_t{1} << 20;
@@ -38,7 +38,7 @@ class Staging {
     std::byte* mapped = nullptr;
   };
   bool prepare(Ring& ring, bool is_for_upload);
-  /// Waits for a part; returns false as upload() does.
+  /// Waits for a part; returns false where upload() gives up.
   bool await(Fence& fence, const char* what);
 
   Context& ctx_;

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <utility>
 
-#include <spindrift/codec/gauge_message.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/room_name.h>
 #include <spindrift/core/text.h>
 #include <spindrift/scene/parameters.h>

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "short_vectors.h"
+#include "format/short_vectors.h"
 
 namespace spindrift::codec {
 namespace {

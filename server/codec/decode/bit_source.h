@@ -29,11 +29,7 @@ class BitSource {
     is_past_end_ = true;
   }
   /// Returns at least the next 57 bits without consuming them.
-  [[nodiscard]] std::uint64_t peek() const {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes_ + at_ / 8, sizeof word);
-    return word >> at_ % 8;
-  }
+  [[nodiscard]] std::uint64_t peek() const { return peekAt(at_); }
   void take(std::uint32_t bit_count) { at_ += bit_count; }
   /// bit_count <= 32.
   std::uint32_t get(std::uint32_t bit_count) {

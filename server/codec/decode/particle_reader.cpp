@@ -1,13 +1,12 @@
 #include "particle_reader.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstring>
 
 #include "format/particle_format.h"
+#include "format/short_vectors.h"
 #include "prefix_slots.h"
 #include "residual_reader.h"
-#include "short_vectors.h"
 
 namespace spindrift::codec {
 namespace {
@@ -186,23 +185,21 @@ struct Tails {
   alignas(16) std::array<std::uint32_t, kGroupMaxCount> second;
 };
 
-class AttributeReader {
- public:
+struct Attributes {
+  Attribute vx, vy, vz, foam, tint;
+
   void read(ResidualReader& in, std::size_t count, Tails& out) {
-    for (Attribute* attribute : {&vx_, &vy_, &vz_, &foam_, &tint_}) attribute->read(in, count);
+    for (Attribute* attribute : {&vx, &vy, &vz, &foam, &tint}) attribute->read(in, count);
     for (std::size_t k = 0; k < kGroupMaxCount; k += 8) {
       const auto valuesOf = [k](const Attribute& attribute) {
         return loadVector<Shorts>(attribute.values.of.data() + k);
       };
-      storeVector(out.first.data() + k, bytesOf(valuesOf(vx_)) | bytesOf(valuesOf(vy_)) << 8);
-      const Shorts low = bytesOf(valuesOf(vz_)) | tintsOf(valuesOf(tint_)) << 8, high = foamsOf(valuesOf(foam_));
+      storeVector(out.first.data() + k, bytesOf(valuesOf(vx)) | bytesOf(valuesOf(vy)) << 8);
+      const Shorts low = bytesOf(valuesOf(vz)) | tintsOf(valuesOf(tint)) << 8, high = foamsOf(valuesOf(foam));
       storeVector(out.second.data() + k, interleaveLow(low, high));
       storeVector(out.second.data() + k + 4, interleaveHigh(low, high));
     }
   }
-
- private:
-  Attribute vx_, vy_, vz_, foam_, tint_;
 };
 
 /// Adds the low bits of the positions and the attributes of a group to the positions from the cells. `place`: position
@@ -256,7 +253,7 @@ bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const 
   const BitSource offsets = in.bits();
   const std::uint32_t low = shape.offset_bits - 1;
   if (!in.bits().skip(std::uint64_t{shape.count} * 3 * low)) return false;
-  AttributeReader attributes;
+  Attributes attributes;
   Tails tails;
   std::uint32_t place = offsets.place();
   for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount) {

@@ -9,23 +9,6 @@
 namespace spindrift::codec {
 namespace {
 
-/// Splits a block of memory into parts. With a null pointer it only computes the size.
-class Parts {
- public:
-  explicit Parts(std::uint8_t* memory) : memory_(memory) {}
-  template <typename Element>
-  Element* take(std::size_t count) {
-    Element* const part = memory_ != nullptr ? reinterpret_cast<Element*>(memory_ + used_) : nullptr;
-    used_ += (count * sizeof(Element) + PlaneRow::kAlignment - 1) / PlaneRow::kAlignment * PlaneRow::kAlignment;
-    return part;
-  }
-  [[nodiscard]] std::size_t usedBytes() const { return used_; }
-
- private:
-  std::uint8_t* memory_;
-  std::size_t used_ = 0;
-};
-
 std::size_t sumsStrideOf(const PlaneLayout& layout) {
   return kSumsLeft + kTile * layout.tilesCount() + kSumsRight;
 }
@@ -33,12 +16,16 @@ std::size_t sumsStrideOf(const PlaneLayout& layout) {
 }  // namespace
 
 std::size_t PlaneRow::takeParts(std::uint8_t* memory) {
-  Parts parts(memory);
-  for (std::int16_t** plane : {&next_, &before_, &earlier_}) *plane = parts.take<std::int16_t>(layout_.sampleCount());
-  residuals_ = parts.take<ResidualGroup>(layout_.tilesCount());
-  sums_ = parts.take<std::uint32_t>(kTile * sumsStrideOf(layout_));
-  classes_ = parts.take<std::uint8_t>(layout_.tilesCount());
-  return parts.usedBytes();
+  std::size_t used = 0;
+  const auto take = [&]<typename Element>(Element*& part, std::size_t count) {
+    part = memory != nullptr ? reinterpret_cast<Element*>(memory + used) : nullptr;
+    used += (count * sizeof(Element) + kAlignment - 1) / kAlignment * kAlignment;
+  };
+  for (std::int16_t** plane : {&next_, &before_, &earlier_}) take(*plane, layout_.sampleCount());
+  take(residuals_, layout_.tilesCount());
+  take(sums_, kTile * sumsStrideOf(layout_));
+  take(classes_, layout_.tilesCount());
+  return used;
 }
 
 std::size_t PlaneRow::bytesFor(std::size_t nx, std::size_t nz) {

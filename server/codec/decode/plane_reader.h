@@ -2,7 +2,6 @@
 // codec/surface_predictor. The caller owns all memory.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 

@@ -4,8 +4,8 @@
 #include <array>
 #include <cstring>
 
+#include "format/short_vectors.h"
 #include "prefix_slots.h"
-#include "short_vectors.h"
 
 namespace spindrift::codec {
 namespace {

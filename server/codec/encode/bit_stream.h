@@ -17,13 +17,8 @@ struct BitCursor {
   std::uint64_t pending = 0;
   std::uint32_t count = 0;
 
-  /// Writes the low `bit_count` bits of value; all other bits must be 0. bit_count <= 32.
-  void put(std::uint32_t value, std::uint32_t bit_count) {
-    pending |= std::uint64_t{value} << count;
-    count += bit_count;
-  }
-  /// The same with bit_count <= 56.
-  void putLong(std::uint64_t value, std::uint32_t bit_count) {
+  /// Writes the low `bit_count` bits of value; all other bits must be 0.
+  void put(std::uint64_t value, std::uint32_t bit_count) {
     pending |= value << count;
     count += bit_count;
   }

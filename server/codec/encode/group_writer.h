@@ -3,165 +3,98 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cassert>
 #include <cstdlib>
+#include <vector>
 
-#if defined(__SSE2__)
-#include <emmintrin.h>
-#endif
-
+#include "format/short_vectors.h"
+#include "prefix_code.h"
 #include "processor.h"
 #include "residual_coder.h"
-#include "residual_codes.h"
 
 namespace spindrift::codec {
-
-#if defined(__SSE2__)
 
 /// A group in registers, with operations on all its residuals at once.
 class GroupRows {
  public:
   /// Loads eight rows of eight residuals, `stride` apart.
-  SPINDRIFT_INLINE GroupRows(const std::int16_t* first, std::size_t stride) {
-    for (std::size_t j = 0; j < 8; ++j)
-      rows_[j] = _mm_loadu_si128(reinterpret_cast<const __m128i*>(first + j * stride));
+  SPINDRIFT_INLINE explicit GroupRows(const std::int16_t* first, std::size_t stride = 8) {
+    for (std::size_t j = 0; j < 8; ++j) rows_[j] = loadVector<Shorts>(first + j * stride);
   }
   SPINDRIFT_INLINE void store(ResidualGroup& out) const {
-    for (std::size_t j = 0; j < 8; ++j) _mm_store_si128(reinterpret_cast<__m128i*>(out.of.data() + 8 * j), rows_[j]);
+    for (std::size_t j = 0; j < 8; ++j) storeVector(out.of.data() + 8 * j, rows_[j]);
   }
   [[nodiscard]] SPINDRIFT_INLINE bool areZero() const {
-    __m128i any = rows_[0];
-    for (std::size_t j = 1; j < 8; ++j) any = _mm_or_si128(any, rows_[j]);
-    return _mm_movemask_epi8(_mm_cmpeq_epi8(any, _mm_setzero_si128())) == 0xffff;
+    Shorts any = rows_[0];
+    for (std::size_t j = 1; j < 8; ++j) any |= rows_[j];
+    const auto halves = std::bit_cast<std::array<std::uint64_t, 2>>(any);
+    return (halves[0] | halves[1]) == 0;
   }
   /// The magnitude of -32768 counts as 32767.
   SPINDRIFT_INLINE void sumUp(std::uint32_t& magnitudes_sum, int& largest_magnitude, int& signed_sum) const {
-    const __m128i ones = _mm_set1_epi16(1);
-    __m128i sum = _mm_setzero_si128(), largest = sum, plain = sum;
-    for (const __m128i& r : rows_) {
-      const __m128i magnitude = _mm_max_epi16(r, _mm_subs_epi16(_mm_setzero_si128(), r));
-      sum = _mm_add_epi32(sum, _mm_madd_epi16(magnitude, ones));
-      plain = _mm_add_epi32(plain, _mm_madd_epi16(r, ones));
-      largest = _mm_max_epi16(largest, magnitude);
+    const Shorts ones{1, 1, 1, 1, 1, 1, 1, 1};
+    const auto larger = [](Shorts a, Shorts b) { return a > b ? a : b; };
+    Words sum{}, plain{};
+    Shorts largest{};
+    for (const Shorts& r : rows_) {
+      const Shorts magnitude = magnitudesOf(r);
+      sum += sumsOfProducts(magnitude, ones);
+      plain += sumsOfProducts(r, ones);
+      largest = larger(largest, magnitude);
     }
-    // Both sums in one register, two halves each.
-    __m128i sums = _mm_add_epi32(_mm_unpacklo_epi32(sum, plain), _mm_unpackhi_epi32(sum, plain));
-    sums = _mm_add_epi32(sums, _mm_shuffle_epi32(sums, _MM_SHUFFLE(1, 0, 3, 2)));
-    largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(1, 0, 3, 2)));
-    largest = _mm_max_epi16(largest, _mm_shuffle_epi32(largest, _MM_SHUFFLE(2, 3, 0, 1)));
-    largest = _mm_max_epi16(largest, _mm_srli_epi32(largest, 16));
-    magnitudes_sum = static_cast<std::uint32_t>(_mm_cvtsi128_si32(sums));
-    signed_sum = _mm_cvtsi128_si32(_mm_shuffle_epi32(sums, _MM_SHUFFLE(1, 1, 1, 1)));
-    largest_magnitude = static_cast<std::int16_t>(_mm_cvtsi128_si32(largest));
+    // Both sums in one vector, two halves each.
+    Words sums = interleaveLow(sum, plain) + interleaveHigh(sum, plain);
+    sums += __builtin_shufflevector(sums, sums, 2, 3, 0, 1);
+    largest = larger(largest, __builtin_shufflevector(largest, largest, 4, 5, 6, 7, 0, 1, 2, 3));
+    largest = larger(largest, __builtin_shufflevector(largest, largest, 2, 3, 0, 1, 2, 3, 0, 1));
+    magnitudes_sum = sums[0];
+    signed_sum = static_cast<std::int32_t>(sums[1]);
+    largest_magnitude = std::max(largest[0], largest[1]);
   }
   [[nodiscard]] SPINDRIFT_INLINE int sum() const {
-    const __m128i ones = _mm_set1_epi16(1);
-    __m128i sum = _mm_setzero_si128();
-    for (const __m128i& r : rows_) sum = _mm_add_epi32(sum, _mm_madd_epi16(r, ones));
-    sum = _mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(1, 0, 3, 2)));
-    return _mm_cvtsi128_si32(_mm_add_epi32(sum, _mm_shuffle_epi32(sum, _MM_SHUFFLE(2, 3, 0, 1))));
+    const Shorts ones{1, 1, 1, 1, 1, 1, 1, 1};
+    Words sum{};
+    for (const Shorts& r : rows_) sum += sumsOfProducts(r, ones);
+    sum += __builtin_shufflevector(sum, sum, 2, 3, 0, 1);
+    return static_cast<std::int32_t>(sum[0] + sum[1]);
   }
   /// Bit k: the magnitude of residual k exceeds `largest`. -32768 counts as 32767.
   [[nodiscard]] SPINDRIFT_INLINE std::uint64_t beyond(int largest) const {
-    const __m128i bound = _mm_set1_epi16(static_cast<std::int16_t>(largest));
+    const Shorts bound = Shorts{} + static_cast<std::int16_t>(largest);
+    const auto isBeyond = [&](Shorts r) { return Shorts(magnitudesOf(r) > bound); };
     std::uint64_t out = 0;
-    for (std::size_t j = 0; j < 8; j += 2) {
-      const auto isBeyond = [&](__m128i r) {
-        return _mm_cmpgt_epi16(_mm_max_epi16(r, _mm_subs_epi16(_mm_setzero_si128(), r)), bound);
-      };
-      const __m128i bytes = _mm_packs_epi16(isBeyond(rows_[j]), isBeyond(rows_[j + 1]));
-      out |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(bytes))} << (8 * j);
-    }
+    for (std::size_t j = 0; j < 8; j += 2)
+      out |= std::uint64_t{signBitsOf(isBeyond(rows_[j]), isBeyond(rows_[j + 1]))} << (8 * j);
     return out;
   }
-  /// Bit k of `not_zero` and `below_zero`: residual k is not 0, or negative. All residuals must be from -1 to 1.
+  /// Bit k of `not_zero` and `below_zero`: residual k is not 0, or negative.
   SPINDRIFT_INLINE void signs(std::uint64_t& not_zero, std::uint64_t& below_zero) const {
     not_zero = below_zero = 0;
     for (std::size_t j = 0; j < 8; j += 2) {
-      const __m128i bytes = _mm_packs_epi16(rows_[j], rows_[j + 1]);
-      const auto zero = static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpeq_epi8(bytes, _mm_setzero_si128())));
-      not_zero |= std::uint64_t{zero ^ 0xffffu} << (8 * j);
-      below_zero |= std::uint64_t{static_cast<std::uint32_t>(_mm_movemask_epi8(bytes))} << (8 * j);
+      const Shorts a = rows_[j], b = rows_[j + 1];
+      not_zero |= std::uint64_t{signBitsOf(Shorts(a != Shorts{}), Shorts(b != Shorts{}))} << (8 * j);
+      below_zero |= std::uint64_t{signBitsOf(a, b)} << (8 * j);
     }
   }
   /// Computes one symbol per four residuals, all from -1 to 1; out[4 i] and out[4 i + 2] belong to row i.
   SPINDRIFT_INLINE void symbolsOfFours(std::uint32_t* out) const {
-    const __m128i factors = _mm_setr_epi16(1, 3, 9, 27, 1, 3, 9, 27);
+    const Shorts factors{1, 3, 9, 27, 1, 3, 9, 27};
     for (std::size_t j = 0; j < 8; ++j) {
-      const __m128i pairs = _mm_madd_epi16(rows_[j], factors);
-      const __m128i fours =
-          _mm_add_epi32(_mm_add_epi32(pairs, _mm_srli_epi64(pairs, 32)), _mm_set1_epi32(1 + 3 + 9 + 27));
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(out + 4 * j), fours);
+      const Words pairs = sumsOfProducts(rows_[j], factors);
+      storeVector(out + 4 * j, pairs + __builtin_shufflevector(pairs, pairs, 1, 1, 3, 3) + (1u + 3 + 9 + 27));
     }
   }
   /// Computes one symbol per two residuals, all from -4 to 4.
   SPINDRIFT_INLINE void symbolsOfPairs(std::uint32_t* out) const {
-    const __m128i factors = _mm_setr_epi16(1, 9, 1, 9, 1, 9, 1, 9);
-    for (std::size_t j = 0; j < 8; ++j) {
-      _mm_storeu_si128(reinterpret_cast<__m128i*>(out + 4 * j),
-                       _mm_add_epi32(_mm_madd_epi16(rows_[j], factors), _mm_set1_epi32(4 + 36)));
-    }
+    const Shorts factors{1, 9, 1, 9, 1, 9, 1, 9};
+    for (std::size_t j = 0; j < 8; ++j) storeVector(out + 4 * j, sumsOfProducts(rows_[j], factors) + (4u + 36));
   }
 
  private:
-  __m128i rows_[8];
+  Shorts rows_[8];
 };
-
-#else
-
-class GroupRows {
- public:
-  GroupRows(const std::int16_t* first, std::size_t stride) {
-    for (std::size_t j = 0; j < 8; ++j) std::copy_n(first + j * stride, 8, group_.of.data() + 8 * j);
-  }
-  void store(ResidualGroup& out) const { out = group_; }
-  [[nodiscard]] bool areZero() const {
-    return std::ranges::all_of(group_.of, [](std::int16_t r) { return r == 0; });
-  }
-  void sumUp(std::uint32_t& magnitudes_sum, int& largest_magnitude, int& signed_sum) const {
-    magnitudes_sum = 0;
-    largest_magnitude = signed_sum = 0;
-    for (const std::int16_t r : group_.of) {
-      const int magnitude = std::min(std::abs(int{r}), 32767);
-      magnitudes_sum += static_cast<std::uint32_t>(magnitude);
-      largest_magnitude = std::max(largest_magnitude, magnitude);
-      signed_sum += r;
-    }
-  }
-  [[nodiscard]] int sum() const {
-    int sum = 0;
-    for (const std::int16_t r : group_.of) sum += r;
-    return sum;
-  }
-  [[nodiscard]] std::uint64_t beyond(int largest) const {
-    std::uint64_t out = 0;
-    for (std::size_t k = 0; k < kGroupMaxCount; ++k) out |= std::uint64_t{std::abs(int{group_.of[k]}) > largest} << k;
-    return out;
-  }
-  void signs(std::uint64_t& not_zero, std::uint64_t& below_zero) const {
-    not_zero = below_zero = 0;
-    for (std::size_t k = 0; k < kGroupMaxCount; ++k) {
-      not_zero |= std::uint64_t{group_.of[k] != 0} << k;
-      below_zero |= std::uint64_t{group_.of[k] < 0} << k;
-    }
-  }
-  void symbolsOfFours(std::uint32_t* out) const {
-    for (std::size_t i = 0; i < kGroupMaxCount; i += 4) {
-      const std::int16_t* r = group_.of.data() + i;
-      out[i / 2] = static_cast<std::uint32_t>(r[0] + 3 * r[1] + 9 * r[2] + 27 * r[3] + 40);
-    }
-  }
-  void symbolsOfPairs(std::uint32_t* out) const {
-    for (std::size_t i = 0; i < kGroupMaxCount; i += 2)
-      out[i / 2] = static_cast<std::uint32_t>(group_.of[i] + 9 * group_.of[i + 1] + 40);
-  }
-
- private:
-  ResidualGroup group_;
-};
-
-#endif
 
 /// Returns the class from 5 on whose mean magnitude is nearest to sum / count.
 SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count) {
@@ -173,6 +106,14 @@ SPINDRIFT_INLINE std::uint32_t meanClassOf(std::uint32_t sum, std::size_t count)
   return static_cast<std::uint32_t>(std::clamp(doubled_log2 + 13, 5, static_cast<int>(kResidualClassCount) - 1));
 }
 
+/// The writers of all fixed codes.
+struct ResidualWriters {
+  std::vector<PrefixWriter> of_class;       ///< [c - 5], c = 5..17
+  std::vector<PrefixWriter> of_class_step;  ///< one per code of the class step: three
+  [[nodiscard]] const PrefixWriter& ofClass(std::uint32_t c) const { return of_class[c - kLastSparseClass - 1]; }
+};
+const ResidualWriters& residualWriters();
+
 /// Writes groups; made by ResidualEncoder::begin() and handed back with end().
 struct GroupWriter {
   /// Room for a class and 64 residuals with an escape each.
@@ -183,18 +124,12 @@ struct GroupWriter {
   BitCursor out;
   std::uint32_t residual_sum = 0;
 
-  /// The same as ResidualEncoder::putGroup().
-  SPINDRIFT_INLINE std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
+  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 at the edge; along a line both are
+  /// the class of the group before. Returns the group's class.
+  SPINDRIFT_INLINE std::uint32_t putGroup(const GroupRows& rows, std::size_t count, std::uint32_t left,
                                           std::uint32_t above) {
     assert(count >= 1 && count <= kGroupMaxCount);
-    const GroupRows rows(residuals.of.data(), 8);
     return rows.areZero() ? putZeros(left, above) : putRows(rows, count, left, above);
-  }
-  /// Writes a whole group from eight rows of eight, `stride` apart.
-  SPINDRIFT_INLINE std::uint32_t putTile(const std::int16_t* first, std::size_t stride, std::uint32_t left,
-                                         std::uint32_t above) {
-    const GroupRows rows(first, stride);
-    return rows.areZero() ? putZeros(left, above) : putRows(rows, kGroupMaxCount, left, above);
   }
   /// Writes a group of one residual; `before`: the class of the group before it.
   SPINDRIFT_INLINE std::uint32_t putOne(std::int16_t residual, std::uint32_t before) {

@@ -6,7 +6,6 @@
 #include <cassert>
 
 #include "group_writer.h"
-#include "particle_quanta.h"
 #include "prefix_code.h"
 
 namespace spindrift::codec {
@@ -32,7 +31,7 @@ static_assert(kGroupMaxCount == 64, "twice as many are 1 << 7");
 constexpr std::size_t kAttributeCount = 5;  ///< velocity along x, y, z, foam, tint
 using AttributeStates = std::array<AttributeState, kAttributeCount>;
 
-/// Position of an attribute in the result of attributesOf(): (word << up) >> down with its sign, and the mask.
+/// Position of an attribute in the upper word of an item: (word << up) >> down with its sign, and the mask.
 struct AttributeBits {
   std::uint32_t up, down;
   std::int32_t mask;
@@ -46,7 +45,7 @@ SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items,
   const std::size_t count = items.size();
   const auto doubled = static_cast<int>(2 * count);
   std::array<std::uint32_t, kGroupMaxCount> words{};
-  for (std::size_t k = 0; k < count; ++k) words[k] = attributesOf(items[k]);
+  for (std::size_t k = 0; k < count; ++k) words[k] = static_cast<std::uint32_t>(items[k] >> 32);
 #pragma GCC unroll 1
   for (std::size_t attribute = 0; attribute < kAttributeCount; ++attribute) {
     const AttributeBits bits = kAttributes[attribute];
@@ -55,14 +54,14 @@ SPINDRIFT_INLINE GroupWriter putAttributes(std::span<const std::uint64_t> items,
     for (std::size_t k = 0; k < kGroupMaxCount; ++k)
       values.of[k] =
           static_cast<std::int16_t>((static_cast<std::int32_t>(words[k] << bits.up) >> bits.down) & bits.mask);
-    const int raised = 2 * GroupRows(values.of.data(), 8).sum() + static_cast<int>(count);
+    const int raised = 2 * GroupRows(values.of.data()).sum() + static_cast<int>(count);
     // Rounds to nearest. Both branches floor: the shift does, and the division is corrected for negative values.
     const int mean = count == kGroupMaxCount ? raised >> 7 : raised / doubled - (raised % doubled < 0 ? 1 : 0);
     state.mean_class = out.putOne(static_cast<std::int16_t>(mean - state.mean), state.mean_class);
     state.mean = mean;
     for (std::int16_t& value : values.of) value = static_cast<std::int16_t>(value - mean);
     for (std::size_t k = count; k < kGroupMaxCount; ++k) values.of[k] = 0;
-    state.group_class = out.putGroup(values, count, state.group_class, state.group_class);
+    state.group_class = out.putGroup(GroupRows(values.of.data()), count, state.group_class, state.group_class);
   }
   return out;
 }
@@ -118,19 +117,20 @@ void ParticleCellsEncoder::putCells(BitWriter& out) const {
 }
 
 void ParticleCellsEncoder::putPlaces(std::uint32_t bit_count, BitWriter& out) const {
+  const auto placeOf = [](std::uint64_t item) { return item & 0xffffffffu; };
   const std::span<const std::uint64_t> items = order_.items();
   BitCursor cursor = out.begin(items.size() * bit_count / 8);
   std::size_t i = 0;
   if (4 * bit_count <= 56) {
     for (; i + 4 <= items.size(); i += 4) {
-      const std::uint64_t first = placeBitsOf(items[i]) | std::uint64_t{placeBitsOf(items[i + 1])} << bit_count;
-      const std::uint64_t second = placeBitsOf(items[i + 2]) | std::uint64_t{placeBitsOf(items[i + 3])} << bit_count;
-      cursor.putLong(first | second << (2 * bit_count), 4 * bit_count);
+      const std::uint64_t first = placeOf(items[i]) | placeOf(items[i + 1]) << bit_count;
+      const std::uint64_t second = placeOf(items[i + 2]) | placeOf(items[i + 3]) << bit_count;
+      cursor.put(first | second << (2 * bit_count), 4 * bit_count);
       cursor.flush();
     }
   }
   for (; i < items.size(); ++i) {
-    cursor.put(placeBitsOf(items[i]), bit_count);
+    cursor.put(placeOf(items[i]), bit_count);
     cursor.flush();
   }
   out.end(cursor);

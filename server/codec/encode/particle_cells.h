@@ -32,6 +32,12 @@ struct ParticleScale {
   float speed = 0.0f;  ///< 0..1
 };
 
+/// Converts particles of three words each: keys[i] = 8 * cell + eighth (x, z, y from the highest bit on). An item
+/// holds, from the lowest bit: the low bits of x, z, y; from bit 32 the velocity along x, y, z, one signed byte each;
+/// two bits of foam, three of tint.
+void quantizeParticles(std::span<const std::uint32_t> words, const ParticleScale& scale, const CellGrid& grid,
+                       std::span<std::uint32_t> keys, std::span<std::uint64_t> items);
+
 /// Sorts the particles into the order of the wire and writes them: cells, positions within the cells, then in groups of
 /// 64 particles the velocities along x, y, z, foam, tint. Reuses its memory.
 class ParticleCellsEncoder {

@@ -1,7 +1,7 @@
-#include "particle_quanta.h"
-
+// Particles as packed by the GPU become the keys and items that the coder sorts and writes.
 #include <algorithm>
 
+#include "particle_cells.h"
 #include "processor.h"
 
 #if SPINDRIFT_HAS_VECTORS
@@ -45,8 +45,6 @@ void quantize(const std::uint32_t* words, std::size_t count, const Steps& s, std
 }
 
 #if SPINDRIFT_HAS_VECTORS
-#define SPINDRIFT_AVX2 __attribute__((target("avx2"), always_inline)) inline
-
 /// Extracts the words of one kind for eight particles from the 24 words of all kinds. `Kind`: index of the kind's first
 /// word. The words of a kind are in different lanes of each of the three vectors.
 template <int Kind>

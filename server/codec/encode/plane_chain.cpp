@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "surface_fit.h"
-
 namespace spindrift::codec {
 
 PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
@@ -13,20 +11,17 @@ PlaneChainEncoder::Forms PlaneChainEncoder::encode(bool wants_keyframe) {
     guess_.reset();
   }
   Forms out;
-  if (!is_first) out.delta = delta();
+  if (!is_first) {
+    const SurfaceHistory history{&before_, &earlier_};
+    Form& delta = out.delta.emplace();
+    delta.weights = fitWeights(next_, history, guess_ ? &*guess_ : nullptr);
+    guess_ = delta.weights;
+    encodePlane(next_, history, delta.weights, residuals_);
+    residuals_.finish(delta.payload);
+  }
   if (is_first || wants_keyframe) out.keyframe = keyframeOf(next_, before_, residuals_);
   std::swap(earlier_, before_);
   std::swap(before_, next_);
-  return out;
-}
-
-PlaneChainEncoder::Form PlaneChainEncoder::delta() {
-  Form out;
-  const SurfaceHistory history{&before_, &earlier_};
-  out.weights = fitWeights(next_, history, guess_ ? &*guess_ : nullptr);
-  guess_ = out.weights;
-  encodePlane(next_, history, out.weights, residuals_);
-  residuals_.finish(out.payload);
   return out;
 }
 

@@ -32,8 +32,6 @@ class PlaneChainEncoder {
   void restart() { before_.resize({}); }
 
  private:
-  Form delta();
-
   SurfacePlane next_, before_, earlier_;
   ResidualEncoder residuals_;
   std::optional<SurfaceWeights> guess_;  ///< weights of the newest delta

@@ -1,12 +1,10 @@
 // The encoder spends most of its time on a surface here: each prediction reads 25 samples. With AVX2 it multiplies
 // pairs of 16-bit samples and computes sixteen predictions at a time.
-#include "predicted_row.h"
-
 #include <algorithm>
-#include <array>
 #include <limits>
 
 #include "processor.h"
+#include "surface_predictor.h"
 
 #if SPINDRIFT_HAS_VECTORS
 #include <immintrin.h>
@@ -17,6 +15,11 @@ namespace {
 
 using W = SurfaceWeights;
 constexpr std::int32_t kHalf = 1 << (kWeightBits - 1);
+
+/// Wraps around at 32 bits, like the sums of products.
+std::uint32_t times(std::int32_t a, std::int32_t b) {
+  return static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b);
+}
 
 /// Pointers to sample 0 of row z and its neighbour rows in the two previous frames, and the weights. A missing frame is
 /// replaced by another plane with the weights 0.
@@ -47,19 +50,12 @@ void fromHistory(const Rows& rows, std::size_t begin, std::span<std::int32_t> ou
     const std::int32_t far = b0[x - 2] + b0[x + 2] + bnn[x] + bss[x];
     const std::int32_t e_nearest = e0[x - 1] + e0[x + 1] + en[x] + es[x];
     const std::int32_t e_diagonal = en[x - 1] + en[x + 1] + es[x - 1] + es[x + 1];
-    const std::int32_t before = wrappingSum(wrappingSum(kHalf, wrappingTimes(w[W::kBefore], b0[x])),
-                                            wrappingSum(wrappingSum(wrappingTimes(w[W::kBeforeNearest], nearest),
-                                                                    wrappingTimes(w[W::kBeforeDiagonal], diagonal)),
-                                                        wrappingTimes(w[W::kBeforeFar], far)));
-    out[i] = wrappingSum(before, wrappingSum(wrappingTimes(w[W::kEarlier], e0[x]),
-                                             wrappingSum(wrappingTimes(w[W::kEarlierNearest], e_nearest),
-                                                         wrappingTimes(w[W::kEarlierDiagonal], e_diagonal))));
+    const std::uint32_t before = times(w[W::kBefore], b0[x]) + times(w[W::kBeforeNearest], nearest) +
+                                 times(w[W::kBeforeDiagonal], diagonal) + times(w[W::kBeforeFar], far);
+    const std::uint32_t earlier = times(w[W::kEarlier], e0[x]) + times(w[W::kEarlierNearest], e_nearest) +
+                                  times(w[W::kEarlierDiagonal], e_diagonal);
+    out[i] = static_cast<std::int32_t>(kHalf + before + earlier);
   }
-}
-
-std::int16_t residualAt(const std::int16_t* here, const KnownSamples& known, std::int32_t from_history, std::size_t x,
-                        const SurfaceWeights& weights) {
-  return static_cast<std::int16_t>(here[x] - predictionOf(from_history, known, weights));
 }
 
 #if SPINDRIFT_HAS_VECTORS
@@ -69,8 +65,6 @@ bool fits16Bits(const SurfaceWeights& weights) {
     return w >= std::numeric_limits<std::int16_t>::min() && w <= std::numeric_limits<std::int16_t>::max();
   });
 }
-
-#define SPINDRIFT_AVX2 __attribute__((target("avx2"), always_inline)) inline
 
 /// Sixteen sums of 32 bits: the low and the high four of each eight.
 struct Sums {
@@ -165,21 +159,16 @@ __attribute__((target("avx2"))) void smallResidualsInSixteens(const std::int16_t
   }
 }
 
-bool hasSixteens(const SurfaceWeights& weights) {
-  return usesVectors() && fits16Bits(weights);
-}
-
-#else
-
-void residualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {}
-void smallResidualsInSixteens(const std::int16_t*, const std::int16_t*, const Rows&, std::span<std::int16_t>) {}
-bool hasSixteens(const SurfaceWeights&) {
-  return false;
-}
-
 #endif
 
 }  // namespace
+
+std::int16_t predictionOf(std::int32_t from_history, const KnownSamples& known, const SurfaceWeights& weights) {
+  const std::uint32_t sum = static_cast<std::uint32_t>(from_history) + times(weights.of[W::kWest], known.west) +
+                            times(weights.of[W::kNorth], known.north) +
+                            times(weights.of[W::kNorthWest], known.north_west);
+  return static_cast<std::int16_t>(static_cast<std::int32_t>(sum) >> kWeightBits);
+}
 
 void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                     std::size_t z, std::span<std::int32_t> sums, std::span<std::int16_t> out) {
@@ -188,20 +177,24 @@ void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, co
   const std::int16_t* here = plane.row(at);
   const std::int16_t* above = plane.row(at - 1);
   std::size_t begin = 1;
-  if (z > 0 && out.size() > 16 && hasSixteens(weights)) {
+#if SPINDRIFT_HAS_VECTORS
+  if (z > 0 && out.size() > 16 && usesVectors() && fits16Bits(weights)) {
     const bool is_small = plane.isSmall() && (history.before == nullptr || history.before->isSmall()) &&
                           (history.earlier == nullptr || history.earlier->isSmall());
     (is_small ? smallResidualsInSixteens : residualsInSixteens)(here, above, rows, out);
     begin = out.size();
   }
+#endif
   fromHistory(rows, 0, sums.first(1));
   fromHistory(rows, begin, sums);
+  const auto residualAt = [&](std::size_t x, const KnownSamples& known) {
+    return static_cast<std::int16_t>(here[x] - predictionOf(sums[x], known, weights));
+  };
   const std::int32_t first = z > 0 ? above[0] : 0;
-  out[0] = residualAt(here, {first, first, first}, sums[0], 0, weights);
+  out[0] = residualAt(0, {first, first, first});
   for (std::size_t x = begin; x < out.size(); ++x) {
     const std::int32_t west = here[x - 1];
-    const KnownSamples known = z > 0 ? KnownSamples{west, above[x], above[x - 1]} : KnownSamples{west, west, west};
-    out[x] = residualAt(here, known, sums[x], x, weights);
+    out[x] = residualAt(x, z > 0 ? KnownSamples{west, above[x], above[x - 1]} : KnownSamples{west, west, west});
   }
 }
 

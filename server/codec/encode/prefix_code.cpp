@@ -4,17 +4,10 @@
 #include <cassert>
 
 namespace spindrift::codec {
+namespace {
 
-PrefixWriter::PrefixWriter(std::span<const std::uint8_t> lengths) {
-  assert(lengths.size() <= kMaxSymbolCount);
-  [[maybe_unused]] const bool is_complete = forEachCode(
-      lengths,
-      [&](std::size_t symbol, std::uint32_t code, std::uint32_t length) { words_[symbol] = code | length << 16; });
-  assert(is_complete);
-}
-
-// Huffman's algorithm with two queues instead of a heap. Lengths above the limit are cut; the longest codes below the
-// limit are lengthened to pay for it.
+/// Computes lengths for the counts, of which at least two are above 0, with Huffman's algorithm and two queues instead
+/// of a heap. Lengths above the limit are cut; the longest codes below the limit are lengthened to pay for it.
 void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> lengths) {
   assert(counts.size() <= kMaxSymbolCount && lengths.size() == counts.size());
   std::array<std::uint64_t, kMaxSymbolCount> order;  // count << 8 | symbol, ascending
@@ -60,6 +53,16 @@ void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> l
     }
   }
   for (std::size_t i = 0; i < n; ++i) lengths[order[i] & 0xffu] = static_cast<std::uint8_t>(depth[i]);
+}
+
+}  // namespace
+
+PrefixWriter::PrefixWriter(std::span<const std::uint8_t> lengths) {
+  assert(lengths.size() <= kMaxSymbolCount);
+  [[maybe_unused]] const bool is_complete = forEachCode(
+      lengths,
+      [&](std::size_t symbol, std::uint32_t code, std::uint32_t length) { words_[symbol] = code | length << 16; });
+  assert(is_complete);
 }
 
 PrefixWriter putFittedCode(std::span<const std::uint32_t> counts, BitWriter& out) {

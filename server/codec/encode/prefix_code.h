@@ -24,15 +24,12 @@ class PrefixWriter {
     const std::uint64_t ab = (wa & 0xffffu) | std::uint64_t{wb & 0xffffu} << (wa >> 16);
     const std::uint64_t cd = (wc & 0xffffu) | std::uint64_t{wd & 0xffffu} << (wc >> 16);
     const std::uint32_t ab_bits = (wa >> 16) + (wb >> 16), cd_bits = (wc >> 16) + (wd >> 16);
-    out.putLong(ab | cd << ab_bits, ab_bits + cd_bits);
+    out.put(ab | cd << ab_bits, ab_bits + cd_bits);
   }
 
  private:
   std::array<std::uint32_t, kMaxSymbolCount> words_{};  ///< code | length << 16
 };
-
-/// Computes lengths for the counts, at most kMaxSymbolCount; at least two counts must be above 0.
-void fitLengths(std::span<const std::uint32_t> counts, std::span<std::uint8_t> lengths);
 
 /// Writes a code for one frame, fitted to the counts of its symbols. It always contains symbols 0 and 1.
 PrefixWriter putFittedCode(std::span<const std::uint32_t> counts, BitWriter& out);

@@ -9,6 +9,7 @@
 #if defined(__x86_64__)
 #define SPINDRIFT_HAS_VECTORS 1
 #define SPINDRIFT_VECTORS __attribute__((target("avx2,bmi,bmi2")))
+#define SPINDRIFT_AVX2 __attribute__((target("avx2"), always_inline)) inline
 #else
 #define SPINDRIFT_HAS_VECTORS 0
 #define SPINDRIFT_VECTORS

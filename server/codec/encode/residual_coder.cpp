@@ -1,18 +1,29 @@
 #include "residual_coder.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "group_writer.h"
-#include "residual_codes.h"
 
 namespace spindrift::codec {
+namespace {
 
-std::uint32_t ResidualEncoder::putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left,
-                                        std::uint32_t above) {
-  GroupWriter writer = begin(1);
-  const std::uint32_t group_class = writer.putGroup(residuals, count, left, above);
-  end(writer);
-  return group_class;
+PrefixWriter writerOf(std::string_view digits) {
+  std::vector<std::uint8_t> lengths;
+  std::ranges::transform(digits, std::back_inserter(lengths), codeLengthOf);
+  return PrefixWriter(lengths);
+}
+
+}  // namespace
+
+const ResidualWriters& residualWriters() {
+  static const ResidualWriters kWriters = [] {
+    ResidualWriters writers;
+    for (const std::string_view digits : kResidualLengths) writers.of_class.push_back(writerOf(digits));
+    for (const std::string_view digits : kClassStepLengths) writers.of_class_step.push_back(writerOf(digits));
+    return writers;
+  }();
+  return kWriters;
 }
 
 GroupWriter ResidualEncoder::begin(std::size_t group_count) {

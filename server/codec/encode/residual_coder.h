@@ -21,9 +21,6 @@ class ResidualEncoder {
   /// Returns a writer for up to group_count groups; hand it back with end().
   GroupWriter begin(std::size_t group_count);
   void end(const GroupWriter& writer);
-  /// Writes one group. `left` and `above`: the classes of the neighbouring groups, 0 at the edge; along a line
-  /// both are the class of the group before. Returns the group's class.
-  std::uint32_t putGroup(const ResidualGroup& residuals, std::size_t count, std::uint32_t left, std::uint32_t above);
   /// For bits outside the groups.
   BitWriter& bits() { return bits_; }
   /// Appends everything, with 16 bits of the sum of all residuals. The coder is empty afterwards.

@@ -1,7 +1,7 @@
-#include "surface_fit.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "surface_predictor.h"
 
 namespace spindrift::codec {
 namespace {
@@ -33,6 +33,8 @@ std::array<double, N> solve(std::array<std::array<double, N>, N> a, std::array<d
   return x;
 }
 
+/// Planes of fewer samples per side have too few positions for a guess.
+constexpr std::size_t kGuessedResolution = 64;
 constexpr std::size_t kCount = W::kTermCount;
 constexpr std::size_t kWanted = kCount;
 /// Samples per run, runs per row, and number of rows that the fit reads.
@@ -45,14 +47,9 @@ using Run = std::array<std::array<float, kRun>, kCount + 1>;
 /// Sums of the products of terms over the runs of a row, in four lanes each.
 using RowSums = std::array<std::array<std::array<float, 4>, kCount + 1>, kCount>;
 
-struct AroundRows {
-  const std::int16_t *here, *north, *south;
-  AroundRows(const SurfacePlane& plane, std::ptrdiff_t x, std::ptrdiff_t z)
-      : here(plane.row(z) + x), north(plane.row(z - 1) + x), south(plane.row(z + 1) + x) {}
-};
-
-void putTermsAround(const AroundRows& rows, std::ptrdiff_t count, std::size_t first, Run& out) {
-  const auto [here, north, south] = rows;
+void putTermsAround(const SurfacePlane& plane, std::ptrdiff_t x, std::ptrdiff_t z, std::ptrdiff_t count,
+                    std::size_t first, Run& out) {
+  const std::int16_t *here = plane.row(z) + x, *north = plane.row(z - 1) + x, *south = plane.row(z + 1) + x;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);
     out[first][k] = here[i];
@@ -66,14 +63,14 @@ void putTerms(const SurfacePlane& plane, const SurfaceHistory& history, std::ptr
   const std::ptrdiff_t count = std::min<std::ptrdiff_t>(kRun, static_cast<std::ptrdiff_t>(plane.count().x) - x);
   if (history.before != nullptr) {
     const SurfacePlane& b = *history.before;
-    putTermsAround({b, x, z}, count, W::kBefore, out);
+    putTermsAround(b, x, z, count, W::kBefore, out);
     const std::int16_t *here = b.row(z) + x, *north = b.row(z - 2) + x, *south = b.row(z + 2) + x;
     for (std::ptrdiff_t i = 0; i < count; ++i) {
       out[W::kBeforeFar][static_cast<std::size_t>(i)] =
           static_cast<float>(here[i - 2] + here[i + 2] + north[i] + south[i]);
     }
   }
-  if (history.earlier != nullptr) putTermsAround({*history.earlier, x, z}, count, W::kEarlier, out);
+  if (history.earlier != nullptr) putTermsAround(*history.earlier, x, z, count, W::kEarlier, out);
   const std::int16_t *here = plane.row(z) + x, *above = plane.row(z - 1) + x;
   for (std::ptrdiff_t i = 0; i < count; ++i) {
     const auto k = static_cast<std::size_t>(i);

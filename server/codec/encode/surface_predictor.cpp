@@ -4,49 +4,8 @@
 #include <cassert>
 
 #include "group_writer.h"
-#include "predicted_row.h"
 
 namespace spindrift::codec {
-namespace {
-
-/// Residuals of eight rows, tile by tile.
-class TileBand {
- public:
-  explicit TileBand(std::size_t n) : n_(n), classes_((n + kTile - 1) / kTile, 0), residuals_(kTile * n), sums_(n) {}
-
-  [[nodiscard]] std::span<std::int16_t> row(std::size_t j) { return std::span(residuals_).subspan(j * n_, n_); }
-  [[nodiscard]] std::span<const std::int16_t> rows(std::size_t count) const {
-    return std::span(residuals_).first(count * n_);
-  }
-  /// Class of the newest tile in each column.
-  [[nodiscard]] std::span<std::uint32_t> classes() { return classes_; }
-  /// Scratch memory of the prediction for one row.
-  [[nodiscard]] std::span<std::int32_t> sums() { return sums_; }
-  /// Calls code(x, columns, count, left, above) for each tile; it returns the tile's class.
-  template <typename Code>
-  void forEachTile(std::size_t rows, Code code) {
-    std::uint32_t left = 0;
-    for (std::size_t tile = 0; tile < classes_.size(); ++tile) {
-      const std::size_t columns = std::min(kTile, n_ - tile * kTile);
-      left = classes_[tile] = code(tile * kTile, columns, rows * columns, left, classes_[tile]);
-    }
-  }
-
- private:
-  std::size_t n_;
-  std::vector<std::uint32_t> classes_;
-  std::vector<std::int16_t> residuals_;
-  std::vector<std::int32_t> sums_;
-};
-
-/// Calls code(band, top, rows) for each band of eight rows.
-template <typename Code>
-void forEachBand(core::CellCounts count, Code code) {
-  TileBand band(count.x);
-  for (std::size_t top = 0; top < count.z; top += kTile) code(band, top, std::min(kTile, count.z - top));
-}
-
-}  // namespace
 
 void SurfacePlane::resize(core::CellCounts count) {
   count_ = count;
@@ -107,11 +66,11 @@ SPINDRIFT_INLINE GroupWriter putTiles(std::span<const std::int16_t> residuals, s
     const std::int16_t* first = residuals.data() + tile * kTile;
     const std::size_t columns = std::min(kTile, n - tile * kTile);
     if (rows == kTile && columns == kTile) {
-      left = writer.putTile(first, n, left, classes[tile]);
+      left = writer.putGroup(GroupRows(first, n), kGroupMaxCount, left, classes[tile]);
     } else {
       ResidualGroup group;
       for (std::size_t j = 0; j < rows; ++j) std::copy_n(first + j * n, columns, group.of.data() + j * columns);
-      left = writer.putGroup(group, rows * columns, left, classes[tile]);
+      left = writer.putGroup(GroupRows(group.of.data()), rows * columns, left, classes[tile]);
     }
     classes[tile] = left;
   }
@@ -131,10 +90,17 @@ SPINDRIFT_VECTORS GroupWriter putTilesWithVectors(std::span<const std::int16_t> 
 void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                  ResidualEncoder& out) {
   const auto put = usesVectors() ? putTilesWithVectors : putTilesPlainly;
-  forEachBand(plane.count(), [&](TileBand& band, std::size_t top, std::size_t rows) {
-    for (std::size_t j = 0; j < rows; ++j) residualsOfRow(plane, history, weights, top + j, band.sums(), band.row(j));
-    out.end(put(band.rows(rows), plane.count().x, band.classes(), out.begin(band.classes().size())));
-  });
+  const auto [nx, nz] = plane.count();
+  std::vector<std::uint32_t> classes((nx + kTile - 1) / kTile, 0);  // of the newest tile in each column
+  std::vector<std::int16_t> residuals(kTile * nx);
+  std::vector<std::int32_t> sums(nx);
+  for (std::size_t top = 0; top < nz; top += kTile) {
+    const std::size_t rows = std::min(kTile, nz - top);
+    const std::span<std::int16_t> band = std::span(residuals).first(rows * nx);
+    for (std::size_t j = 0; j < rows; ++j)
+      residualsOfRow(plane, history, weights, top + j, sums, band.subspan(j * nx, nx));
+    out.end(put(band, nx, classes, out.begin(classes.size())));
+  }
 }
 
 }  // namespace spindrift::codec

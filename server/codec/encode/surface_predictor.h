@@ -52,6 +52,23 @@ struct SurfaceHistory {
   const SurfacePlane* earlier = nullptr;
 };
 
+/// Returns the weights that fit best (weighted least squares) for some 4,096 samples, spread over the whole plane. Each
+/// weight fits into 16 bits; those of frames that `history` lacks are 0. `guess`: weights of the frame before, or null.
+/// They tell where the prediction is bad, at breakers and hulls; there samples count less, since a tile costs the
+/// logarithm of its residuals and not their square.
+SurfaceWeights fitWeights(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights* guess);
+
+/// Neighbours in this frame that are already decoded.
+struct KnownSamples {
+  std::int32_t west, north, north_west;
+};
+/// Predicts a sample from them and the weighted sum of the history, which includes one half for rounding.
+std::int16_t predictionOf(std::int32_t from_history, const KnownSamples& known, const SurfaceWeights& weights);
+
+/// Computes the residuals of row z of a known plane. `sums` is scratch memory.
+void residualsOfRow(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
+                    std::size_t z, std::span<std::int32_t> sums, std::span<std::int16_t> out);
+
 /// Codes a plane, in tiles of 8 x 8, row by row.
 void encodePlane(const SurfacePlane& plane, const SurfaceHistory& history, const SurfaceWeights& weights,
                  ResidualEncoder& out);

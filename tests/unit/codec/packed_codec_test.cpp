@@ -10,11 +10,10 @@
 #include "decode/plane_reader.h"
 #include "decode/prefix_slots.h"
 #include "decode/residual_reader.h"
+#include "encode/group_writer.h"
 #include "encode/particle_order.h"
-#include "encode/predicted_row.h"
 #include "encode/prefix_code.h"
-#include "encode/residual_coder.h"
-#include "encode/surface_fit.h"
+#include "encode/surface_predictor.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
@@ -87,7 +86,9 @@ TEST(Residuals, RoundTripAtEverySize) {
         group.residuals.of[i] = static_cast<std::int16_t>(random() % 97 == 0 ? value : value / (1 << (16 - bits)));
         if (k % 3 == 0 && random() % 8 != 0) group.residuals.of[i] = 0;
       }
-      group.group_class = out.putGroup(group.residuals, group.count, group.left, group.above);
+      GroupWriter writer = out.begin(1);
+      group.group_class = writer.putGroup(GroupRows(group.residuals.of.data()), group.count, group.left, group.above);
+      out.end(writer);
       groups.push_back(group);
     }
   }

@@ -9,7 +9,6 @@
 
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
-#include <spindrift/gpu/info.h>
 
 #include "gpu_fixture.h"
 

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 
 #include <spindrift/gpu/context.h>
-#include <spindrift/gpu/info.h>
+#include <spindrift/gpu/device.h>
 
 namespace spindrift::gpu {
 namespace {

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
@@ -106,8 +107,7 @@ class PlaneKeeper : public PackedPlaneDecoder {
   [[nodiscard]] core::SharedBytes keyframe();
 
  private:
-  v1::LayerFrame head_;  ///< of the newest frame, without its payload
-  bool has_frame_ = false;
+  std::optional<v1::LayerFrame> head_;  ///< of the newest frame, without its payload
 };
 
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is valid).

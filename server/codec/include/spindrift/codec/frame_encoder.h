@@ -1,7 +1,6 @@
 // Encoder of the data plane: makes one immutable message per layer from a frame of a room, shared by all clients.
 #pragma once
 
-#include <array>
 #include <memory>
 
 #include <spindrift/codec/stream.h>
@@ -11,16 +10,13 @@
 
 namespace spindrift::codec {
 
-class LayerCodec;
-
 /// Serialized ServerMessages of one frame of a layer. Both null if the frame lacks the layer.
 struct EncodedFrame {
   core::SharedBytes keyframe;  ///< can be decoded alone
   core::SharedBytes delta;     ///< for clients that have the previously encoded frame; null for a keyframe alone
 };
 
-/// The codecs of one room: one per stream and level, made at the first use. Call the methods on one thread, the
-/// encoder thread.
+/// The codecs of one room. Call the methods on one thread, the encoder thread.
 class FrameEncoder {
  public:
   FrameEncoder();
@@ -36,8 +32,11 @@ class FrameEncoder {
   }
 
  private:
-  /// By indexOf(Stream) and core::indexOf(Level).
-  std::array<std::array<std::unique_ptr<LayerCodec>, core::kLevelCount>, kStreamCount> codecs_;
+  struct Packed;
+  std::unique_ptr<Packed[]> packed_;  ///< indexed by core::Level
 };
+
+/// Writes what a gauge measured: in Diagnostics and in answers of the REST interface.
+void writeGauge(const core::DiagnosticsView::GaugeNow& gauge, v1::GaugeReading& out);
 
 }  // namespace spindrift::codec

@@ -16,8 +16,6 @@
 
 namespace spindrift::gpu {
 
-struct BufferAccess;
-
 /// Memory in which the driver may keep a buffer.
 enum class BufferUse {
   /// In device memory: storage, texels, indirect arguments. Uploads and downloads go through a copy on the device.
@@ -35,25 +33,21 @@ enum class BufferContent {
   kScratch,
 };
 
-/// A buffer with immutable storage. Move-only; must not outlive its context. All sizes and offsets in bytes. upload(),
-/// download(), clear() and copyFrom() see the writes of earlier shaders, and later shaders see theirs: they issue the
-/// barriers that are needed. Offsets out of range are bugs of the caller: asserted in debug builds, otherwise refused
-/// by OpenGL and counted in Context::debugErrorCount().
+/// A buffer with immutable storage. Move-only; must not outlive its context; empty when default-constructed. All sizes
+/// and offsets in bytes. upload(), download(), clear() and copyFrom() see the writes of earlier shaders, and later
+/// shaders see theirs: they issue the barriers that are needed. Offsets out of range are bugs of the caller: asserted
+/// in debug builds, otherwise refused by OpenGL and counted in Context::debugErrorCount().
 class Buffer {
  public:
   /// Creates a buffer. Error kInternal when the device has no memory for it or the size is 0.
   static core::Result<Buffer> create(Context& ctx, std::string_view name, std::size_t size_bytes,
                                      BufferUse use = BufferUse::kDeviceOnly,
                                      BufferContent content = BufferContent::kZero);
-  Buffer();  ///< empty; only to be assigned to
-  ~Buffer();
-  Buffer(Buffer&& other) noexcept;
-  Buffer& operator=(Buffer&& other) noexcept;
 
-  [[nodiscard]] std::size_t sizeBytes() const { return size_bytes_; }
-  [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] std::uint32_t id() const { return id_; }  ///< the OpenGL name; 0 when empty
-  explicit operator bool() const { return id_ != 0; }
+  [[nodiscard]] std::size_t sizeBytes() const;    ///< 0 when empty
+  [[nodiscard]] const std::string& name() const;  ///< not of an empty buffer
+  [[nodiscard]] std::uint32_t id() const;         ///< the OpenGL name; 0 when empty
+  explicit operator bool() const { return access_ != nullptr; }
 
   /// Copies any contiguous range of plain values (vector, array, span) to `offset_bytes`.
   template <std::ranges::contiguous_range Range>
@@ -103,15 +97,15 @@ class Buffer {
   [[nodiscard]] BufferAccess* access() const { return access_.get(); }
 
  protected:
+  struct Delete {
+    void operator()(BufferAccess* access) const;
+  };
+  /// Returns the buffer for OpenGL calls; it is not empty, and the calling thread owns the context.
+  [[nodiscard]] BufferAccess& current() const;
   void uploadBytes(std::span<const std::byte> bytes, std::size_t offset_bytes);
   void downloadBytes(std::span<std::byte> bytes, std::size_t offset_bytes) const;
 
-  Context* ctx_ = nullptr;
-  std::uint32_t id_ = 0;
-  std::size_t size_bytes_ = 0;
-  std::string name_;
-  BufferUse use_ = BufferUse::kDeviceOnly;
-  std::unique_ptr<BufferAccess> access_;  ///< the context keeps its address
+  std::unique_ptr<BufferAccess, Delete> access_;  ///< the context keeps its address
 };
 
 /// Type in which texelFetch reads the words of a TexelBuffer (samplerBuffer, usamplerBuffer, isamplerBuffer).
@@ -126,16 +120,9 @@ class TexelBuffer : public Buffer {
   /// `max_texel_buffer_elements`.
   static core::Result<TexelBuffer> create(Context& ctx, std::string_view name, std::size_t texel_count,
                                           TexelFormat format, BufferContent content = BufferContent::kZero);
-  TexelBuffer();  ///< empty; only to be assigned to
-  ~TexelBuffer();
-  TexelBuffer(TexelBuffer&& other) noexcept;
-  TexelBuffer& operator=(TexelBuffer&& other) noexcept;
 
   /// Binds the view to the texture unit of `layout(binding = …) uniform samplerBuffer`.
   void bindTexel(std::uint32_t unit) const;
-
- private:
-  std::uint32_t texture_id_ = 0;
 };
 
 }  // namespace spindrift::gpu

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,8 +19,13 @@
 
 namespace spindrift::gpu {
 
+namespace egl {
+struct Handles;
+}
 class AccessTracker;
+struct BufferAccess;
 class ProgramCache;
+struct ProgramUses;
 class ShaderFolder;
 class Staging;
 
@@ -152,8 +159,10 @@ class Context {
   ProgramCache& programs() { return *programs_; }
   /// Returns the folder of shaders; null: the embedded shaders are used.
   [[nodiscard]] const ShaderFolder* shaderFolder() const { return shader_folder_.get(); }
-  /// Issues the barrier with these OpenGL bits; nothing for 0.
-  void barrierBits(std::uint32_t bits);
+  /// Issues the barrier that a dispatch needs; `indirect`: the buffer with its group counts, or null.
+  void beforeDispatch(const ProgramUses& program, BufferAccess* indirect);
+  /// Issues the barrier that an upload, download, clear or copy needs; `from` and `to` may be null.
+  void beforeUpdate(BufferAccess* from, BufferAccess* to);
   /// Takes over the storage of a readback ring that was destroyed while views of it were still held. The storage is
   /// deleted once `in_use` returns false, at the latest with the context.
   void retire(std::uint32_t buffer_id, std::size_t size_bytes, std::function<bool()> in_use);
@@ -166,18 +175,17 @@ class Context {
   bool isNewMessage(std::uint32_t id);
 
  private:
-  struct Egl;  // the EGL handles, kept out of the header
-  struct Messages;
   struct Retired {
     std::uint32_t buffer_id;
     std::size_t size_bytes;
     std::function<bool()> in_use;
   };
 
-  Context(std::unique_ptr<Egl> egl, DeviceInfo device, std::string why, const Checks& checks,
+  Context(const egl::Handles& handles, DeviceInfo device, std::string why, const Checks& checks,
           const std::string& shader_folder);
+  void issue(Barrier readers);
 
-  std::unique_ptr<Egl> egl_;
+  std::unique_ptr<egl::Handles> egl_;
   DeviceInfo device_;
   std::string why_;
   Checks checks_;
@@ -186,7 +194,8 @@ class Context {
   Ledger ledger_;
   FenceDelay fence_delay_;
   std::vector<Retired> retired_;
-  std::unique_ptr<Messages> messages_;
+  std::mutex messages_mutex_;  ///< a driver may call back on its own thread
+  std::set<std::uint32_t> known_messages_;
   std::unique_ptr<AccessTracker> accesses_;
   std::unique_ptr<Staging> staging_;
   std::unique_ptr<ProgramCache> programs_;

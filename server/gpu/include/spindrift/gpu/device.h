@@ -1,7 +1,9 @@
 // Device selection: EGL devices that can make an OpenGL 4.5 core context, hardware first, software last.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -68,5 +70,17 @@ struct DeviceInfo {
 /// needs or fail a small probe program are listed with `problem` set. Leaves the calling thread's current context
 /// unchanged.
 std::vector<DeviceInfo> listDevices();
+
+/// What `spindrift info` prints of the devices.
+struct GpuInfo {
+  std::string egl_client_version;    ///< libEGL's client version without a display; empty when not available
+  std::vector<DeviceInfo> devices;   ///< listDevices()
+  std::optional<DeviceInfo> chosen;  ///< the device that `choice` selects; none when nothing works
+  std::string why;                   ///< Context::why(), or the error when nothing works
+  std::size_t shader_count = 0;      ///< entry points embedded in the program
+};
+
+/// Tries every device; takes some tenths of a second. Leaves the calling thread's current context unchanged.
+GpuInfo collectInfo(const DeviceChoice& choice);
 
 }  // namespace spindrift::gpu

@@ -3,13 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
+#include <memory>
 
 #include <spindrift/gpu/context.h>
 
 namespace spindrift::gpu {
 
 /// Fences of one context are passed in the order of their insertion. Move-only; used and destroyed on the context's
-/// thread, before the context.
+/// thread, before the context. A default-constructed fence is passed.
 class Fence {
  public:
   enum class Status {
@@ -20,10 +21,6 @@ class Fence {
 
   /// Inserts a fence after all commands submitted so far and flushes them to the device. Does not wait.
   static Fence insert(Context& ctx);
-  Fence() = default;  ///< empty: kPassed
-  ~Fence();
-  Fence(Fence&& other) noexcept;
-  Fence& operator=(Fence&& other) noexcept;
 
   /// Waits until the fence is passed or the device is lost, at most `timeout`; zero returns at once. A result other
   /// than kPending is final.
@@ -31,10 +28,12 @@ class Fence {
   [[nodiscard]] Status poll() { return wait(std::chrono::nanoseconds(0)); }
 
  private:
-  void finish(Status status);
+  struct DeleteSync {
+    void operator()(void* sync) const;
+  };
 
   Context* ctx_ = nullptr;
-  void* sync_ = nullptr;  ///< GLsync; null once the result is final
+  std::unique_ptr<void, DeleteSync> sync_;  ///< GLsync; null once the result is final
   Status status_ = Status::kPassed;
   std::uint64_t number_ = 0;  ///< in the order of insertion
 };

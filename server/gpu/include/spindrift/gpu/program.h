@@ -38,19 +38,14 @@ struct UniformValue {
 
 struct CompiledProgram;
 
-/// Move-only; must not outlive its context. Programs with the same path and defines are compiled once per context and
-/// share the compiled program; each Program has its own uniform values.
+/// Move-only; must not outlive its context; empty when default-constructed. Programs with the same path and defines are
+/// compiled once per context and share the compiled program; each Program has its own uniform values.
 class Program {
  public:
   /// Compiles "sph/density.comp" with `defines`. Error kInternal names the shader and, for each driver message, the
   /// original file and line; a path that was not embedded is an error too.
   static core::Result<Program> create(Context& ctx, std::string_view shader_path, const Defines& defines = {});
-  Program();  ///< empty; only to be assigned to
-  ~Program();
-  Program(Program&& other) noexcept;
-  Program& operator=(Program&& other) noexcept;
 
-  [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] std::uint32_t id() const;  ///< the OpenGL name; 0 when empty
   explicit operator bool() const { return compiled_ != nullptr; }
 
@@ -77,6 +72,10 @@ class Program {
   [[nodiscard]] std::map<std::string, BlockLayout> blocks() const;
 
  private:
+  /// Counts the Program in the ledger no longer.
+  struct Uncount {
+    void operator()(Context* ctx) const;
+  };
   [[nodiscard]] std::int32_t location(std::string_view name);
   void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
   /// Looks up the uniform locations again after the shader was recompiled.
@@ -84,7 +83,7 @@ class Program {
   /// Prepares the program, its uniforms and the memory that it reads for a dispatch.
   void prepare(const Buffer* arguments);
 
-  Context* ctx_ = nullptr;
+  std::unique_ptr<Context, Uncount> ctx_;  ///< not owned
   std::string path_;
   std::shared_ptr<CompiledProgram> compiled_;
   std::uint64_t handle_ = 0;      ///< unique among the Programs of the context

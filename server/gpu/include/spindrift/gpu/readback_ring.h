@@ -101,8 +101,6 @@ class ReadbackRing {
     Fence fence;
   };
   ReadbackRing(Context& ctx, std::shared_ptr<State> state, std::uint32_t buffer_id, std::size_t size_bytes);
-  /// Takes the first `count` slots in flight, none of which is pending.
-  std::vector<std::shared_ptr<const Slot>> take(std::size_t count);
 
   Context& ctx_;
   std::shared_ptr<State> state_;

@@ -1,5 +1,5 @@
 // Vectors of 128 bits for both compilers and both targets (SSE2, WebAssembly): the compilers' own vector types, and the
-// one operation that they lack.
+// operations that they lack.
 #pragma once
 
 #include <cstdint>
@@ -79,6 +79,27 @@ inline Shorts narrowed(SignedWords a, SignedWords b) {
   return Shorts(_mm_packs_epi32(__m128i(a), __m128i(b)));
 #else
   return __builtin_shufflevector(Shorts(a), Shorts(b), 0, 2, 4, 6, 8, 10, 12, 14);
+#endif
+}
+
+/// Returns the magnitudes; that of -32768 counts as 32767.
+inline Shorts magnitudesOf(Shorts v) {
+#if defined(__SSE2__)
+  return Shorts(_mm_max_epi16(__m128i(v), _mm_subs_epi16(_mm_setzero_si128(), __m128i(v))));
+#else
+  const Shorts below_zero = Shorts(v < Shorts{});
+  return (v ^ below_zero) + (below_zero & Shorts(v > Shorts{} - 32767 - 1) & 1);
+#endif
+}
+
+/// Bit k of 16: number k is negative; those of b follow those of a.
+inline std::uint32_t signBitsOf(Shorts a, Shorts b) {
+#if defined(__SSE2__)
+  return static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_packs_epi16(__m128i(a), __m128i(b))));
+#else
+  std::uint32_t bits = 0;
+  for (int k = 0; k < 8; ++k) bits |= (a[k] < 0 ? 1u : 0u) << k | (b[k] < 0 ? 1u : 0u) << (k + 8);
+  return bits;
 #endif
 }
 
