@@ -137,12 +137,6 @@ core::Result<Grant> Access::resolve(std::string_view token, system_clock::time_p
   return found->grant;
 }
 
-core::Result<Grant> Access::resolve(std::string_view token, std::string_view room, system_clock::time_point now) const {
-  auto grant = resolve(token, now);
-  if (grant && !grant->allows(room)) return Error{ErrorCode::kInvalidInput, otherRoom(room)};
-  return grant;
-}
-
 std::string otherRoom(std::string_view room) {
   return "the token is not for room '" + std::string(room) + "': ask for one that is, or join another room";
 }
