@@ -37,6 +37,20 @@ bool isServiceLink(std::string_view text) {
   return text.starts_with("tcp://") || text.starts_with("udp://") || text.starts_with("sctp://");
 }
 
+/// Returns what the environment holds for the option; empty where the variable is unset or empty. ';' separates the
+/// values of an option that may be repeated; spaces around each are removed.
+std::vector<std::string> environmentValues(const CLI::Option& option) {
+  const char* const text = std::getenv(variableName(option).c_str());
+  if (text == nullptr || *text == '\0') return {};
+  if (option.get_items_expected_max() <= 1) return {text};
+  std::vector<std::string> values;
+  for (std::string& value : CLI::detail::split(text, ';')) {
+    CLI::detail::trim(value);
+    if (!value.empty()) values.push_back(std::move(value));
+  }
+  return values;
+}
+
 }  // namespace
 
 std::string fieldName(const CLI::Option& option) {
@@ -50,18 +64,6 @@ std::string variableName(const CLI::Option& option) {
   std::string name = "SPINDRIFT_" + fieldName(option);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return name;
-}
-
-std::vector<std::string> environmentValues(const CLI::Option& option) {
-  const char* const text = std::getenv(variableName(option).c_str());
-  if (text == nullptr || *text == '\0') return {};
-  if (option.get_items_expected_max() <= 1) return {text};
-  std::vector<std::string> values;
-  for (std::string& value : CLI::detail::split(text, ';')) {
-    CLI::detail::trim(value);
-    if (!value.empty()) values.push_back(std::move(value));
-  }
-  return values;
 }
 
 OptionSources::OptionSources(std::initializer_list<CLI::App*> parsers) {
