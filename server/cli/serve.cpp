@@ -1,5 +1,4 @@
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -18,11 +17,9 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
 
-#include "commands.h"
 #include "front.h"
 #include "inherited_socket.h"
 #include "operator_link.h"
-#include "serve_options.h"
 
 namespace spindrift::cli {
 namespace {
@@ -170,18 +167,19 @@ int serve(ServeOptions options) {
 
   if (const std::string device = (*server)->simulation().deviceLine(); !device.empty())
     spdlog::info("simulation runs on {}", device);
-  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  warnIfOpenToAll(options);
-  sayReady(options, (*server)->port());
-  const int signal = signals.wait([&] {
-    (*server)->reloadCertificate();
-    reload(options, (*server)->gateway().access(), audit_file.get());
-  });
-  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
-  if (node) node->leave();
-  drain(
-      options, signals, [&] { return (*server)->networkStats().open_session_count; },
-      [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); });
+  runUntilSignal(
+      options, signals,
+      {.port = (*server)->port(),
+       .has_page = has_page,
+       .access = (*server)->gateway().access(),
+       .audit_file = audit_file.get(),
+       .reload_certificate = [&] { (*server)->reloadCertificate(); },
+       .leave =
+           [&] {
+             if (node) node->leave();
+           },
+       .session_count = [&] { return (*server)->networkStats().open_session_count; },
+       .drain = [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); }});
   (*server)->stop();
   if (node) node->release();
   node.reset();  // it uses the server
@@ -197,14 +195,7 @@ ProgramCommand addServe(CLI::App& program) {
   const auto options = std::make_shared<ServeOptions>();
   CLI::App* command = program.add_subcommand("serve", "Simulate and serve rooms until interrupted");
   addServeOptions(*command, *options);
-  const auto sources = std::make_shared<std::optional<OptionSources>>();
-  return {command, [options, sources] { return options->prints_config ? printConfig(**sources) : serve(*options); },
-          [&program, command, options, sources]() -> core::Result<void> {
-            auto completed = completeFrontOptions(program, *command, *options);
-            if (!completed) return completed.error();
-            *sources = *std::move(completed);
-            return {};
-          }};
+  return frontCommand(program, *command, options, [options] { return serve(*options); });
 }
 
 }  // namespace spindrift::cli
