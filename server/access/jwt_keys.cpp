@@ -34,7 +34,7 @@ const unsigned char* bytesOf(const std::string& text) {
 }
 
 core::Error refusal(const std::string& label, const std::string& why) {
-  return {core::ErrorCode::kInvalidInput, label + ": " + why};
+  return core::invalid(label + ": " + why);
 }
 
 // Keys under which anybody could sign

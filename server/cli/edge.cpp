@@ -1,8 +1,6 @@
 #include <memory>
 #include <utility>
 
-#include <spdlog/spdlog.h>
-
 #include <spindrift/cluster/edge_server.h>
 
 #include "front.h"

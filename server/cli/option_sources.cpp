@@ -22,13 +22,12 @@ core::Result<void> give(CLI::Option& option, const std::vector<std::string>& val
     return {};
   } catch (const CLI::ConversionError&) {
     const std::string wanted = isFlag(option) ? "write true or false" : "see spindrift serve --help";
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       label + ": '" + CLI::detail::join(values, " ") + "' cannot be used; " + wanted};
+    return core::invalid(label + ": '" + CLI::detail::join(values, " ") + "' cannot be used; " + wanted);
   } catch (const CLI::ParseError& error) {
     std::string_view reason = error.what();
     const std::string prefix = option.get_name() + ": ";
     if (reason.starts_with(prefix)) reason.remove_prefix(prefix.size());
-    return core::Error{core::ErrorCode::kInvalidInput, label + ": " + std::string(reason)};
+    return core::invalid(label + ": " + std::string(reason));
   }
 }
 

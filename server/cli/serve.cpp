@@ -25,13 +25,12 @@ namespace spindrift::cli {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 
 /// Lists the scene's file in `catalog`, so that the room can return to it and change its fidelity.
 core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity,
                                         water::SceneCatalog& catalog) {
   if (!core::isRoomName(name)) {
-    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have " + std::string(core::kRoomNameRule)};
+    return core::invalid("room '" + name + "': names have " + std::string(core::kRoomNameRule));
   }
   auto file = core::findScene(scene);
   if (!file) return file.error();
@@ -52,8 +51,8 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
     if (!room) return room.error();
     for (const rooms::RoomSetup& known : rooms) {
       if (known.name == room->name)
-        return Error{ErrorCode::kInvalidInput,
-                     "--room '" + text + "': there is a room of this name already; 'main' is the one of --scene"};
+        return core::invalid("--room '" + text +
+                             "': there is a room of this name already; 'main' is the one of --scene");
     }
     rooms.push_back(*std::move(room));
   }
@@ -70,14 +69,6 @@ history::StateOptions stateOptions(const ServeOptions& options) {
           .is_shared = !options.nats_url.empty()};
 }
 
-/// Of the rooms that this server shall run: all, or in a cluster those that no other server runs.
-core::Result<std::vector<rooms::RoomSetup>> chooseRooms(const ServeOptions& options, cluster::Node* node,
-                                                        water::SceneCatalog& catalog) {
-  auto rooms = loadRooms(options, catalog);
-  if (!rooms || !node) return rooms;
-  return node->claim(*std::move(rooms));
-}
-
 core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& options, cluster::Node* node) {
   service::WaterServerOptions out;
   auto device = gpu::parseDeviceChoice(options.device);
@@ -92,7 +83,8 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
     out.rules.states = *std::move(states);
   }
   water::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
-  auto rooms = chooseRooms(options, node, catalog);
+  auto rooms = loadRooms(options, catalog);
+  if (rooms && node) rooms = node->claim(*std::move(rooms));  // those that no other server of the cluster runs
   if (!rooms) return rooms.error();
   out.rooms = *std::move(rooms);
   auto access = accessOptions(options);

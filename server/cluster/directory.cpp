@@ -102,8 +102,7 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
     const auto entered = write(name, recordOf(*shared), 0);
     if (!entered) return finish(entered.error());
     if (!*entered) {
-      return finish(core::Error{core::ErrorCode::kInvalidInput,
-                                "there is a room '" + name + "' in the cluster already: choose another name"});
+      return finish(core::invalid("there is a room '" + name + "' in the cluster already: choose another name"));
     }
     simulation_->openRoom(std::move(*shared), [this, name, finish](const core::Result<void>& opened) {
       if (opened)

@@ -2,12 +2,11 @@
 // reads a copy of it that NATS keeps up to date (bus::KeyValues), and asks NATS only before it changes something.
 #pragma once
 
-#include <chrono>
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>

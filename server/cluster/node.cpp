@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -307,7 +306,7 @@ core::Result<void> NodeImpl::accept(const std::string& room) {
   if (!hasHeardAll()) return Error{ErrorCode::kUnavailable, kNotHeardAll};
   std::string names;
   for (const std::string& known : servers().rooms()) names += (names.empty() ? "" : ", ") + known;
-  return Error{ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
+  return core::invalid("room '" + room + "' does not exist; rooms are: " + names);
 }
 
 bool NodeImpl::hasHeardAll() const {
@@ -394,8 +393,7 @@ std::string NodeImpl::metrics() const {
 core::Result<std::unique_ptr<Node>> Node::connect(const NodeOptions& options) {
   for (const auto& [what, name] : {std::pair("--node", options.name), std::pair("--cluster", options.cluster)}) {
     if (!core::isRoomName(name)) {
-      return Error{ErrorCode::kInvalidInput,
-                   std::string(what) + " '" + name + "': names have " + std::string(core::kRoomNameRule)};
+      return core::invalid(std::string(what) + " '" + name + "': names have " + std::string(core::kRoomNameRule));
     }
   }
   auto bus =
