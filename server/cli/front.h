@@ -30,7 +30,7 @@ struct StopSignals {
 /// Has the effect of SIGTERM; for an operator's request.
 void endThisProcess();
 
-/// What runUntilSignal() needs of a server that has started.
+/// A server that has started, as runUntilSignal() needs it.
 struct RunningServer {
   std::uint16_t port = 0;
   bool has_page = false;
