@@ -1,4 +1,3 @@
-#include <cstdint>
 #include <cstdio>
 #include <sstream>
 
@@ -8,8 +7,6 @@
 namespace spindrift::access {
 namespace {
 
-using core::Error;
-using core::ErrorCode;
 using std::chrono::system_clock;
 
 /// "2030-01-31T12:00:00Z".
@@ -87,7 +84,7 @@ core::Result<Access> Access::parse(std::string_view text, const std::string& lab
     std::istringstream words(line.substr(0, line.find('#')));
     std::string role_word, secret;
     if (!(words >> role_word)) continue;
-    const auto refuse = [&](const std::string& why) { return Error{ErrorCode::kInvalidInput, place + ": " + why}; };
+    const auto refuse = [&](const std::string& why) { return core::invalid(place + ": " + why); };
     const auto role = core::parseRole(role_word);
     if (!role) return refuse("the first word is not a role: write viewer, player or operator, then the token");
     if (!(words >> secret)) return refuse("a token has to follow the role");
@@ -119,10 +116,10 @@ void Access::acceptJwts(std::vector<JwtKey> keys, JwtRules rules) {
 core::Result<Grant> Access::resolve(std::string_view token, system_clock::time_point now) const {
   if (token.empty()) {
     if (guest_) return Grant{.role = *guest_};
-    return Error{ErrorCode::kInvalidInput, "this server takes no guests: send a token"};
+    return core::invalid("this server takes no guests: send a token");
   }
   if (token.size() > kTokenMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, "the token is longer than " + std::to_string(kTokenMaxBytes) + " bytes"};
+    return core::invalid("the token is longer than " + std::to_string(kTokenMaxBytes) + " bytes");
   }
   const Digest digest = digestOf(token);
   const Token* found = nullptr;
@@ -130,17 +127,11 @@ core::Result<Grant> Access::resolve(std::string_view token, system_clock::time_p
     if (isEqual(known.digest, digest)) found = &known;
   }
   if (!found && !jwt_keys_.empty() && looksLikeJwt(token)) return verifyJwt(token, jwt_keys_, jwt_rules_, now);
-  if (!found) return Error{ErrorCode::kInvalidInput, std::string(kUnknownToken)};
+  if (!found) return core::invalid(std::string(kUnknownToken));
   if (found->grant.expires && *found->grant.expires <= now) {
-    return Error{ErrorCode::kInvalidInput, "the token has expired: ask for a new one"};
+    return core::invalid("the token has expired: ask for a new one");
   }
   return found->grant;
-}
-
-core::Result<Grant> Access::resolve(std::string_view token, std::string_view room, system_clock::time_point now) const {
-  auto grant = resolve(token, now);
-  if (grant && !grant->allows(room)) return Error{ErrorCode::kInvalidInput, otherRoom(room)};
-  return grant;
 }
 
 std::string otherRoom(std::string_view room) {
@@ -151,7 +142,7 @@ core::Result<std::string> Access::bearerToken(std::string_view authorization) {
   if (authorization.empty()) return std::string();
   constexpr std::string_view kScheme = "Bearer ";
   if (!authorization.starts_with(kScheme) || authorization.size() == kScheme.size()) {
-    return Error{ErrorCode::kInvalidInput, "the Authorization header has to read: Bearer TOKEN"};
+    return core::invalid("the Authorization header has to read: Bearer TOKEN");
   }
   return std::string(authorization.substr(kScheme.size()));
 }

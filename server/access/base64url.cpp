@@ -1,56 +1,34 @@
-#include <array>
-#include <cstdint>
+#include <algorithm>
+
+#include <openssl/evp.h>
 
 #include <spindrift/access/base64url.h>
 
 namespace spindrift::access {
-namespace {
-
-constexpr std::string_view kAlphabet = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789-_";
-constexpr std::uint8_t kNone = 0xFF;
-
-constexpr std::array<std::uint8_t, 256> makeValues() {
-  std::array<std::uint8_t, 256> out{};
-  out.fill(kNone);
-  for (std::size_t k = 0; k < kAlphabet.size(); ++k)
-    out[static_cast<unsigned char>(kAlphabet[k])] = static_cast<std::uint8_t>(k);
-  return out;
-}
-
-constexpr std::array<std::uint8_t, 256> kValues = makeValues();
-
-}  // namespace
-
-std::optional<std::string> fromBase64Url(std::string_view text) {
-  if (text.size() % 4 == 1) return std::nullopt;
-  std::string out;
-  out.reserve(text.size() * 3 / 4);
-  std::uint32_t bits = 0;
-  int bit_count = 0;
-  for (const char c : text) {
-    const std::uint8_t value = kValues[static_cast<unsigned char>(c)];
-    if (value == kNone) return std::nullopt;
-    bits = (bits << 6) | value;
-    bit_count += 6;
-    if (bit_count < 8) continue;
-    bit_count -= 8;
-    out.push_back(static_cast<char>((bits >> bit_count) & 0xFFu));
-  }
-  if ((bits & ((1u << bit_count) - 1u)) != 0) return std::nullopt;
-  return out;
-}
 
 std::string toBase64Url(std::string_view bytes) {
-  std::string out;
-  out.reserve((bytes.size() * 4 + 2) / 3);
-  std::uint32_t bits = 0;
-  int bit_count = 0;
-  for (const char c : bytes) {
-    bits = (bits << 8) | static_cast<unsigned char>(c);
-    bit_count += 8;
-    for (; bit_count >= 6; bit_count -= 6) out.push_back(kAlphabet[(bits >> (bit_count - 6)) & 63u]);
+  std::string out((bytes.size() + 2) / 3 * 4 + 1, '\0');  // OpenSSL adds a zero byte
+  EVP_EncodeBlock(reinterpret_cast<unsigned char*>(out.data()), reinterpret_cast<const unsigned char*>(bytes.data()),
+                  static_cast<int>(bytes.size()));
+  out.resize((bytes.size() * 4 + 2) / 3);  // without the padding
+  std::ranges::replace(out, '+', '-');
+  std::ranges::replace(out, '/', '_');
+  return out;
+}
+
+std::optional<std::string> fromBase64Url(std::string_view text) {
+  std::string padded(text);
+  std::ranges::replace(padded, '-', '+');
+  std::ranges::replace(padded, '_', '/');
+  padded.resize((text.size() + 3) / 4 * 4, '=');
+  std::string out(padded.size() / 4 * 3, '\0');
+  if (EVP_DecodeBlock(reinterpret_cast<unsigned char*>(out.data()),
+                      reinterpret_cast<const unsigned char*>(padded.data()), static_cast<int>(padded.size())) < 0) {
+    return std::nullopt;
   }
-  if (bit_count > 0) out.push_back(kAlphabet[(bits << (6 - bit_count)) & 63u]);
+  out.resize(text.size() * 3 / 4);
+  // OpenSSL also takes other alphabets' characters, padding, blanks and unused bits: only the one encoding is valid.
+  if (toBase64Url(out) != text) return std::nullopt;
   return out;
 }
 

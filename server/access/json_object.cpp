@@ -1,6 +1,5 @@
 #include "json_object.h"
 
-#include <algorithm>
 #include <cstddef>
 
 #include <boost/json/parse.hpp>
@@ -43,7 +42,7 @@ std::size_t memberCount(const json::value& value) {
 }  // namespace
 
 core::Result<json::object> parseJsonObject(std::string_view text) {
-  const auto refuse = [](std::string why) { return core::Error{core::ErrorCode::kInvalidInput, std::move(why)}; };
+  const auto refuse = [](std::string why) { return core::invalid(std::move(why)); };
   boost::system::error_code error;
   json::parse_options options;
   options.max_depth = kMaxDepth;

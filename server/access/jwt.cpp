@@ -21,7 +21,7 @@ using std::chrono::system_clock;
 constexpr double kLastTime_s = 7258118400.0;  // the year 2200: clocks count nanoseconds in 64 bits
 
 core::Error refusal(std::string why) {
-  return {core::ErrorCode::kInvalidInput, "the JWT is refused: " + std::move(why)};
+  return core::invalid("the JWT is refused: " + std::move(why));
 }
 
 struct Parts {
@@ -42,7 +42,7 @@ std::optional<Parts> split(std::string_view token) {
 /// The error completes "its header" or "its claims".
 core::Result<json::object> parsePart(std::string_view base64) {
   const auto text = fromBase64Url(base64);
-  auto object = text ? parseJsonObject(*text) : core::Error{core::ErrorCode::kInvalidInput, "no base64url"};
+  auto object = text ? parseJsonObject(*text) : core::invalid("no base64url");
   if (!object) return core::Error{object.error().code, "cannot be used: it is " + object.error().message};
   return object;
 }

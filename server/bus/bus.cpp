@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include <boost/algorithm/string/join.hpp>
+#include <boost/algorithm/string/split.hpp>
 #include <nats/nats.h>
 #include <spdlog/spdlog.h>
 
@@ -30,6 +32,11 @@ constexpr int kReconnectBufferBytes = 1 << 20;
 constexpr std::int64_t kWriteDeadline_ms = 2'000;
 /// What may wait for the socket; a second of frames for a few rooms.
 constexpr std::size_t kWaitingMaxBytes = 32u << 20;
+
+std::vector<std::string> urlsOf(const std::string& list) {
+  std::vector<std::string> out;
+  return boost::algorithm::split(out, list, [](char c) { return c == ','; });
+}
 
 class NatsBus;
 
@@ -154,12 +161,7 @@ core::Result<void> NatsBus::connect(const BusOptions& options) {
   natsOptions* raw = nullptr;
   natsStatus status = natsOptions_Create(&raw);
   const std::unique_ptr<natsOptions, decltype(&natsOptions_Destroy)> settings(raw, natsOptions_Destroy);
-  std::vector<std::string> urls;
-  for (std::size_t begin = 0; begin <= options.url.size();) {
-    const std::size_t comma = std::min(options.url.find(',', begin), options.url.size());
-    urls.push_back(options.url.substr(begin, comma - begin));
-    begin = comma + 1;
-  }
+  const std::vector<std::string> urls = urlsOf(options.url);
   std::vector<const char*> servers;
   for (const std::string& url : urls) servers.push_back(url.c_str());
   const auto set = [&](natsStatus outcome) {
@@ -320,17 +322,14 @@ core::Result<std::unique_ptr<Bus>> Bus::connect(const BusOptions& options) {
 }
 
 std::string withoutPassword(const std::string& url) {
-  std::string out;
-  for (std::size_t begin = 0; begin <= url.size();) {
-    const std::size_t comma = std::min(url.find(',', begin), url.size());
-    const std::string one = url.substr(begin, comma - begin);
+  std::vector<std::string> urls = urlsOf(url);
+  for (std::string& one : urls) {
     const std::size_t scheme = one.find("://");
     const std::size_t host = scheme == std::string::npos ? 0 : scheme + 3;
     const std::size_t at = one.rfind('@');
-    out += (begin ? "," : "") + (at == std::string::npos || at < host ? one : one.substr(0, host) + one.substr(at + 1));
-    begin = comma + 1;
+    if (at != std::string::npos && at >= host) one.erase(host, at + 1 - host);
   }
-  return out;
+  return boost::algorithm::join(urls, ",");
 }
 
 }  // namespace spindrift::bus

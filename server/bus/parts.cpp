@@ -2,33 +2,20 @@
 
 #include <algorithm>
 
+#include <boost/endian/conversion.hpp>
+
 namespace spindrift::bus {
-namespace {
-
-template <typename Number>
-void write(Number value, std::uint8_t* out) {
-  for (std::size_t k = 0; k < sizeof(Number); ++k) out[k] = static_cast<std::uint8_t>(value >> (8 * k));
-}
-
-template <typename Number>
-Number read(const std::uint8_t* bytes) {
-  Number value = 0;
-  for (std::size_t k = 0; k < sizeof(Number); ++k) value |= static_cast<Number>(Number{bytes[k]} << (8 * k));
-  return value;
-}
-
-}  // namespace
 
 void writePartHead(const PartHead& head, std::uint8_t* out) {
-  write(head.message, out);
-  write(head.part, out + 8);
-  write(head.part_count, out + 12);
+  boost::endian::store_little_u64(out, head.message);
+  boost::endian::store_little_u32(out + 8, head.part);
+  boost::endian::store_little_u32(out + 12, head.part_count);
 }
 
 std::optional<PartHead> readPartHead(core::ByteView part) {
   if (part.size() < kPartHeadBytes) return std::nullopt;
-  const PartHead head{read<std::uint64_t>(part.data()), read<std::uint32_t>(part.data() + 8),
-                      read<std::uint32_t>(part.data() + 12)};
+  const PartHead head{boost::endian::load_little_u64(part.data()), boost::endian::load_little_u32(part.data() + 8),
+                      boost::endian::load_little_u32(part.data() + 12)};
   if (head.part_count == 0 || head.part_count > kPartMaxCount || head.part >= head.part_count) return std::nullopt;
   return head;
 }

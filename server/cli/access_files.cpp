@@ -13,7 +13,6 @@ namespace spindrift::cli {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 
 constexpr std::size_t kTokenFileMaxBytes = 1 << 20;
 
@@ -45,8 +44,8 @@ core::Result<std::vector<access::JwtKey>> loadJwtKeys(const FrontOptions& option
     std::ranges::move(*keys, std::back_inserter(out));
   }
   if (out.size() > access::kJwtKeyMaxCount) {
-    return Error{ErrorCode::kInvalidInput, "--jwt-key, --jwt-keys: there are " + std::to_string(out.size()) +
-                                               " keys; at most " + std::to_string(access::kJwtKeyMaxCount)};
+    return core::invalid("--jwt-key, --jwt-keys: there are " + std::to_string(out.size()) + " keys; at most " +
+                         std::to_string(access::kJwtKeyMaxCount));
   }
   return out;
 }
@@ -72,8 +71,8 @@ core::Result<access::Access> loadAccess(const FrontOptions& options) {
   if (!keys) return keys.error();
   const bool has_keys = !keys->empty();
   if (!has_keys && !(options.jwt_issuer.empty() && options.jwt_audience.empty())) {
-    return Error{ErrorCode::kInvalidInput,
-                 "--jwt-issuer and --jwt-audience without a key accept no JWT: give --jwt-key FILE or --jwt-keys FILE"};
+    return core::invalid(
+        "--jwt-issuer and --jwt-audience without a key accept no JWT: give --jwt-key FILE or --jwt-keys FILE");
   }
   std::optional<core::Role> guest = has_tokens || has_keys ? core::Role::kViewer : core::Role::kOperator;
   if (!options.operator_token.empty()) {
@@ -85,10 +84,10 @@ core::Result<access::Access> loadAccess(const FrontOptions& options) {
   auto access = access::Access::parse(text, label, guest);
   if (!access) return access;
   if (has_tokens && access->tokenCount() == 0)
-    return Error{ErrorCode::kInvalidInput, label + ": there is no token in it: write lines of ROLE TOKEN"};
+    return core::invalid(label + ": there is no token in it: write lines of ROLE TOKEN");
   if (!guest && access->tokenCount() == 0 && !has_keys) {
-    return Error{ErrorCode::kInvalidInput,
-                 "--guests none without tokens refuses every client: give --tokens-file FILE or --jwt-key FILE"};
+    return core::invalid(
+        "--guests none without tokens refuses every client: give --tokens-file FILE or --jwt-key FILE");
   }
   access->acceptJwts(*std::move(keys), {.issuer = options.jwt_issuer, .audience = options.jwt_audience});
   return access;

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <vector>
@@ -28,15 +27,8 @@ struct CheckOptions {
 };
 
 const char* nameOf(core::WaveBoundary boundary) {
-  switch (boundary) {
-    case core::WaveBoundary::kReflect:
-      return "reflects";
-    case core::WaveBoundary::kAbsorb:
-      return "absorbs";
-    case core::WaveBoundary::kPeriodic:
-      break;
-  }
-  return "periodic";
+  if (boundary == core::WaveBoundary::kPeriodic) return "periodic";
+  return boundary == core::WaveBoundary::kAbsorb ? "absorbs" : "reflects";
 }
 
 const char* nameOf(core::Side side) {

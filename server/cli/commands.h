@@ -1,10 +1,12 @@
-// The program's commands. Each has a file with its flags and its work.
+// The program's commands, each with a file for its flags and its work, and what they share.
 #pragma once
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
+#include <boost/json/fwd.hpp>
 
 #include <spindrift/core/result.h>
 
@@ -32,7 +34,17 @@ void addDevice(CLI::App& command, std::string& device);
 void addFidelity(CLI::App& command, std::string& fidelity);
 void addJson(CLI::App& command, std::string& file);
 
+/// Writes a command's JSON to a file, or to standard output for "-"; does nothing for an empty name. kUnavailable when
+/// the file cannot be written; the message names the option.
+core::Result<void> writeJson(const std::string& file, const boost::json::value& value,
+                             const std::string& option = "--json");
+
 /// Writes the error's line to standard error (logging.h) and returns its exit code.
 int fail(const core::Error& error);
+
+/// Does the work of main(): `add` gives the parser its options or subcommands; the one that was parsed runs. Returns
+/// the exit code (see ProgramCommand::run); errors are reported in the form of the log.
+int runProgram(const std::string& name, const std::string& description,
+               const std::function<std::vector<ProgramCommand>(CLI::App&)>& add, int argc, char** argv);
 
 }  // namespace spindrift::cli

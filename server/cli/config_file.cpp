@@ -1,6 +1,5 @@
 #include "config_file.h"
 
-#include <algorithm>
 #include <cctype>
 #include <vector>
 
@@ -17,7 +16,6 @@ namespace spindrift::cli {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 using google::protobuf::FieldDescriptor;
 using google::protobuf::TextFormat;
 
@@ -160,20 +158,19 @@ core::Result<void> takeConfigText(std::string_view text, const std::string& labe
   TextFormat::Parser parser;
   parser.RecordErrorsTo(&errors);
   parser.WriteLocationsTo(&places);
-  if (!parser.ParseFromString(std::string(text), &config)) return Error{ErrorCode::kInvalidInput, errors.message()};
+  if (!parser.ParseFromString(std::string(text), &config)) return core::invalid(errors.message());
 
   std::vector<const FieldDescriptor*> fields;
   config.GetReflection()->ListFields(config, &fields);
   for (const FieldDescriptor* const field : fields) {
     const TextFormat::ParseLocation place = places.GetLocation(field, field->is_repeated() ? 0 : -1);
     const std::string where = fmt::format("{}:{}:{}: {}", label, place.line + 1, place.column + 1, field->name());
-    if (!options.has(field->name()))
-      return Error{ErrorCode::kInvalidInput, where + ": this command has no such option; leave it out"};
+    if (!options.has(field->name())) return core::invalid(where + ": this command has no such option; leave it out");
     const std::vector<std::string> values = valuesOf(config, *field);
     for (const std::string& value : values) {
       // Neither flags nor variables can hold one, and a path would end there.
       if (value.find('\0') != std::string::npos)
-        return Error{ErrorCode::kInvalidInput, where + ": the text holds a zero byte (\\000); remove it"};
+        return core::invalid(where + ": the text holds a zero byte (\\000); remove it");
     }
     if (auto taken = options.takeFromFile(field->name(), values, place.line + 1, where); !taken) return taken;
   }

@@ -1,16 +1,10 @@
-#include <cstdio>
 #include <memory>
-#include <optional>
 #include <utility>
-
-#include <spdlog/spdlog.h>
 
 #include <spindrift/cluster/edge_server.h>
 
-#include "commands.h"
 #include "front.h"
 #include "operator_link.h"
-#include "serve_options.h"
 
 namespace spindrift::cli {
 namespace {
@@ -32,17 +26,15 @@ int runEdge(FrontOptions options) {
   const bool has_page = !edge_options.network.web_root.empty();
   auto edge = cluster::EdgeServer::start(std::move(edge_options));
   if (!edge) return fail(edge.error());
-  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  warnIfOpenToAll(options);
-  sayReady(options, (*edge)->port());
-  const int signal = signals.wait([&] {
-    (*edge)->reloadCertificate();
-    reload(options, (*edge)->access(), audit_file.get());
-  });
-  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
-  drain(
-      options, signals, [&] { return (*edge)->networkStats().open_session_count; },
-      [&](std::chrono::milliseconds closes_in) { (*edge)->drain(closes_in, options.drain_to); });
+  runUntilSignal(options, signals,
+                 {.port = (*edge)->port(),
+                  .has_page = has_page,
+                  .access = (*edge)->access(),
+                  .audit_file = audit_file.get(),
+                  .reload_certificate = [&] { (*edge)->reloadCertificate(); },
+                  .leave = [] {},
+                  .session_count = [&] { return (*edge)->networkStats().open_session_count; },
+                  .drain = [&](std::chrono::milliseconds closes_in) { (*edge)->drain(closes_in, options.drain_to); }});
   (*edge)->stop();
   logNetwork((*edge)->networkStats());
   return 0;
@@ -55,14 +47,7 @@ ProgramCommand addEdge(CLI::App& program) {
   CLI::App* command = program.add_subcommand(
       "edge", "Serve the rooms of a cluster to many clients, without rooms of its own, until interrupted");
   addEdgeOptions(*command, *options);
-  const auto sources = std::make_shared<std::optional<OptionSources>>();
-  return {command, [options, sources] { return options->prints_config ? printConfig(**sources) : runEdge(*options); },
-          [&program, command, options, sources]() -> core::Result<void> {
-            auto completed = completeFrontOptions(program, *command, *options);
-            if (!completed) return completed.error();
-            *sources = *std::move(completed);
-            return {};
-          }};
+  return frontCommand(program, *command, options, [options] { return runEdge(*options); });
 }
 
 }  // namespace spindrift::cli

@@ -1,11 +1,12 @@
 #include "front.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <optional>
+#include <string>
 
 #include <pthread.h>
 #include <spdlog/spdlog.h>
@@ -14,13 +15,69 @@
 #include <spindrift/core/paths.h>
 
 #include "access_files.h"
-#include "commands.h"
 #include "config_file.h"
 #include "operator_link.h"
 
 namespace spindrift::cli {
+namespace {
 
 using core::ErrorCode;
+
+void reload(const FrontOptions& options, const RunningServer& server) {
+  server.reload_certificate();
+  if (server.audit_file != nullptr) server.audit_file->reopen();
+  auto access = loadAccess(options);
+  if (!access) {
+    spdlog::error("SIGHUP: tokens and keys stay as they were: {}", access.error().message);
+    return;
+  }
+  spdlog::info("SIGHUP: {} tokens and {} keys for JWTs were read; sessions that are open keep their rights",
+               access->tokenCount(), access->jwtKeyCount());
+  server.access.replace(*std::move(access));
+}
+
+void drain(const FrontOptions& options, const StopSignals& signals, const RunningServer& server) {
+  using Clock = std::chrono::steady_clock;
+  constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 20'000'000};
+  const auto duration =
+      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(options.drain_s * 1e3)));
+  const std::uint64_t count = server.session_count();
+  if (duration.count() == 0 || count == 0) return;
+  spdlog::info("draining: {} sessions have {:g} s to go{}", count, options.drain_s,
+               options.drain_to.empty() ? "" : " to " + options.drain_to);
+  server.drain(duration);
+  for (const auto end = Clock::now() + duration; Clock::now() < end;) {
+    if (server.session_count() == 0) return;
+    const int signal = sigtimedwait(&signals.set, nullptr, &kLook);
+    if (signal == SIGINT || signal == SIGTERM) return spdlog::info("draining ends: a second signal");
+  }
+}
+
+void sayReady(const FrontOptions& options, std::uint16_t port) {
+  std::fputs(readyText(options, port).c_str(), stdout);
+  std::fflush(stdout);
+  if (options.operator_token.empty()) return;
+  spdlog::info(
+      "no roles are configured and other machines can reach this server: clients without a token are players; the link "
+      "of the operator is on standard output and is valid until this process ends; --tokens-file gives lasting roles");
+}
+
+void warnIfOpenToAll(const FrontOptions& options) {
+  if (!isReachable(options) || options.guest_role != "operator") return;
+  spdlog::warn(
+      "every client that can reach {} is an operator and may even close rooms, because of --guests operator: leave it "
+      "out, or give --tokens-file",
+      options.address);
+}
+
+int printConfig(const OptionSources& sources) {
+  const std::string text = configText(sources);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return 0;
+  return fail({ErrorCode::kUnavailable,
+               std::string("--print-config: standard output cannot be written: ") + std::strerror(errno)});
+}
+
+}  // namespace
 
 core::Result<service::AccessOptions> accessOptions(const FrontOptions& options) {
   auto access = loadAccess(options);
@@ -33,70 +90,29 @@ core::Result<service::AccessOptions> accessOptions(const FrontOptions& options) 
   return out;
 }
 
-void reload(const FrontOptions& options, service::AccessControl& control, access::AuditFile* audit_file) {
-  if (audit_file != nullptr) audit_file->reopen();
-  auto access = loadAccess(options);
-  if (!access) {
-    spdlog::error("SIGHUP: tokens and keys stay as they were: {}", access.error().message);
-    return;
-  }
-  spdlog::info("SIGHUP: {} tokens and {} keys for JWTs were read; sessions that are open keep their rights",
-               access->tokenCount(), access->jwtKeyCount());
-  control.replace(*std::move(access));
-}
-
 StopSignals::StopSignals() {
-  sigemptyset(&set_);
-  sigaddset(&set_, SIGINT);
-  sigaddset(&set_, SIGTERM);
-  sigaddset(&set_, SIGHUP);
-  pthread_sigmask(SIG_BLOCK, &set_, nullptr);
+  sigemptyset(&set);
+  sigaddset(&set, SIGINT);
+  sigaddset(&set, SIGTERM);
+  sigaddset(&set, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
 }
 
-int StopSignals::wait(const std::function<void()>& reload) {
-  while (true) {
-    int signal = 0;
-    sigwait(&set_, &signal);
-    if (signal != SIGHUP) return signal;
-    reload();
-  }
-}
-
-int StopSignals::waitFor(std::chrono::milliseconds duration) {
-  const timespec time{.tv_sec = duration.count() / 1000, .tv_nsec = duration.count() % 1000 * 1'000'000};
-  return std::max(0, sigtimedwait(&set_, nullptr, &time));
+void runUntilSignal(const FrontOptions& options, const StopSignals& signals, const RunningServer& server) {
+  if (!server.has_page)
+    spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
+  warnIfOpenToAll(options);
+  sayReady(options, server.port);
+  int signal = 0;
+  for (sigwait(&signals.set, &signal); signal == SIGHUP; sigwait(&signals.set, &signal)) reload(options, server);
+  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
+  server.leave();
+  drain(options, signals, server);
 }
 
 void endThisProcess() {
   ::kill(::getpid(), SIGTERM);
-}
-
-void drain(const FrontOptions& options, StopSignals& signals, const std::function<std::uint64_t()>& session_count,
-           const std::function<void(std::chrono::milliseconds)>& begin) {
-  using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kLook{20};
-  const auto duration =
-      std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(options.drain_s * 1e3)));
-  const std::uint64_t count = session_count();
-  if (duration.count() == 0 || count == 0) return;
-  spdlog::info("draining: {} sessions have {:g} s to go{}", count, options.drain_s,
-               options.drain_to.empty() ? "" : " to " + options.drain_to);
-  begin(duration);
-  for (const auto end = Clock::now() + duration; Clock::now() < end;) {
-    if (session_count() == 0) return;
-    const int signal = signals.waitFor(kLook);
-    if (signal == SIGINT || signal == SIGTERM) return spdlog::info("draining ends: a second signal");
-  }
-}
-
-void sayReady(const FrontOptions& options, std::uint16_t port) {
-  std::fputs(readyText(options, port).c_str(), stdout);
-  std::fflush(stdout);
-  if (options.operator_token.empty()) return;
-  spdlog::info(
-      "no roles are configured and other machines can reach this server: clients without a token are players; the link "
-      "of the operator is on standard output and is valid until this process ends; --tokens-file gives lasting roles");
 }
 
 net::ServerOptions networkOptions(const FrontOptions& options) {
@@ -111,14 +127,6 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   out.address_session_share = options.address_session_share;
   out.web_root = options.web_root.empty() ? core::findWebRoot().string() : options.web_root;
   return out;
-}
-
-void warnIfOpenToAll(const FrontOptions& options) {
-  if (!isReachable(options) || options.guest_role != "operator") return;
-  spdlog::warn(
-      "every client that can reach {} is an operator and may even close rooms, because of --guests operator: leave it "
-      "out, or give --tokens-file",
-      options.address);
 }
 
 cluster::NodeOptions nodeOptions(const FrontOptions& options, bool runs_rooms) {
@@ -141,11 +149,16 @@ cluster::NodeOptions nodeOptions(const FrontOptions& options, bool runs_rooms) {
           .on_name_lost = endThisProcess};
 }
 
-int printConfig(const OptionSources& sources) {
-  const std::string text = configText(sources);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0) return 0;
-  return fail({ErrorCode::kUnavailable,
-               std::string("--print-config: standard output cannot be written: ") + std::strerror(errno)});
+ProgramCommand frontCommand(CLI::App& program, CLI::App& command, const std::shared_ptr<FrontOptions>& options,
+                            const std::function<int()>& run) {
+  const auto sources = std::make_shared<std::optional<OptionSources>>();
+  return {&command, [options, sources, run] { return options->prints_config ? printConfig(**sources) : run(); },
+          [&program, &command, options, sources]() -> core::Result<void> {
+            auto completed = completeFrontOptions(program, command, *options);
+            if (!completed) return completed.error();
+            *sources = *std::move(completed);
+            return {};
+          }};
 }
 
 void logNetwork(const net::ServerStats& stats) {

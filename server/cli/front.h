@@ -1,4 +1,4 @@
-// What `serve` and `edge` share: access, signals, the network's options, printing the configuration.
+// What `serve` and `edge` share: options, access, and the time from the start to the end.
 #pragma once
 
 #include <chrono>
@@ -6,14 +6,13 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include <spindrift/cluster/node.h>
 #include <spindrift/core/result.h>
 #include <spindrift/net/server.h>
 #include <spindrift/service/access_control.h>
 
+#include "commands.h"
 #include "serve_options.h"
 
 namespace spindrift::cli {
@@ -21,45 +20,42 @@ namespace spindrift::cli {
 /// Reads tokens and keys, and opens the audit log.
 core::Result<service::AccessOptions> accessOptions(const FrontOptions& options);
 
-/// Reads the files of tokens and keys again, and opens the audit log anew. With a wrong file, everything stays as it
-/// was.
-void reload(const FrontOptions& options, service::AccessControl& access, access::AuditFile* audit_file);
-
-/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that wait() receives them.
-class StopSignals {
- public:
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that
+/// runUntilSignal() receives them.
+struct StopSignals {
   StopSignals();
-  /// Returns the signal that ends the program; calls `reload` for each SIGHUP before it.
-  int wait(const std::function<void()>& reload);
-  /// Returns 0 if no signal comes in time.
-  int waitFor(std::chrono::milliseconds duration);
-
- private:
-  sigset_t set_{};
+  sigset_t set{};
 };
 
 /// Has the effect of SIGTERM; for an operator's request.
 void endThisProcess();
 
-/// Gives the clients the time to go: returns when all have gone, the time is over, or another signal asks for the end.
-/// `begin` tells them.
-void drain(const FrontOptions& options, StopSignals& signals, const std::function<std::uint64_t()>& session_count,
-           const std::function<void(std::chrono::milliseconds)>& begin);
+/// A server that has started, as runUntilSignal() needs it.
+struct RunningServer {
+  std::uint16_t port = 0;
+  bool has_page = false;
+  service::AccessControl& access;
+  access::AuditFile* audit_file;
+  std::function<void()> reload_certificate;
+  std::function<void()> leave;  ///< before the clients are told to go
+  std::function<std::uint64_t()> session_count;
+  std::function<void(std::chrono::milliseconds)> drain;  ///< tells the clients
+};
 
-/// Prints readyText().
-void sayReady(const FrontOptions& options, std::uint16_t port);
+/// Says that the server is ready and waits for SIGINT or SIGTERM. For each SIGHUP before, reads the certificate and the
+/// files of tokens and keys again, and opens the audit log anew; with a wrong file, everything stays as it was. Then
+/// gives the clients the time to go: returns when all have gone, the time is over, or another signal asks for the end.
+void runUntilSignal(const FrontOptions& options, const StopSignals& signals, const RunningServer& server);
 
 /// Options of the network; the address may be that of an inherited socket.
 net::ServerOptions networkOptions(const FrontOptions& options);
 
-/// Warns if others can reach the server and every client is an operator.
-void warnIfOpenToAll(const FrontOptions& options);
-
 /// `runs_rooms`: a server. The name of the node is made if it is not given.
 cluster::NodeOptions nodeOptions(const FrontOptions& options, bool runs_rooms);
 
-/// Prints the configuration to standard output; returns the exit code.
-int printConfig(const OptionSources& sources);
+/// Makes the command of options that may also come from the environment and a file: `run`, or --print-config.
+ProgramCommand frontCommand(CLI::App& program, CLI::App& command, const std::shared_ptr<FrontOptions>& options,
+                            const std::function<int()>& run);
 
 /// Logs what the network did, at the end.
 void logNetwork(const net::ServerStats& stats);

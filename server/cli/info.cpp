@@ -11,7 +11,6 @@
 #include <spindrift/wire/client_message.h>
 
 #include "commands.h"
-#include "output.h"
 
 namespace spindrift::cli {
 namespace {

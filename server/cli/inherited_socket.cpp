@@ -25,7 +25,7 @@ std::string takeVariable(const char* name) {
 }
 
 core::Error refused(const std::string& message) {
-  return {core::ErrorCode::kInvalidInput, message};
+  return core::invalid(message);
 }
 
 }  // namespace

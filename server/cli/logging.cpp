@@ -1,16 +1,15 @@
 #include "logging.h"
 
 #include <cstdio>
-#include <memory>
 
+#include <boost/json/object.hpp>
+#include <boost/json/serialize.hpp>
 #include <spdlog/details/log_msg.h>
 #include <spdlog/pattern_formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/text.h>
-
-#include "json_log_formatter.h"
 
 namespace spindrift::cli {
 namespace {
@@ -32,7 +31,40 @@ class MessageText final : public spdlog::custom_flag_formatter {
 bool writes_json = false;
 std::string program_name = "spindrift";
 
+/// Returns `text` with U+FFFD in place of each byte that belongs to no UTF-8 sequence.
+std::string toValidUtf8(std::string_view text) {
+  std::string valid;
+  valid.reserve(text.size());
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = core::utf8SequenceLength(text, at);
+    if (length == 0) {
+      valid += "\xEF\xBF\xBD";
+      ++at;
+      continue;
+    }
+    valid.append(text.substr(at, length));
+    at += length;
+  }
+  return valid;
+}
+
 }  // namespace
+
+void JsonLogFormatter::format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) {
+  const auto level = spdlog::level::to_string_view(message.level);
+  const boost::json::object object{
+      {"time", core::rfc3339(message.time)},
+      {"level", std::string_view(level.data(), level.size())},
+      {"thread", message.thread_id},
+      {"message", toValidUtf8({message.payload.data(), message.payload.size()})},
+  };
+  const std::string text = boost::json::serialize(object) + "\n";  // escapes quotes and control characters
+  line.append(text.data(), text.data() + text.size());
+}
+
+std::unique_ptr<spdlog::formatter> JsonLogFormatter::clone() const {
+  return std::make_unique<JsonLogFormatter>();
+}
 
 std::string indentLines(std::string_view text) {
   std::string out;

@@ -1,5 +1,5 @@
 // spindrift: the program.
-#include "program.h"
+#include "commands.h"
 
 int main(int argc, char** argv) {
   using namespace spindrift::cli;

@@ -22,19 +22,32 @@ core::Result<void> give(CLI::Option& option, const std::vector<std::string>& val
     return {};
   } catch (const CLI::ConversionError&) {
     const std::string wanted = isFlag(option) ? "write true or false" : "see spindrift serve --help";
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       label + ": '" + CLI::detail::join(values, " ") + "' cannot be used; " + wanted};
+    return core::invalid(label + ": '" + CLI::detail::join(values, " ") + "' cannot be used; " + wanted);
   } catch (const CLI::ParseError& error) {
     std::string_view reason = error.what();
     const std::string prefix = option.get_name() + ": ";
     if (reason.starts_with(prefix)) reason.remove_prefix(prefix.size());
-    return core::Error{core::ErrorCode::kInvalidInput, label + ": " + std::string(reason)};
+    return core::invalid(label + ": " + std::string(reason));
   }
 }
 
 /// Kubernetes gives every pod variables with the URLs of the Services: SPINDRIFT_PORT for one named spindrift.
 bool isServiceLink(std::string_view text) {
   return text.starts_with("tcp://") || text.starts_with("udp://") || text.starts_with("sctp://");
+}
+
+/// Returns what the environment holds for the option; empty where the variable is unset or empty. ';' separates the
+/// values of an option that may be repeated; spaces around each are removed.
+std::vector<std::string> environmentValues(const CLI::Option& option) {
+  const char* const text = std::getenv(variableName(option).c_str());
+  if (text == nullptr || *text == '\0') return {};
+  if (option.get_items_expected_max() <= 1) return {text};
+  std::vector<std::string> values;
+  for (std::string& value : CLI::detail::split(text, ';')) {
+    CLI::detail::trim(value);
+    if (!value.empty()) values.push_back(std::move(value));
+  }
+  return values;
 }
 
 }  // namespace
@@ -50,18 +63,6 @@ std::string variableName(const CLI::Option& option) {
   std::string name = "SPINDRIFT_" + fieldName(option);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
   return name;
-}
-
-std::vector<std::string> environmentValues(const CLI::Option& option) {
-  const char* const text = std::getenv(variableName(option).c_str());
-  if (text == nullptr || *text == '\0') return {};
-  if (option.get_items_expected_max() <= 1) return {text};
-  std::vector<std::string> values;
-  for (std::string& value : CLI::detail::split(text, ';')) {
-    CLI::detail::trim(value);
-    if (!value.empty()) values.push_back(std::move(value));
-  }
-  return values;
 }
 
 OptionSources::OptionSources(std::initializer_list<CLI::App*> parsers) {

@@ -22,10 +22,6 @@ std::string fieldName(const CLI::Option& option);
 /// "SPINDRIFT_MAX_ROOMS" for --max-rooms.
 std::string variableName(const CLI::Option& option);
 
-/// Returns what the environment holds for the option; empty where the variable is unset or empty. ';' separates the
-/// values of an option that may be repeated; spaces around each are removed.
-std::vector<std::string> environmentValues(const CLI::Option& option);
-
 /// The options of one or several parsers, without those that are not configurable() (--help). The parsers outlive it.
 class OptionSources {
  public:

@@ -10,7 +10,6 @@
 #include <spindrift/history/replay.h>
 
 #include "commands.h"
-#include "output.h"
 
 namespace spindrift::cli {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "commands.h"
 #include "forms.h"
-#include "output.h"
 
 namespace spindrift::cli {
 namespace {

@@ -1,5 +1,4 @@
 #include <chrono>
-#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -18,23 +17,20 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
 
-#include "commands.h"
 #include "front.h"
 #include "inherited_socket.h"
 #include "operator_link.h"
-#include "serve_options.h"
 
 namespace spindrift::cli {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 
 /// Lists the scene's file in `catalog`, so that the room can return to it and change its fidelity.
 core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::string& scene, const std::string& fidelity,
                                         water::SceneCatalog& catalog) {
   if (!core::isRoomName(name)) {
-    return Error{ErrorCode::kInvalidInput, "room '" + name + "': names have " + std::string(core::kRoomNameRule)};
+    return core::invalid("room '" + name + "': names have " + std::string(core::kRoomNameRule));
   }
   auto file = core::findScene(scene);
   if (!file) return file.error();
@@ -55,8 +51,8 @@ core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& option
     if (!room) return room.error();
     for (const rooms::RoomSetup& known : rooms) {
       if (known.name == room->name)
-        return Error{ErrorCode::kInvalidInput,
-                     "--room '" + text + "': there is a room of this name already; 'main' is the one of --scene"};
+        return core::invalid("--room '" + text +
+                             "': there is a room of this name already; 'main' is the one of --scene");
     }
     rooms.push_back(*std::move(room));
   }
@@ -73,14 +69,6 @@ history::StateOptions stateOptions(const ServeOptions& options) {
           .is_shared = !options.nats_url.empty()};
 }
 
-/// Of the rooms that this server shall run: all, or in a cluster those that no other server runs.
-core::Result<std::vector<rooms::RoomSetup>> chooseRooms(const ServeOptions& options, cluster::Node* node,
-                                                        water::SceneCatalog& catalog) {
-  auto rooms = loadRooms(options, catalog);
-  if (!rooms || !node) return rooms;
-  return node->claim(*std::move(rooms));
-}
-
 core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& options, cluster::Node* node) {
   service::WaterServerOptions out;
   auto device = gpu::parseDeviceChoice(options.device);
@@ -95,7 +83,8 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
     out.rules.states = *std::move(states);
   }
   water::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
-  auto rooms = chooseRooms(options, node, catalog);
+  auto rooms = loadRooms(options, catalog);
+  if (rooms && node) rooms = node->claim(*std::move(rooms));  // those that no other server of the cluster runs
   if (!rooms) return rooms.error();
   out.rooms = *std::move(rooms);
   auto access = accessOptions(options);
@@ -170,18 +159,19 @@ int serve(ServeOptions options) {
 
   if (const std::string device = (*server)->simulation().deviceLine(); !device.empty())
     spdlog::info("simulation runs on {}", device);
-  if (!has_page) spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
-  warnIfOpenToAll(options);
-  sayReady(options, (*server)->port());
-  const int signal = signals.wait([&] {
-    (*server)->reloadCertificate();
-    reload(options, (*server)->gateway().access(), audit_file.get());
-  });
-  spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
-  if (node) node->leave();
-  drain(
-      options, signals, [&] { return (*server)->networkStats().open_session_count; },
-      [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); });
+  runUntilSignal(
+      options, signals,
+      {.port = (*server)->port(),
+       .has_page = has_page,
+       .access = (*server)->gateway().access(),
+       .audit_file = audit_file.get(),
+       .reload_certificate = [&] { (*server)->reloadCertificate(); },
+       .leave =
+           [&] {
+             if (node) node->leave();
+           },
+       .session_count = [&] { return (*server)->networkStats().open_session_count; },
+       .drain = [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); }});
   (*server)->stop();
   if (node) node->release();
   node.reset();  // it uses the server
@@ -197,14 +187,7 @@ ProgramCommand addServe(CLI::App& program) {
   const auto options = std::make_shared<ServeOptions>();
   CLI::App* command = program.add_subcommand("serve", "Simulate and serve rooms until interrupted");
   addServeOptions(*command, *options);
-  const auto sources = std::make_shared<std::optional<OptionSources>>();
-  return {command, [options, sources] { return options->prints_config ? printConfig(**sources) : serve(*options); },
-          [&program, command, options, sources]() -> core::Result<void> {
-            auto completed = completeFrontOptions(program, *command, *options);
-            if (!completed) return completed.error();
-            *sources = *std::move(completed);
-            return {};
-          }};
+  return frontCommand(program, *command, options, [options] { return serve(*options); });
 }
 
 }  // namespace spindrift::cli

@@ -205,8 +205,7 @@ core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& co
   if (const std::string tokens = variableOr(kTokensVariable, ""); !tokens.empty()) {
     const OptionSource source = sources.at("tokens_file").source;
     if (source == OptionSource::kEnvironment) {
-      return core::Error{core::ErrorCode::kInvalidInput,
-                         "SPINDRIFT_TOKENS and SPINDRIFT_TOKENS_FILE are both set: unset one of them"};
+      return core::invalid("SPINDRIFT_TOKENS and SPINDRIFT_TOKENS_FILE are both set: unset one of them");
     }
     if (source == OptionSource::kDefault) {
       options.tokens = tokens;
@@ -221,8 +220,7 @@ core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& co
   if (options.tls_cert_file.empty() != options.tls_key_file.empty()) {
     const char* const given = options.tls_cert_file.empty() ? "--tls-key" : "--tls-cert";
     const char* const missing = options.tls_cert_file.empty() ? "--tls-cert" : "--tls-key";
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       std::string(given) + " is given without " + missing + ": TLS needs both files"};
+    return core::invalid(std::string(given) + " is given without " + missing + ": TLS needs both files");
   }
   return sources;
 }

@@ -8,6 +8,8 @@
 #include <spindrift/core/room_name.h>
 #include <spindrift/scene/fidelity.h>
 
+#include "messages.h"
+
 namespace spindrift::cluster {
 namespace {
 
@@ -21,12 +23,6 @@ constexpr auto kRetryPause = 1s;
 /// NATS that takes longer to answer has perhaps not delivered the pulses of the others either.
 constexpr auto kPromptAnswer = 200ms;
 
-core::Bytes serialize(const v1::RoomRecord& record) {
-  core::Bytes bytes(record.ByteSizeLong());
-  record.SerializeWithCachedSizesToArray(bytes.data());
-  return bytes;
-}
-
 }  // namespace
 
 Directory::Directory(std::unique_ptr<bus::KeyValues> values, std::string self, Hooks hooks)
@@ -37,13 +33,18 @@ Directory::~Directory() = default;
 Directory::Entries Directory::parse(const bus::KeyValueMap& values) {
   Entries out;
   for (const auto& [room, value] : values) {
-    Entry entry{.record = {}, .revision = value.revision};
-    if (entry.record.ParseFromArray(value.value.data(), static_cast<int>(value.value.size())) &&
-        core::isRoomName(room)) {
-      out.emplace(room, std::move(entry));
-    }
+    auto record = cluster::parse<v1::RoomRecord>(value.value);
+    if (record && core::isRoomName(room)) out.emplace(room, Entry{*std::move(record), value.revision});
   }
   return out;
+}
+
+v1::RoomRecord Directory::recordOf(const rooms::RoomSetup& room) const {
+  v1::RoomRecord record;
+  record.set_server(self_);
+  record.set_scene(room.scene.name());
+  record.set_fidelity(room.scene.fidelity());
+  return record;
 }
 
 core::Result<bool> Directory::write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision) {
@@ -71,11 +72,7 @@ core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::
       spdlog::info("room {} runs on server {}; it is not opened here", room.name, owner);
       continue;
     }
-    v1::RoomRecord record;
-    record.set_server(self_);
-    record.set_scene(room.scene.name());
-    record.set_fidelity(room.scene.fidelity());
-    const auto mine = write(room.name, record, entry.revision);
+    const auto mine = write(room.name, recordOf(room), entry.revision);
     if (!mine) return mine.error();
     if (*mine)
       out.push_back(std::move(room));
@@ -102,15 +99,10 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
     };
     if (!runs) return finish(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
     closed_.erase(name);
-    v1::RoomRecord record;
-    record.set_server(self_);
-    record.set_scene(shared->scene.name());
-    record.set_fidelity(shared->scene.fidelity());
-    const auto entered = write(name, record, 0);
+    const auto entered = write(name, recordOf(*shared), 0);
     if (!entered) return finish(entered.error());
     if (!*entered) {
-      return finish(core::Error{core::ErrorCode::kInvalidInput,
-                                "there is a room '" + name + "' in the cluster already: choose another name"});
+      return finish(core::invalid("there is a room '" + name + "' in the cluster already: choose another name"));
     }
     simulation_->openRoom(std::move(*shared), [this, name, finish](const core::Result<void>& opened) {
       if (opened)

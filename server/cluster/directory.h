@@ -2,12 +2,11 @@
 // reads a copy of it that NATS keeps up to date (bus::KeyValues), and asks NATS only before it changes something.
 #pragma once
 
-#include <chrono>
+#include <atomic>
 #include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -62,6 +61,8 @@ class Directory {
   };
   using Entries = std::map<std::string, Entry>;
   static Entries parse(const bus::KeyValueMap& values);
+  /// Returns the entry of a room that runs here.
+  [[nodiscard]] v1::RoomRecord recordOf(const rooms::RoomSetup& room) const;
   core::Result<bool> write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision);
   void reviewNow();
   /// Removes the entries of closed rooms.

@@ -13,7 +13,7 @@ net::HttpReply text(unsigned status, std::string body) {
 }  // namespace
 
 core::Result<std::unique_ptr<EdgeServer>> EdgeServer::start(EdgeOptions options) {
-  auto self = std::unique_ptr<EdgeServer>(new EdgeServer(std::move(options.access), options.sessions));
+  auto self = std::unique_ptr<EdgeServer>(new EdgeServer(std::move(options.access)));
   options.node.runs_rooms = false;
   auto node = Node::connect(options.node);
   if (!node) return node.error();

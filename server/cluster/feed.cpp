@@ -8,6 +8,7 @@
 #include <spindrift/core/room_name.h>
 #include <spindrift/wire/client_message.h>
 
+#include "messages.h"
 #include "node_name.h"
 
 namespace spindrift::cluster {
@@ -23,6 +24,11 @@ constexpr std::chrono::seconds kUnlistedInterval{1};
 
 core::SessionId sessionOf(std::uint32_t prefix, std::uint64_t session) {
   return (core::SessionId{prefix} << kPrefixShift) | session;
+}
+
+/// Returns the number that the session has at its node.
+std::uint64_t numberAtNode(core::SessionId session) {
+  return session & ((core::SessionId{1} << kPrefixShift) - 1);
 }
 
 v1::ReducedCounts toWire(const core::ReducedCounts& counts) {
@@ -98,9 +104,7 @@ void Feed::send(const std::string& room, const std::string& node, Link& link, v1
   message.set_sequence(++link.sequence);
   v1::ToNode out;
   *out.mutable_from_room() = std::move(message);
-  core::Bytes bytes(out.ByteSizeLong());
-  out.SerializeWithCachedSizesToArray(bytes.data());
-  bus_.publish(subjects_.node(node), bytes);
+  bus_.publish(subjects_.node(node), serialize(out));
 }
 
 void Feed::sendView(const std::string& name, FedRoom& room, const std::string& node, Link& link,
@@ -119,7 +123,6 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   *view.mutable_people() = room.room->roster().people();
   view.set_node_time_s(node_time_s);
   view.set_room_time_s(core::monotonic_s());
-  view.set_run(room.run);
   *view.mutable_access() = room.room->access();
   *view.mutable_reduced_counts() = toWire(snapshot->reduced_counts);
   send(name, node, link, std::move(message));
@@ -156,9 +159,9 @@ void Feed::attach(FedRoom& room, const v1::ToRoom& message) {
 }
 
 void Feed::take(const std::string& name, core::ByteView bytes) {
-  v1::ToRoom message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size())) || !core::isRoomName(message.node()))
-    return;
+  auto parsed = parse<v1::ToRoom>(bytes);
+  if (!parsed || !core::isRoomName(parsed->node())) return;
+  v1::ToRoom& message = *parsed;
   std::unique_lock lock(mutex_);
   const auto found = rooms_.find(name);
   if (found == rooms_.end()) return;
@@ -188,15 +191,10 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
       admitted.set_resumed(admission.resumed);
       send(name, message.node(), link, std::move(answer));
       if (!admission.displaced) return;
-      const core::SessionId displaced = *admission.displaced;
-      if (displaced >> kPrefixShift == 0) {
-        lock.unlock();
-        return events_.displaced(displaced);
-      }
       v1::FromRoom notice;
-      notice.set_displaced_session(displaced & ((core::SessionId{1} << kPrefixShift) - 1));
+      notice.set_displaced_session(numberAtNode(*admission.displaced));
       lock.unlock();
-      sendOutcome(displaced, std::move(notice));
+      if (!sendToNodeOf(*admission.displaced, std::move(notice))) events_.displaced(*admission.displaced);
       return;
     }
     case v1::ToRoom::kLeaveSession: {
@@ -276,7 +274,7 @@ void Feed::giveUp(const std::string& name) {
   rooms_.erase(found);
 }
 
-bool Feed::sendOutcome(core::SessionId session, v1::FromRoom message) {
+bool Feed::sendToNodeOf(core::SessionId session, v1::FromRoom message) {
   const auto prefix = static_cast<std::uint32_t>(session >> kPrefixShift);
   if (prefix == 0) return false;
   const std::lock_guard lock(mutex_);
@@ -291,23 +289,21 @@ bool Feed::sendOutcome(core::SessionId session, v1::FromRoom message) {
 }
 
 bool Feed::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
-  const core::SessionId session = command.sender.session_id;
   v1::FromRoom message;
   v1::Outcome& outcome = *message.mutable_outcome();
-  outcome.set_session(session & ((core::SessionId{1} << kPrefixShift) - 1));
+  outcome.set_session(numberAtNode(command.sender.session_id));
   outcome.mutable_ack()->set_command_id(command.id());
   outcome.mutable_ack()->set_applied_tick(tick);
   outcome.mutable_ack()->set_boat_id(boat_id);
-  return sendOutcome(session, std::move(message));
+  return sendToNodeOf(command.sender.session_id, std::move(message));
 }
 
 bool Feed::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
-  const core::SessionId session = command.sender.session_id;
   v1::FromRoom message;
   v1::Outcome& outcome = *message.mutable_outcome();
-  outcome.set_session(session & ((core::SessionId{1} << kPrefixShift) - 1));
+  outcome.set_session(numberAtNode(command.sender.session_id));
   *outcome.mutable_reject() = wire::toWire(rejection);
-  return sendOutcome(session, std::move(message));
+  return sendToNodeOf(command.sender.session_id, std::move(message));
 }
 
 }  // namespace spindrift::cluster

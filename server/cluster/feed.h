@@ -33,11 +33,6 @@ inline constexpr std::chrono::milliseconds kPulseInterval{200};
 /// Returns the role that a message of another process names; kViewer for one that does not exist.
 core::Role roleOf(v1::Role role);
 
-struct FeedStats {
-  std::uint64_t frame_count = 0;
-  std::uint64_t lost_link_count = 0;  ///< whose node fell silent
-};
-
 /// Thread-safe: called by the simulation thread, the encoder thread, the bus and the thread of the node.
 class Feed final : public service::RemoteAudience {
  public:
@@ -61,7 +56,9 @@ class Feed final : public service::RemoteAudience {
               Clock::time_point now);
   /// The room continues at another server, to which the nodes attach: they are not told that it was closed.
   void giveUp(const std::string& name);
-  [[nodiscard]] FeedStats stats() const { return {.frame_count = frame_count_, .lost_link_count = lost_link_count_}; }
+  [[nodiscard]] std::uint64_t frameCount() const { return frame_count_; }
+  /// Links whose node fell silent.
+  [[nodiscard]] std::uint64_t lostLinkCount() const { return lost_link_count_; }
 
   // RemoteAudience
   void sceneChanged(const rooms::Room& room) override;
@@ -109,8 +106,8 @@ class Feed final : public service::RemoteAudience {
   /// Call with the mutex held.
   void send(const std::string& room, const std::string& node, Link& link, v1::FromRoom message) const;
   void sendView(const std::string& name, FedRoom& room, const std::string& node, Link& link, double node_time_s) const;
-  /// Sends the outcome to the node of the command's sender; false: it is of this process.
-  bool sendOutcome(core::SessionId session, v1::FromRoom message);
+  /// Sends the message to the node of the session; false: it is of this process.
+  bool sendToNodeOf(core::SessionId session, v1::FromRoom message);
 
   bus::Bus& bus_;
   const Subjects subjects_;

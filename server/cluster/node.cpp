@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <atomic>
 #include <condition_variable>
 #include <map>
@@ -11,10 +10,11 @@
 #include <spindrift/bus/bus.h>
 #include <spindrift/cluster/node.h>
 #include <spindrift/core/room_name.h>
+#include <spindrift/service/metrics.h>
 
-#include "cluster_metrics.h"
 #include "directory.h"
 #include "feed.h"
+#include "messages.h"
 #include "node_name.h"
 #include "placement.h"
 #include "remote_room.h"
@@ -34,13 +34,6 @@ constexpr auto kRound = 50ms;
 constexpr auto kDirectoryInterval = 250ms;
 constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
 constexpr std::size_t kPulsesWaitingMaxBytes = 4u << 20;
-
-template <typename Message>
-std::optional<Message> parse(core::ByteView bytes) {
-  Message message;
-  if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return std::nullopt;
-  return message;
-}
 
 class NodeImpl final : public Node {
  public:
@@ -89,6 +82,7 @@ class NodeImpl final : public Node {
   [[nodiscard]] bool hasHeardAll() const;
   /// Joins the list of rooms of this process, if it runs some, with those of other servers.
   void listRooms(const net::HttpRequest& request, std::vector<std::string> servers, const net::HttpResponder& respond);
+  /// Returns one metric after the other, as Prometheus text; docs/cluster.md explains them.
   [[nodiscard]] std::string metrics() const;
   [[nodiscard]] std::string nameTaken(const std::string& process) const;
   [[nodiscard]] Servers servers() const {
@@ -267,9 +261,7 @@ void NodeImpl::sendPulse(Clock::time_point now) {
   pulse.set_load(simulation_->busyShare());
   pulse.set_room_max_count(static_cast<std::uint32_t>(options_.room_max_count));
   pulse.set_is_leaving(leaving_);
-  core::Bytes bytes(pulse.ByteSizeLong());
-  pulse.SerializeWithCachedSizesToArray(bytes.data());
-  bus_->publish(subjects_.servers(), bytes);
+  bus_->publish(subjects_.servers(), serialize(pulse));
   const std::lock_guard lock(mutex_);
   servers_.note(pulse, now);  // NATS sends no message back to its sender
 }
@@ -314,7 +306,7 @@ core::Result<void> NodeImpl::accept(const std::string& room) {
   if (!hasHeardAll()) return Error{ErrorCode::kUnavailable, kNotHeardAll};
   std::string names;
   for (const std::string& known : servers().rooms()) names += (names.empty() ? "" : ", ") + known;
-  return Error{ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
+  return core::invalid("room '" + room + "' does not exist; rooms are: " + names);
 }
 
 bool NodeImpl::hasHeardAll() const {
@@ -365,19 +357,35 @@ void NodeImpl::listRooms(const net::HttpRequest& request, std::vector<std::strin
 }
 
 std::string NodeImpl::metrics() const {
-  ClusterCounts out{.bus = bus_->stats()};
+  const bus::BusStats bus = bus_->stats();
+  LinkStats links;  // those that ended included
+  std::size_t alive_server_count = 0;
   {
     const std::lock_guard lock(mutex_);
-    out.links = ended_;
-    out.alive_server_count = servers_.alive(Clock::now()).size();
-    for (const auto& [name, room] : remote_) out.links.add(room->stats());
+    links = ended_;
+    alive_server_count = servers_.alive(Clock::now()).size();
+    for (const auto& [name, room] : remote_) links.add(room->stats());
   }
-  if (feed_) {
-    out.server = {.feed = feed_->stats(),
-                  .taken_room_count = directory_->takenCount(),
-                  .directory_failure_count = directory_->failureCount()};
-  }
-  return metricsText(out);
+  std::string out;
+  const auto add = [&out](const char* name, const char* type, const char* help, auto value) {
+    out += service::metric(name, type, help, static_cast<double>(value));
+  };
+  add("nats_connected", "gauge", "1 while there is a connection to NATS.", bus.is_connected);
+  add("nats_reconnects_total", "counter", "Times the connection to NATS came back.", bus.reconnect_count);
+  add("nats_dropped_messages_total", "counter",
+      "Messages lost: not sent while disconnected, or more than a receiver took.", bus.dropped_message_count);
+  add("cluster_servers", "gauge", "Servers of the cluster that are alive.", alive_server_count);
+  add("cluster_remote_frames_total", "counter", "Frames received from rooms of other servers.", links.frame_count);
+  add("cluster_remote_gaps_total", "counter", "Times that frames or messages of a room were missing.", links.gap_count);
+  add("cluster_lost_links_total", "counter", "Times that the server of a room fell silent.", links.lost_link_count);
+  if (!feed_) return out;
+  add("cluster_published_frames_total", "counter", "Frames published for nodes.", feed_->frameCount());
+  add("cluster_lost_nodes_total", "counter", "Nodes that fell silent while they watched a room.",
+      feed_->lostLinkCount());
+  add("cluster_rooms_taken_total", "counter", "Rooms taken over from other servers.", directory_->takenCount());
+  add("cluster_directory_failures_total", "counter",
+      "Rooms that could not be taken over, and failures of the directory of rooms.", directory_->failureCount());
+  return out;
 }
 
 }  // namespace
@@ -385,8 +393,7 @@ std::string NodeImpl::metrics() const {
 core::Result<std::unique_ptr<Node>> Node::connect(const NodeOptions& options) {
   for (const auto& [what, name] : {std::pair("--node", options.name), std::pair("--cluster", options.cluster)}) {
     if (!core::isRoomName(name)) {
-      return Error{ErrorCode::kInvalidInput,
-                   std::string(what) + " '" + name + "': names have " + std::string(core::kRoomNameRule)};
+      return core::invalid(std::string(what) + " '" + name + "': names have " + std::string(core::kRoomNameRule));
     }
   }
   auto bus =

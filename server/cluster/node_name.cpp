@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "messages.h"
+
 namespace spindrift::cluster {
 namespace {
 
@@ -50,25 +52,24 @@ void NodeName::pulse() {
   core::Bytes bytes;
   {
     const std::lock_guard lock(mutex_);
-    bytes.resize(mine_.ByteSizeLong());
-    mine_.SerializeWithCachedSizesToArray(bytes.data());
+    bytes = serialize(mine_);
   }
   bus_.publish(subject_, bytes);
 }
 
 void NodeName::take(core::ByteView message) {
-  v1::NamePulse other;
-  if (!other.ParseFromArray(message.data(), static_cast<int>(message.size()))) return;
+  const auto other = parse<v1::NamePulse>(message);
+  if (!other) return;
   std::string keeper;
   bool is_asked = false;
   {
     const std::lock_guard lock(mutex_);
     if (!taken_by_.empty()) return;
-    if (yields(mine_, other)) {
-      taken_by_ = other.process().empty() ? "another process" : other.process();
+    if (yields(mine_, *other)) {
+      taken_by_ = other->process().empty() ? "another process" : other->process();
       if (mine_.is_settled()) keeper = taken_by_;
     } else {
-      is_asked = !other.is_settled();  // it starts, and waits for an answer
+      is_asked = !other->is_settled();  // it starts, and waits for an answer
     }
   }
   told_.notify_all();

@@ -2,7 +2,6 @@
 // go astray, and people with them.
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstdint>
@@ -12,7 +11,6 @@
 #include <string>
 
 #include <spindrift/bus/bus.h>
-#include <spindrift/core/result.h>
 #include <spindrift/v1/cluster.pb.h>
 
 namespace spindrift::cluster {

@@ -12,6 +12,16 @@
 #include "remote_room.h"
 
 namespace spindrift::cluster {
+namespace {
+
+std::array<std::uint32_t, codec::kStreamCount> fromMessage(const v1::ReducedCounts& message) {
+  std::array<std::uint32_t, codec::kStreamCount> out{};
+  std::ranges::copy_n(message.counts().begin(), std::min<std::ptrdiff_t>(message.counts_size(), codec::kStreamCount),
+                      out.begin());
+  return out;
+}
+
+}  // namespace
 
 void RemoteRoom::take(const v1::FromRoom& message) {
   std::vector<Refused> refused;
@@ -49,10 +59,7 @@ void RemoteRoom::take(const v1::FromRoom& message) {
     case v1::FromRoom::kReducedCounts: {
       Dropped dropped;
       const std::lock_guard lock(mutex_);
-      reduced_counts_.emplace();
-      std::ranges::copy_n(message.reduced_counts().counts().begin(),
-                          std::min<std::ptrdiff_t>(message.reduced_counts().counts_size(), codec::kStreamCount),
-                          reduced_counts_->begin());
+      reduced_counts_ = fromMessage(message.reduced_counts());
       return reviewStreams(Clock::now(), true, dropped);
     }
     case v1::FromRoom::kRefused:
@@ -89,12 +96,7 @@ void RemoteRoom::takeView(const v1::RoomView& message) {
       for (Feed& one : levels) one.kept.forget();
     }
     reduced_counts_.reset();
-    if (message.has_reduced_counts()) {
-      reduced_counts_.emplace();
-      std::ranges::copy_n(message.reduced_counts().counts().begin(),
-                          std::min<std::ptrdiff_t>(message.reduced_counts().counts_size(), codec::kStreamCount),
-                          reduced_counts_->begin());
-    }
+    if (message.has_reduced_counts()) reduced_counts_ = fromMessage(message.reduced_counts());
     if (!attached_) {
       attached_ = true;
       for (const auto& [session, guest] : guests_) {

@@ -11,6 +11,7 @@
 #include <spindrift/wire/server_message.h>
 
 #include "feed.h"
+#include "messages.h"
 
 namespace spindrift::cluster {
 namespace {
@@ -67,9 +68,7 @@ RemoteRoom::RemoteRoom(std::string name, std::string node, bus::Bus& bus, const 
 void RemoteRoom::send(v1::ToRoom message) {
   message.set_node(node_);
   message.set_link(link_);
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  bus_.publish(subjects_.room(name_), bytes);
+  bus_.publish(subjects_.room(name_), serialize(message));
 }
 
 void RemoteRoom::attach(Clock::time_point now) {

@@ -10,6 +10,7 @@
 #include <spindrift/wire/client_message.h>
 
 #include "feed.h"
+#include "messages.h"
 #include "request_route.h"
 
 namespace spindrift::cluster {
@@ -20,12 +21,6 @@ using namespace std::chrono_literals;
 /// Below the 30 s that a client's connection waits. Opening a room compiles its shaders.
 constexpr auto kAnswerPatience = 25s;
 constexpr auto kListPatience = 1s;
-
-core::Bytes serialize(const google::protobuf::Message& message) {
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return bytes;
-}
 
 v1::Grant toMessage(const access::Grant& grant) {
   v1::Grant out;

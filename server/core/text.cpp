@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 
 #include <spindrift/core/text.h>
 
@@ -16,6 +17,19 @@ std::string formatQuantity(double value, std::string_view unit) {
   std::string text = formatNumber(value);
   if (!unit.empty()) text.append(" ").append(unit);
   return text;
+}
+
+std::string rfc3339(std::chrono::system_clock::time_point time) {
+  const auto second = std::chrono::floor<std::chrono::seconds>(time);
+  const std::time_t since_1970_s = std::chrono::system_clock::to_time_t(second);
+  std::tm utc{};
+  ::gmtime_r(&since_1970_s, &utc);
+  char date[40];
+  std::strftime(date, sizeof date, "%FT%T", &utc);
+  char milliseconds[16];
+  std::snprintf(milliseconds, sizeof milliseconds, ".%03dZ",
+                static_cast<int>(std::chrono::floor<std::chrono::milliseconds>(time - second).count()));
+  return std::string(date) + milliseconds;
 }
 
 std::size_t utf8SequenceLength(std::string_view text, std::size_t at) {

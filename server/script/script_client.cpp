@@ -1,7 +1,6 @@
 #include "script_client.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
 #include <random>
 #include <utility>

@@ -13,7 +13,6 @@ namespace spindrift::script {
 namespace {
 
 using core::Error;
-using core::ErrorCode;
 
 class FirstError final : public google::protobuf::io::ErrorCollector {
  public:
@@ -68,8 +67,8 @@ core::Result<v1::Script> parseScript(const std::string& text, const std::string&
   FirstError errors(label);
   google::protobuf::TextFormat::Parser parser;
   parser.RecordErrorsTo(&errors);
-  if (!parser.ParseFromString(text, &script)) return Error{ErrorCode::kInvalidInput, errors.text};
-  const auto refuse = [&](const std::string& why) { return Error{ErrorCode::kInvalidInput, label + ": " + why}; };
+  if (!parser.ParseFromString(text, &script)) return core::invalid(errors.text);
+  const auto refuse = [&](const std::string& why) { return core::invalid(label + ": " + why); };
   if (script.clients_size() == 0) script.add_clients()->set_name("client");
   if (script.clients_size() > kScriptClientMaxCount) {
     return refuse(fmt::format("{} clients; at most {}", script.clients_size(), kScriptClientMaxCount));

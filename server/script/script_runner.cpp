@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -102,6 +103,19 @@ class Runner {
     return {passed, std::move(detail)};
   }
 
+  /// The same for what frames of a layer show: `shows` looks at each once, until one shows what is wanted.
+  Outcome awaitFrame(ScriptClient& client, v1::Layer layer, double duration_s, const std::function<bool()>& shows,
+                     const std::function<std::string()>& seen) {
+    std::uint64_t looked_count = 0;
+    bool has_shown = false;
+    const auto holds = [&] {
+      const std::uint64_t frame_count = client.tally(layer).frame_count;
+      if (!has_shown && std::exchange(looked_count, frame_count) != frame_count) has_shown = shows();
+      return has_shown;
+    };
+    return await(client, duration_s, holds, seen);
+  }
+
   static std::string endOf(const ScriptClient& client) {
     return fmt::format("{} {}", client.lastEnd()->code, client.lastEnd()->reason);
   }
@@ -191,17 +205,13 @@ class Runner {
   Outcome expectSurface(const v1::ExpectSurface& step, ScriptClient& client) {
     client.needLayer(v1::LAYER_SURFACE);
     std::optional<double> seen_m;
-    std::uint64_t looked_count = 0;
-    const auto holds = [&] {
-      if (client.tally(v1::LAYER_SURFACE).frame_count == looked_count) return false;
-      looked_count = client.tally(v1::LAYER_SURFACE).frame_count;
+    const auto shows = [&] {
       seen_m = elevation_m(*client.newest(v1::LAYER_SURFACE), step.x_m(), step.z_m());
       return seen_m && (!step.has_min_m() || *seen_m >= step.min_m()) && (!step.has_max_m() || *seen_m <= step.max_m());
     };
-    bool held = false;
-    return await(
-        client, patience_s(step), [&] { return held = held || holds(); },
-        [&] { return seen_m ? fmt::format("elevation {:.4f} m", *seen_m) : std::string("no surface there"); });
+    return awaitFrame(client, v1::LAYER_SURFACE, patience_s(step), shows, [&] {
+      return seen_m ? fmt::format("elevation {:.4f} m", *seen_m) : std::string("no surface there");
+    });
   }
 
   static std::optional<double> elevation_m(const v1::LayerFrame& frame, double x_m, double z_m) {
@@ -219,11 +229,7 @@ class Runner {
   Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {
     client.needLayer(v1::LAYER_DIAGNOSTICS);
     std::string seen = "no diagnostics";
-    std::uint64_t looked_count = 0;
-    bool held = false;
-    const auto holds = [&] {
-      if (held || client.tally(v1::LAYER_DIAGNOSTICS).frame_count == looked_count) return held;
-      looked_count = client.tally(v1::LAYER_DIAGNOSTICS).frame_count;
+    const auto shows = [&] {
       const auto& gauges = client.diagnostics()->gauges();
       const auto gauge = std::ranges::find(gauges, step.gauge(), &v1::GaugeReading::name);
       if (gauge == gauges.end()) {
@@ -232,15 +238,14 @@ class Runner {
       }
       seen = fmt::format("elevation {:.4f} m, highest {:.4f} m, lowest {:.4f} m", gauge->elevation_m(),
                          gauge->highest_m(), gauge->lowest_m());
-      held = (!step.has_min_m() || gauge->elevation_m() >= step.min_m()) &&
+      return (!step.has_min_m() || gauge->elevation_m() >= step.min_m()) &&
              (!step.has_max_m() || gauge->elevation_m() <= step.max_m()) &&
              (!step.has_highest_min_m() || gauge->highest_m() >= step.highest_min_m()) &&
              (!step.has_highest_max_m() || gauge->highest_m() <= step.highest_max_m()) &&
              (!step.has_lowest_min_m() || gauge->lowest_m() >= step.lowest_min_m()) &&
              (!step.has_lowest_max_m() || gauge->lowest_m() <= step.lowest_max_m());
-      return held;
     };
-    return await(client, patience_s(step), holds, [&] { return seen; });
+    return awaitFrame(client, v1::LAYER_DIAGNOSTICS, patience_s(step), shows, [&] { return seen; });
   }
 
   Outcome expectBoat(const v1::ExpectBoat& step, ScriptClient& client) {
@@ -252,11 +257,7 @@ class Runner {
       boat_id = saved->second;
     }
     std::string seen = "no frame of the boats";
-    std::uint64_t looked_count = 0;
-    bool held = false;
-    const auto holds = [&] {
-      if (held || client.tally(v1::LAYER_BODIES).frame_count == looked_count) return held;
-      looked_count = client.tally(v1::LAYER_BODIES).frame_count;
+    const auto shows = [&] {
       const auto bodies = codec::decodeBodies(*client.newest(v1::LAYER_BODIES));
       if (!bodies) return false;
       const auto boat = std::ranges::find(*bodies, boat_id, &codec::BodySample::boat_id);
@@ -267,9 +268,9 @@ class Runner {
       const double x_m = boat->position_m[0];
       const double z_m = boat->position_m[2];
       seen = fmt::format("boat {} at {:.2f}, {:.2f} m", boat_id, x_m, z_m);
-      return held = !step.has_radius_m() || std::hypot(x_m - step.x_m(), z_m - step.z_m()) <= step.radius_m();
+      return !step.has_radius_m() || std::hypot(x_m - step.x_m(), z_m - step.z_m()) <= step.radius_m();
     };
-    return await(client, patience_s(step), holds, [&] { return seen; });
+    return awaitFrame(client, v1::LAYER_BODIES, patience_s(step), shows, [&] { return seen; });
   }
 
   Outcome expectParticles(const v1::ExpectParticles& step, ScriptClient& client) {

@@ -23,8 +23,6 @@
 
 #include "commands.h"
 #include "forms.h"
-#include "output.h"
-#include "program.h"
 
 namespace spindrift::cli {
 namespace {

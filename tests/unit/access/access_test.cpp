@@ -79,16 +79,17 @@ TEST(Access, ALineCanNameRoomsAPersonAndAnEnd) {
   const Access access = parsed(
       "operator aaaaaaaaaaaaaaaa room=lab,tank until=2026-11-22T00:00:00Z sub=ada\nplayer bbbbbbbbbbbbbbbb # the "
       "class");
-  const auto grant = access.resolve("aaaaaaaaaaaaaaaa", "tank", kNow);
+  const auto grant = access.resolve("aaaaaaaaaaaaaaaa", kNow);
   ASSERT_TRUE(grant) << grant.error().message;
   EXPECT_EQ(grant->subject, "ada");
   EXPECT_TRUE(grant->is_person);
   EXPECT_TRUE(grant->expires);
-  const auto elsewhere = access.resolve("aaaaaaaaaaaaaaaa", "main", kNow);
-  ASSERT_FALSE(elsewhere);
-  EXPECT_THAT(elsewhere.error().message, HasSubstr("not for room 'main'"));
-  const auto shared = access.resolve("bbbbbbbbbbbbbbbb", "main", kNow);
+  EXPECT_TRUE(grant->allows("tank"));
+  EXPECT_FALSE(grant->allows("main"));
+  EXPECT_THAT(otherRoom("main"), HasSubstr("not for room 'main'"));
+  const auto shared = access.resolve("bbbbbbbbbbbbbbbb", kNow);
   ASSERT_TRUE(shared);
+  EXPECT_TRUE(shared->allows("main"));
   EXPECT_EQ(shared->subject, "tokens:2") << "the audit log can name the line";
   EXPECT_FALSE(shared->is_person) << "several people may use it";
 }

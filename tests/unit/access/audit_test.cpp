@@ -6,8 +6,7 @@
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 
-#include <spindrift/access/audit_file.h>
-#include <spindrift/access/audit_line.h>
+#include <spindrift/access/audit_log.h>
 
 #include "temporary_folder.h"
 

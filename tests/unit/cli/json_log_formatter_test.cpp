@@ -1,12 +1,12 @@
 // Every log line is one JSON object, whatever the message holds.
-#include "json_log_formatter.h"
-
 #include <chrono>
 #include <string>
 
 #include <boost/json/parse.hpp>
 #include <gtest/gtest.h>
 #include <spdlog/details/log_msg.h>
+
+#include "logging.h"
 
 namespace spindrift::test {
 namespace {

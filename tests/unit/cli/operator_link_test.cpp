@@ -43,8 +43,9 @@ TEST_F(OperatorLink, GuestsOfAReachableServerArePlayers) {
 TEST_F(OperatorLink, TokenOfAnOperatorChangesAtEachStart) {
   const cli::ServeOptions first = started({"--address", "0.0.0.0"});
   const auto access = cli::loadAccess(first);
-  const auto grant = access->resolve(first.operator_token, "main", system_clock::now());
+  const auto grant = access->resolve(first.operator_token, system_clock::now());
   ASSERT_TRUE(grant);
+  EXPECT_TRUE(grant->allows("main"));
   EXPECT_EQ(grant->role, Role::kOperator);
   EXPECT_FALSE(grant->is_person);
   EXPECT_NE(started({"--address", "0.0.0.0"}).operator_token, first.operator_token);

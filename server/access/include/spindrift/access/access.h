@@ -32,12 +32,9 @@ class Access {
   /// Accepts JSON Web Tokens of these keys, too.
   void acceptJwts(std::vector<JwtKey> keys, JwtRules rules);
 
-  /// Returns what a token allows; the empty token is that of a client without one. The error gives the reason of a
-  /// refusal and never contains the token.
+  /// Returns what a token allows, and in which rooms (Grant::allows()); the empty token is that of a client without
+  /// one. The error gives the reason of a refusal and never contains the token.
   [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::chrono::system_clock::time_point now) const;
-  /// Returns the same for one room: also refuses tokens of other rooms.
-  [[nodiscard]] core::Result<Grant> resolve(std::string_view token, std::string_view room,
-                                            std::chrono::system_clock::time_point now) const;
   /// Returns the token of an `Authorization: Bearer TOKEN` header; empty for an empty header. kInvalidInput for other
   /// schemes.
   static core::Result<std::string> bearerToken(std::string_view authorization);

@@ -6,8 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include <spindrift/core/bytes.h>
-
 namespace spindrift::access {
 
 using Digest = std::array<std::uint8_t, 32>;

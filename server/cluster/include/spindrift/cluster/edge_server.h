@@ -16,7 +16,6 @@ struct EdgeOptions {
   NodeOptions node;
   net::ServerOptions network;
   service::AccessOptions access;
-  service::SessionRules sessions{};
 };
 
 class EdgeServer final : public net::Application {
@@ -49,8 +48,7 @@ class EdgeServer final : public net::Application {
   void httpRequest(const net::HttpRequest& request, net::HttpResponder respond) override;
 
  private:
-  EdgeServer(service::AccessOptions access, const service::SessionRules& rules)
-      : access_(std::move(access)), sessions_(rules, access_, counters_) {}
+  explicit EdgeServer(service::AccessOptions access) : access_(std::move(access)), sessions_({}, access_, counters_) {}
 
   std::atomic<bool> is_draining_{false};
   service::CommandCounters counters_;

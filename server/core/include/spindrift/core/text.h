@@ -1,6 +1,7 @@
 // Text for people: formatted numbers, and untrusted text made safe to show.
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -17,6 +18,9 @@ std::string formatQuantity(double value, std::string_view unit);
 inline std::string metres(double value_m) {
   return formatQuantity(value_m, "m");
 }
+
+/// Formats in UTC with milliseconds (RFC 3339): "2026-01-31T12:00:00.123Z".
+std::string rfc3339(std::chrono::system_clock::time_point time);
 
 /// Returns the length in bytes of the UTF-8 sequence that starts at `text[at]`; 0 where none is valid.
 std::size_t utf8SequenceLength(std::string_view text, std::size_t at);

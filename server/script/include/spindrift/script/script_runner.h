@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include <spindrift/core/result.h>
 #include <spindrift/net/client.h>
 #include <spindrift/v1/script.pb.h>
 

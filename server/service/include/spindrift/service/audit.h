@@ -9,8 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include <spindrift/access/audit_file.h>
-#include <spindrift/access/audit_line.h>
+#include <spindrift/access/audit_log.h>
 #include <spindrift/access/grant.h>
 #include <spindrift/core/token_bucket.h>
 #include <spindrift/rooms/command.h>

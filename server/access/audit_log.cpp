@@ -1,18 +1,24 @@
 #include <cerrno>
 #include <cstring>
 
+#include <boost/json/object.hpp>
+#include <boost/json/parse.hpp>
+#include <boost/json/serialize.hpp>
 #include <fcntl.h>
 #include <spdlog/spdlog.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <spindrift/access/audit_file.h>
+#include <spindrift/access/audit_log.h>
+#include <spindrift/core/text.h>
 
 namespace spindrift::access {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
+constexpr std::size_t kTextMaxBytes = 512;
+constexpr std::size_t kContentMaxBytes = 16 * 1024;
 /// A disk that stays full is complained about once in this time.
 constexpr std::chrono::seconds kSameErrorPause{60};
 
@@ -21,6 +27,39 @@ int openForAppending(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+std::string auditLine(const AuditEvent& event, std::chrono::system_clock::time_point now) {
+  boost::json::object out;
+  const auto text = [&](const char* field, std::string_view value) {
+    // Without control and direction characters, too: the log is read in terminals.
+    if (!value.empty()) out[field] = core::cleanText(value, kTextMaxBytes);
+  };
+  const auto number = [&](const char* field, std::uint64_t value, bool is_there) {
+    if (is_there) out[field] = value;
+  };
+  out["time"] = core::rfc3339(now);
+  text("event", event.event);
+  text("room", event.room);
+  text("kind", event.kind);
+  if (!event.content.empty()) {
+    boost::system::error_code error;
+    auto content = event.content.size() <= kContentMaxBytes ? boost::json::parse(event.content, error)
+                                                            : boost::json::value("too long to show");
+    out["content"] = error ? boost::json::value("not JSON") : std::move(content);
+  }
+  text("outcome", event.outcome);
+  text("reason", event.reason);
+  text("message", event.message);
+  number("tick", event.tick, event.has_tick);
+  text("role", event.role);
+  text("subject", event.subject);
+  text("name", event.name);
+  number("person_id", event.person_id, event.person_id != 0);
+  number("session_id", event.session_id, event.session_id != 0);
+  text("peer", event.peer);
+  number("left_out", event.left_out_count, event.left_out_count != 0);
+  return boost::json::serialize(out) + "\n";
+}
 
 core::Result<std::unique_ptr<AuditFile>> AuditFile::open(std::filesystem::path file) {
   const int descriptor = openForAppending(file);

@@ -1,10 +1,16 @@
-#include "program.h"
+#include "commands.h"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <exception>
+#include <fstream>
+
+#include <boost/json/serialize.hpp>
 
 #include <spindrift/core/version.h>
 
+#include "forms.h"
 #include "logging.h"
 #include "option_sources.h"
 
@@ -12,12 +18,6 @@ namespace spindrift::cli {
 namespace {
 
 constexpr int kUsageError = 2;
-
-/// Gives the options that have no flag the values of the environment, and those that the command takes from a file.
-core::Result<void> completeOptions(CLI::App& program, const ProgramCommand& command) {
-  if (command.complete) return command.complete();
-  return OptionSources{&program}.takeEnvironment();
-}
 
 int parseAndRun(CLI::App& program, const std::vector<ProgramCommand>& commands, const LogOptions& log, int argc,
                 char** argv) {
@@ -35,7 +35,7 @@ int parseAndRun(CLI::App& program, const std::vector<ProgramCommand>& commands, 
   }
   for (const ProgramCommand& command : commands) {
     if (!command.parser->parsed()) continue;
-    const auto completed = completeOptions(program, command);
+    const auto completed = command.complete ? command.complete() : OptionSources{&program}.takeEnvironment();
     setUpLogging(log);  // also before a failure is reported, which has the form of the log
     return completed ? command.run() : fail(completed.error());
   }
@@ -43,6 +43,42 @@ int parseAndRun(CLI::App& program, const std::vector<ProgramCommand>& commands, 
 }
 
 }  // namespace
+
+void addDevice(CLI::App& command, std::string& device) {
+  command.add_option("--device", device, "auto, software, or a device from `info`: its number, DRM file or UUID")
+      ->check(isText())
+      ->capture_default_str();
+}
+
+void addFidelity(CLI::App& command, std::string& fidelity) {
+  command.add_option("--fidelity", fidelity, "Fidelity of all scenes, in place of the one in their files")
+      ->check(CLI::IsMember({"draft", "balanced", "fine", "reference"}));
+}
+
+void addJson(CLI::App& command, std::string& file) {
+  command.add_option("--json", file, "Write JSON to this file, - = standard output")->check(isOutputFile());
+}
+
+core::Result<void> writeJson(const std::string& file, const boost::json::value& value, const std::string& option) {
+  if (file.empty()) return {};
+  const std::string text = boost::json::serialize(value) + "\n";
+  if (file == "-") {
+    std::fwrite(text.data(), 1, text.size(), stdout);
+    return {};
+  }
+  std::ofstream out(file, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out)
+    return core::Error{core::ErrorCode::kUnavailable,
+                       option + " '" + file + "': cannot be written: " + std::strerror(errno)};
+  return {};
+}
+
+int fail(const core::Error& error) {
+  reportFailure(error.message);
+  return core::exitCode(error.code);
+}
 
 int runProgram(const std::string& name, const std::string& description,
                const std::function<std::vector<ProgramCommand>(CLI::App&)>& add, int argc, char** argv) {
