@@ -277,16 +277,9 @@ void SimulationThread::end(const std::shared_ptr<Room>& room, const std::functio
   }
   before(*room);
   room->abandonCommands();
-  summarise(*room);
+  summary_.push_back(room->summary(std::chrono::steady_clock::now()));
   outlets_.closed(*room);
   room->releaseDevice();
-}
-
-void SimulationThread::summarise(const Room& room) {
-  summary_.push_back(
-      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, watchdog stepped in {} times",
-                  room.name(), room.tick(), room.meanRealTimeFactor(std::chrono::steady_clock::now()),
-                  room.droppedFrameCount(), room.water().recoveredCount()));
 }
 
 void SimulationThread::loop() {
@@ -337,7 +330,7 @@ void SimulationThread::loop() {
     if (auto kept = room->saveUntil(saved_until); !kept)
       spdlog::error("room {}: it ends without a last snapshot: {}; it continues from the one before and its log",
                     room->name(), kept.error().message);
-    summarise(*room);
+    summary_.push_back(room->summary(std::chrono::steady_clock::now()));
     room->releaseDevice();
   }
 }

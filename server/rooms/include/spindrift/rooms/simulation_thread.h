@@ -124,7 +124,6 @@ class SimulationThread {
   void add(std::shared_ptr<Room> room);
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
-  void summarise(const Room& room);
 
   RoomOutlets& outlets_;
   RoomRules rules_;
