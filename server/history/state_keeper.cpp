@@ -23,7 +23,7 @@ using core::viewOf;
 
 struct StateKeeper::Shared {
   std::string room;
-  std::shared_ptr<state::FolderLock> room_lock;  ///< before the files, which end first
+  state::FolderLock room_lock;  ///< before the files, which end first
   std::unique_ptr<state::RoomFiles> files;
   mutable std::mutex mutex;
   std::condition_variable finished;
@@ -91,7 +91,7 @@ struct StateKeeper::Shared {
 };
 
 StateKeeper::StateKeeper(std::string room, std::unique_ptr<state::RoomFiles> files, std::chrono::milliseconds interval,
-                         core::Worker& writer, std::shared_ptr<state::FolderLock> lock)
+                         core::Worker& writer, state::FolderLock lock)
     : room_(std::move(room)), interval_(interval), writer_(writer), shared_(std::make_shared<Shared>()) {
   shared_->room = room_;
   shared_->room_lock = std::move(lock);

@@ -61,14 +61,14 @@ void warnAboutNames(const std::filesystem::path& folder) {
 core::Result<std::shared_ptr<StateStore>> StateStore::open(const StateOptions& options) {
   warnAboutNames(options.folder);
   // A removal that was cut off in a shared folder is finished by the next one of a room of that name.
-  if (options.is_shared) return std::shared_ptr<StateStore>(new StateStore(options, std::nullopt));
-  auto lock = state::FolderLock::take(options.folder);
+  if (options.is_shared) return std::shared_ptr<StateStore>(new StateStore(options, nullptr));
+  auto lock = state::lockFolder(options.folder);
   if (!lock) return lock.error();
   if (auto finished = state::finishRemovals(options.folder); !finished) return finished.error();
   return std::shared_ptr<StateStore>(new StateStore(options, *std::move(lock)));
 }
 
-StateStore::StateStore(StateOptions options, std::optional<state::FolderLock> lock)
+StateStore::StateStore(StateOptions options, state::FolderLock lock)
     : options_(std::move(options)), lock_(std::move(lock)), writer_(kWriterNiceness) {}
 
 core::Result<std::vector<std::string>> StateStore::rooms() const {
@@ -80,11 +80,11 @@ core::Result<std::vector<std::string>> StateStore::rooms() const {
 core::Result<RoomPlace> StateStore::place(const std::string& room, std::uint64_t before) {
   const auto folder = state::roomFolder(options_.folder, room);
   if (!folder) return folder.error();
-  std::shared_ptr<state::FolderLock> room_lock;
+  state::FolderLock room_lock;
   if (options_.is_shared) {
-    auto taken = state::FolderLock::take(options_.folder / "locks" / room);
+    auto taken = state::lockFolder(options_.folder / "locks" / room);
     if (!taken) return taken.error();
-    room_lock = std::make_shared<state::FolderLock>(*std::move(taken));
+    room_lock = *std::move(taken);
   }
   RoomPlace out;
   auto files = state::RoomFiles::open(*folder, room,
@@ -130,9 +130,9 @@ core::Result<void> StateStore::remove(const std::string& room) const {
 }
 
 core::Result<void> StateStore::removeUnused(const std::string& room) const {
-  std::optional<state::FolderLock> room_lock;
+  state::FolderLock room_lock;
   if (options_.is_shared) {
-    auto taken = state::FolderLock::take(options_.folder / "locks" / room);
+    auto taken = state::lockFolder(options_.folder / "locks" / room);
     if (!taken) return {};  // another server uses it
     room_lock = *std::move(taken);
   }

@@ -2,6 +2,8 @@
 #include <set>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <spindrift/rooms/room.h>
 
 namespace spindrift::rooms {
@@ -41,17 +43,6 @@ Room::Room(std::string name, const RoomRules& rules, water::WaterBuilder& builde
   publishVitals({});
 }
 
-core::Result<std::shared_ptr<Room>> Room::create(std::string name, std::unique_ptr<water::Water> water,
-                                                 const RoomRules& rules, water::WaterBuilder& builder,
-                                                 RoomOutlets& outlets, history::RoomPlace place,
-                                                 v1::RoomAccess access) {
-  auto room = begin(std::move(name), std::move(water), rules, builder, outlets, std::move(place), std::move(access));
-  if (!room) return room;
-  if (const auto restored = (*room)->restoreUntil(TimePoint::max()); !restored) return restored.error();
-  if (const auto kept = (*room)->isOnDisk(TimePoint::max()); !kept) return kept.error();
-  return room;
-}
-
 core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_ptr<water::Water> water,
                                                 const RoomRules& rules, water::WaterBuilder& builder,
                                                 RoomOutlets& outlets, history::RoomPlace place, v1::RoomAccess access) {
@@ -78,6 +69,12 @@ core::Result<void> Room::saveUntil(TimePoint deadline) {
   if (change_.isLost()) return {};
   water_->bind();
   return keeping_.saveUntil(deadline);
+}
+
+std::string Room::summary(TimePoint now) const {
+  return fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, watchdog stepped in {} times",
+                     name_, tick(), time_.meanRealTimeFactor(now), frames_.droppedCount(),
+                     water_->sim().recoveredCount());
 }
 
 void Room::releaseDevice() {

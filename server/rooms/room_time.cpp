@@ -9,6 +9,10 @@ namespace {
 
 using namespace std::chrono_literals;
 
+/// Of the measured pace.
+constexpr auto kWindow = 1s;
+/// A longer lag is dropped: catching up for longer would make the water visibly rush.
+constexpr auto kMaxDebt = 100ms;
 /// Time from the last client's leaving until a room whose scene sleeps without clients stops.
 constexpr auto kSleepPatience = 2s;
 constexpr double kSlowPace = 0.9;
@@ -20,6 +24,24 @@ double seconds(std::chrono::steady_clock::duration duration) {
 }
 
 }  // namespace
+
+void RealTimeClock::restart(TimePoint now) {
+  due_ = now;
+  ticks_.clear();
+}
+
+void RealTimeClock::ticked(TimePoint now) {
+  due_ += std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(tick_s_ / speed_));
+  due_ = std::max(due_, now - kMaxDebt);
+  ticks_.push_back(now);
+  while (now - ticks_.front() > kWindow) ticks_.pop_front();
+}
+
+double RealTimeClock::realTimeFactor() const {
+  if (ticks_.size() < 2) return 0.0;
+  const std::chrono::duration<double> span = ticks_.back() - ticks_.front();
+  return span.count() > 0 ? static_cast<double>(ticks_.size() - 1) * tick_s_ / span.count() : 0.0;
+}
 
 void RoomTime::start(TimePoint now) {
   clock_.restart(now);

@@ -22,11 +22,6 @@ std::string newSecret() {
   return out;
 }
 
-core::Role roleOf(v1::Role role) {
-  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
-  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
-}
-
 }  // namespace
 
 Admission Roster::arrive(const Arrival& arrival) {
@@ -173,7 +168,7 @@ void Roster::restore(const v1::RoomPeople& people, Clock::time_point now) {
     Person& person = people_[kept.person_id()];
     person.name = kept.name();
     person.color_rgb = kept.color_rgb();
-    person.role = roleOf(kept.role());
+    person.role = wire::fromWire(kept.role()).value_or(core::Role::kViewer);
     person.resume_key = kept.resume_key();
     person.boats.insert(kept.boat_ids().begin(), kept.boat_ids().end());
     person.away_since = now;

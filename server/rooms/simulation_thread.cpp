@@ -181,33 +181,22 @@ double SimulationThread::sinceLastRound_s() const {
 
 void SimulationThread::openRoom(RoomSetup setup, const Done& done) {
   auto shared = std::make_shared<RoomSetup>(std::move(setup));
-  carryOut(
-      [this, shared, done](bool runs) {
-        if (runs) return open(std::move(*shared), done);
-        done(Error{ErrorCode::kUnavailable, "the server shuts down"});
-      },
-      done);
+  carryOut({[this, shared, done] { open(std::move(*shared), done); }, done});
 }
 
 void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
-  carryOut(
-      [this, name = std::move(name), before = std::move(before), done](bool runs) {
-        done(runs ? close(name, before) : Error{ErrorCode::kUnavailable, "the server shuts down"});
-      },
-      done);
+  carryOut({[this, name = std::move(name), before = std::move(before), done] { done(close(name, before)); }, done});
 }
 
 void SimulationThread::giveUpRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
-  carryOut(
-      [this, name = std::move(name), before = std::move(before), done](bool runs) {
-        if (!runs) return done(Error{ErrorCode::kUnavailable, "the server shuts down"});
-        if (const auto room = find(name)) end(room, before);
-        done({});
-      },
-      done);
+  carryOut({[this, name = std::move(name), before = std::move(before), done] {
+              if (const auto room = find(name)) end(room, before);
+              done({});
+            },
+            done});
 }
 
-void SimulationThread::carryOut(Change change, const Done& done) {
+void SimulationThread::carryOut(Change change) {
   {
     const std::lock_guard lock(mutex_);
     if (!stopping_ && changes_.size() < kChangeMaxCount) {
@@ -216,7 +205,7 @@ void SimulationThread::carryOut(Change change, const Done& done) {
       return;
     }
   }
-  done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
+  change.done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
 }
 
 void SimulationThread::open(RoomSetup setup, Done done) {
@@ -288,16 +277,9 @@ void SimulationThread::end(const std::shared_ptr<Room>& room, const std::functio
   }
   before(*room);
   room->abandonCommands();
-  summarise(*room);
+  summary_.push_back(room->summary(std::chrono::steady_clock::now()));
   outlets_.closed(*room);
   room->releaseDevice();
-}
-
-void SimulationThread::summarise(const Room& room) {
-  summary_.push_back(
-      fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, watchdog stepped in {} times",
-                  room.name(), room.tick(), room.meanRealTimeFactor(std::chrono::steady_clock::now()),
-                  room.droppedFrameCount(), room.water().recoveredCount()));
 }
 
 void SimulationThread::loop() {
@@ -318,7 +300,7 @@ void SimulationThread::loop() {
     }
     const auto changes = std::exchange(changes_, {});
     lock.unlock();
-    for (const Change& change : changes) change(true);
+    for (const Change& change : changes) change.run();
     advanceOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
     if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room.room != nullptr; }))
@@ -337,17 +319,18 @@ void SimulationThread::loop() {
   }
   const auto changes = std::exchange(changes_, {});
   lock.unlock();
-  for (const Change& change : changes) change(false);
+  const Error shut_down{ErrorCode::kUnavailable, "the server shuts down"};
+  for (const Change& change : changes) change.done(shut_down);
   for (Opening& opening : std::exchange(openings_, {})) {
     opener_->giveUp(opening.room);
-    opening.done(Error{ErrorCode::kUnavailable, "the server shuts down"});
+    opening.done(shut_down);
   }
   const auto saved_until = Clock::now() + rules_.disk_patience;
   for (const auto& room : rooms_) {
     if (auto kept = room->saveUntil(saved_until); !kept)
       spdlog::error("room {}: it ends without a last snapshot: {}; it continues from the one before and its log",
                     room->name(), kept.error().message);
-    summarise(*room);
+    summary_.push_back(room->summary(std::chrono::steady_clock::now()));
     room->releaseDevice();
   }
 }

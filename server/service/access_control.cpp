@@ -7,25 +7,11 @@
 namespace spindrift::service {
 namespace {
 
-/// Nullopt for an unknown role.
-std::optional<core::Role> fromWire(v1::Role role) {
-  switch (role) {
-    case v1::ROLE_VIEWER:
-      return core::Role::kViewer;
-    case v1::ROLE_PLAYER:
-      return core::Role::kPlayer;
-    case v1::ROLE_OPERATOR:
-      return core::Role::kOperator;
-    default:
-      return std::nullopt;
-  }
-}
-
 /// What the files of a room say; tokens that no server can have made are left out.
 std::vector<access::RoomToken> tokensOf(const v1::RoomAccess& kept) {
   std::vector<access::RoomToken> out;
   for (const v1::KeptToken& one : kept.tokens()) {
-    const auto role = fromWire(one.role());
+    const auto role = wire::fromWire(one.role());
     access::RoomToken token{.role = role.value_or(core::Role::kViewer), .salt = one.salt()};
     if (!role || one.digest().size() != token.digest.size()) continue;
     std::copy(one.digest().begin(), one.digest().end(), token.digest.begin());
@@ -77,14 +63,12 @@ std::string AccessControl::busy() const {
 }
 
 core::Result<MadeTokens> makeTokens(const v1::CreateRoom& wanted) {
-  const auto refuse = [](std::string why) {
-    return core::Error{core::ErrorCode::kInvalidInput, "tokens: " + std::move(why)};
-  };
+  const auto refuse = [](std::string why) { return core::invalid("tokens: " + std::move(why)); };
   if (static_cast<std::size_t>(wanted.tokens_size()) > access::kRoomTokenMaxCount)
     return refuse(fmt::format("{} are asked for; at most {}", wanted.tokens_size(), access::kRoomTokenMaxCount));
   MadeTokens out;
   for (const int number : wanted.tokens()) {
-    const auto role = fromWire(static_cast<v1::Role>(number));
+    const auto role = wire::fromWire(static_cast<v1::Role>(number));
     if (!role) return refuse("write ROLE_VIEWER, ROLE_PLAYER or ROLE_OPERATOR for each");
     const access::NewRoomToken made = access::makeRoomToken(*role);
     v1::KeptToken& kept = *out.kept.add_tokens();

@@ -1,6 +1,5 @@
-#include <cctype>
-
 #include <spindrift/service/audit.h>
+#include <spindrift/service/metrics.h>
 #include <spindrift/wire/api_message.h>
 
 namespace spindrift::service {
@@ -14,13 +13,6 @@ constexpr double kRareBurstCount = 60.0;
 const google::protobuf::FieldDescriptor* actionOf(const v1::Command& command) {
   return command.GetReflection()->GetOneofFieldDescriptor(command,
                                                           v1::Command::descriptor()->FindOneofByName("action"));
-}
-
-/// "REJECT_REASON_OUT_OF_RANGE" -> "out_of_range", as the metrics name it.
-std::string nameOf(v1::RejectReason reason) {
-  std::string out = v1::RejectReason_Name(reason).substr(sizeof("REJECT_REASON"));
-  for (char& c : out) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return out;
 }
 
 bool isOperatorsCommand(const v1::Command& command) {

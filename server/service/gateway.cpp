@@ -4,9 +4,42 @@
 #include <spindrift/service/stream_index.h>
 #include <spindrift/wire/server_message.h>
 
-#include "local_room.h"
-
 namespace spindrift::service {
+namespace {
+
+/// A room of this process, for its sessions.
+class LocalRoom final : public Venue {
+ public:
+  /// `rooms` and `sessions` outlive it.
+  LocalRoom(std::shared_ptr<rooms::Room> room, const rooms::SimulationThread& rooms, Sessions& sessions)
+      : room_(std::move(room)), rooms_(rooms), sessions_(sessions) {}
+
+  [[nodiscard]] const std::string& name() const override { return room_->name(); }
+  [[nodiscard]] std::shared_ptr<const VenueView> view() const override {
+    return std::make_shared<const VenueView>(VenueView{.room = room_->snapshot(),
+                                                       .levels = room_->vitals()->fidelity_levels,
+                                                       .device = rooms_.deviceLine(),
+                                                       .scenes = rooms_.rules().scenes.names(),
+                                                       .room_access = room_->access(),
+                                                       .grace = room_->roster().grace()});
+  }
+  [[nodiscard]] v1::People people() const override { return room_->roster().people(); }
+  [[nodiscard]] std::shared_ptr<core::DemandTable> demand() const override { return room_->demand(); }
+  [[nodiscard]] bool isOpen() const override { return rooms_.find(room_->name()) == room_; }
+  void arrive(const rooms::Arrival& arrival, Arrived arrived) override { arrived(room_->roster().arrive(arrival)); }
+  void leave(core::SessionId session) override { room_->roster().leave(session, rooms::Roster::Clock::now()); }
+  void watchesChanged() override { room_->wake(); }
+  void command(const rooms::Command& command) override {
+    if (const auto rejection = room_->admit(command)) sessions_.commandRejected(command, *rejection);
+  }
+
+ private:
+  const std::shared_ptr<rooms::Room> room_;
+  const rooms::SimulationThread& rooms_;
+  Sessions& sessions_;
+};
+
+}  // namespace
 
 Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources,
                  std::function<void()> on_drain)

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/core/text.h>
 #include <spindrift/scene/fidelity.h>
-#include <spindrift/service/metric_label.h>
 #include <spindrift/service/metrics.h>
 
 namespace spindrift::service {
@@ -244,8 +244,7 @@ void writeCommands(Page& page, const CommandCounters& commands) {
   page.head("commands_rejected_total", "counter", "Commands not carried out, by reason.");
   for (int k = v1::RejectReason_MIN + 1; k < v1::RejectReason_ARRAYSIZE; ++k) {
     const auto reason = static_cast<v1::RejectReason>(k);
-    page.sample(metricLabel("reason", shortName(v1::RejectReason_Name(reason), sizeof("REJECT_REASON"))),
-                commands.rejectedCount(reason));
+    page.sample(metricLabel("reason", nameOf(reason)), commands.rejectedCount(reason));
   }
 }
 
@@ -262,6 +261,28 @@ void writeAccess(Page& page, const AccessControl& access) {
 }
 
 }  // namespace
+
+std::string metricLabel(std::string_view name, std::string_view value) {
+  std::string out = std::string(name) + "=\"";
+  for (std::size_t at = 0; at < value.size();) {
+    const std::size_t length = core::utf8SequenceLength(value, at);
+    const std::string_view character = value.substr(at, length);
+    if (length == 0)
+      out += "\xEF\xBF\xBD";
+    else if (character == "\n")
+      out += "\\n";
+    else if (character == "\"" || character == "\\")
+      (out += '\\') += character;
+    else
+      out += character;
+    at += length == 0 ? 1 : length;
+  }
+  return out += '"';
+}
+
+std::string nameOf(v1::RejectReason reason) {
+  return shortName(v1::RejectReason_Name(reason), sizeof("REJECT_REASON"));
+}
 
 std::string metricsText(const net::ServerStats& network, const CommandCounters& commands) {
   Page page;

@@ -341,25 +341,19 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
   const rooms::Command command{
       .sender = {.session_id = session, .person_id = state.person_id, .role = state.role, .details = state.details},
       .message = std::move(message)};
-  if (state.stage != Stage::kIn) {
-    return commandRejected(command, {.command_id = command.id(),
-                                     .reason = v1::REJECT_REASON_NO_HELLO,
-                                     .field = "",
-                                     .message = "a command before Hello: send ClientMessage.hello first"});
-  }
+  const auto reject = [&](v1::RejectReason reason, std::string why) {
+    auto rejection = wire::rejection(reason, "", std::move(why));
+    rejection.command_id = command.id();
+    commandRejected(command, rejection);
+  };
+  if (state.stage != Stage::kIn)
+    return reject(v1::REJECT_REASON_NO_HELLO, "a command before Hello: send ClientMessage.hello first");
   if (!takeCommand(session)) {
-    return commandRejected(
-        command, {.command_id = command.id(),
-                  .reason = v1::REJECT_REASON_BUSY,
-                  .field = "",
-                  .message = fmt::format("more than {:g} commands per second after a burst of {:g}: slow down",
-                                         rules_.commands_per_s, rules_.command_burst_count)});
+    return reject(v1::REJECT_REASON_BUSY,
+                  fmt::format("more than {:g} commands per second after a burst of {:g}: slow down",
+                              rules_.commands_per_s, rules_.command_burst_count));
   }
-  if (!access_.takeCommand(state.person)) {
-    return commandRejected(
-        command,
-        {.command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()});
-  }
+  if (!access_.takeCommand(state.person)) return reject(v1::REJECT_REASON_BUSY, access_.busy());
   state.venue->command(command);
 }
 

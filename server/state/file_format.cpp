@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include <spindrift/core/crc32c.h>
 #include <spindrift/core/text.h>
 #include <spindrift/state/room_files.h>
@@ -63,8 +65,7 @@ struct Start {
 };
 
 Fault wrongGeneration(std::uint64_t found, std::uint64_t expected, std::size_t at_byte) {
-  return {"it says that it is of generation " + std::to_string(found) + ", its name says " + std::to_string(expected),
-          at_byte};
+  return {fmt::format("it says that it is of generation {}, its name says {}", found, expected), at_byte};
 }
 
 /// Checks what both kinds of files begin with. `kind` is "snapshot" or "log"; the sizes are those of the header without
@@ -77,7 +78,7 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
   const std::string_view start = textOf(file.first(std::min(file.size(), kMagicBytes)));
   const std::string_view family = magic.substr(0, kMagicBytes - 1);
   if (!start.starts_with(family.substr(0, start.size())))
-    return refuse("it is not a " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
+    return refuse(fmt::format("it is not a {}: it does not begin with {}", kind, magic), 0);
   if (start.size() == kMagicBytes && start.back() == '1') {
     if (file.size() < old_header_bytes) return refuse("it ends within its header", file.size());
     Start out{.version = Version::kOld, .number = {}, .header_bytes = old_header_bytes, .fault = {}};
@@ -87,11 +88,12 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
   }
   if (start.size() == kMagicBytes && start != magic) {
     if (start.back() < '0' || start.back() > '9')
-      return refuse("it is not a " + std::string(kind) + ": it does not begin with " + std::string(magic), 0);
-    return refuse("it was written by " + std::string(start.back() > magic.back() ? "a newer" : "another") +
-                      " version of the program, in the format " + std::string(start) + " (this version reads " +
-                      std::string(magic) + " and the one before); that version can use it under its old name",
-                  kMagicBytes - 1);
+      return refuse(fmt::format("it is not a {}: it does not begin with {}", kind, magic), 0);
+    return refuse(
+        fmt::format("it was written by {} version of the program, in the format {} (this version reads {} and the one "
+                    "before); that version can use it under its old name",
+                    start.back() > magic.back() ? "a newer" : "another", start, magic),
+        kMagicBytes - 1);
   }
   if (file.size() < header_bytes) return refuse("it ends within its header", file.size());
   const auto name_bytes = numberAt<std::uint32_t>(file, kChecksumEnd);
@@ -101,8 +103,8 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
   if (core::crc32c(header.subspan(kChecksumEnd)) != numberAt<std::uint32_t>(file, kMagicBytes))
     return refuse("its header does not match its checksum", kMagicBytes);
   if (const std::string_view room = textOf(header.subspan(header_bytes)); room != owner.room) {
-    return refuse("it is of the room '" + core::cleanText(room, kNameMaxBytes) + "', its folder is that of '" +
-                      std::string(owner.room) + "'",
+    return refuse(fmt::format("it is of the room '{}', its folder is that of '{}'",
+                              core::cleanText(room, kNameMaxBytes), owner.room),
                   header_bytes);
   }
   if (const auto found = numberAt<std::uint64_t>(file, 16); found != owner.generation)
@@ -112,18 +114,14 @@ Start readStart(core::ByteView file, std::string_view magic, std::string_view ki
 
 std::optional<Fault> checkLength(const std::string& name, std::uint32_t length, std::size_t at) {
   if (length > 0 && length <= kRecordMaxBytes) return std::nullopt;
-  return Fault{name + " has a length of " + std::to_string(length) + " bytes (1 to " + std::to_string(kRecordMaxBytes) +
-                   " are possible)",
-               at};
+  return Fault{fmt::format("{} has a length of {} bytes (1 to {} are possible)", name, length, kRecordMaxBytes), at};
 }
 
 /// Returns why the record at `at` cannot follow those before it; `expected` is the number that comes next.
 std::optional<Fault> checkNumber(std::uint64_t found, std::uint64_t expected, std::size_t at) {
   if (found == expected) return std::nullopt;
-  if (found < expected)
-    return Fault{"record " + std::to_string(found) + " stands where record " + std::to_string(expected) + " follows",
-                 at};
-  return Fault{"the records " + std::to_string(expected) + " to " + std::to_string(found - 1) + " are missing", at};
+  if (found < expected) return Fault{fmt::format("record {} stands where record {} follows", found, expected), at};
+  return Fault{fmt::format("the records {} to {} are missing", expected, found - 1), at};
 }
 
 /// A record in the file, or why no whole one begins at `at`.
@@ -189,12 +187,12 @@ ParsedSnapshot parseSnapshot(core::ByteView file, const FileOwner& owner) {
   const auto length = numberAt<std::uint64_t>(file, length_at);
   const core::ByteView payload = file.subspan(start.header_bytes);
   if (length > kSnapshotMaxBytes) {
-    return refuse("it says that its content has " + std::to_string(length) + " bytes (at most " +
-                      std::to_string(kSnapshotMaxBytes) + " are possible)",
-                  length_at);
+    return refuse(
+        fmt::format("it says that its content has {} bytes (at most {} are possible)", length, kSnapshotMaxBytes),
+        length_at);
   }
   if (payload.size() != length) {
-    return refuse("its content has " + std::to_string(payload.size()) + " bytes instead of " + std::to_string(length),
+    return refuse(fmt::format("its content has {} bytes instead of {}", payload.size(), length),
                   start.header_bytes + std::min<std::uint64_t>(payload.size(), length));
   }
   if (core::crc32c(payload) != numberAt<std::uint32_t>(file, length_at + 8))

@@ -1,7 +1,8 @@
 #include "file_names.h"
 
-#include <algorithm>
 #include <charconv>
+
+#include <fmt/format.h>
 
 #include "posix_file.h"
 
@@ -11,11 +12,6 @@ namespace {
 constexpr std::size_t kDigitCount = 12;
 constexpr std::string_view kSnapshotSuffix = ".snapshot";
 constexpr std::string_view kLogSuffix = ".log";
-
-std::string nameOf(std::uint64_t generation, std::string_view suffix) {
-  const std::string digits = std::to_string(generation);
-  return std::string(kDigitCount - std::min(kDigitCount, digits.size()), '0') + digits + std::string(suffix);
-}
 
 }  // namespace
 
@@ -39,11 +35,11 @@ FileName parseFileName(std::string_view name) {
 }
 
 std::string snapshotName(std::uint64_t generation) {
-  return nameOf(generation, kSnapshotSuffix);
+  return fmt::format("{:0{}}{}", generation, kDigitCount, kSnapshotSuffix);
 }
 
 std::string logName(std::uint64_t generation) {
-  return nameOf(generation, kLogSuffix);
+  return fmt::format("{:0{}}{}", generation, kDigitCount, kLogSuffix);
 }
 
 }  // namespace spindrift::state

@@ -2,6 +2,8 @@
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <unistd.h>
 
@@ -26,32 +28,26 @@ std::string holderOf(const core::Bytes& text) {
 
 }  // namespace
 
-FolderLock::FolderLock(std::unique_ptr<File> file) : file_(std::move(file)) {}
-FolderLock::FolderLock(FolderLock&&) noexcept = default;
-FolderLock& FolderLock::operator=(FolderLock&&) noexcept = default;
-FolderLock::~FolderLock() = default;
-
-core::Result<FolderLock> FolderLock::take(const std::filesystem::path& folder) {
+core::Result<FolderLock> lockFolder(const std::filesystem::path& folder) {
   const auto made = makeFolder(folder);
   if (!made) return made.error();
   for (const std::filesystem::path& parent : *made) {
     if (auto synced = syncFolder(parent); !synced) return synced.error();
   }
-  auto file = File::openOrCreate(folder / "lock");
+  auto file = File::open(folder / "lock", O_RDWR | O_CREAT);
   if (!file) return file.error();
   while (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
     if (errno == EINTR) continue;
     if (errno != EWOULDBLOCK) return systemError("lock", file->path(), errno);
     const auto text = file->read(kPidMaxBytes);
-    return core::Error{core::ErrorCode::kUnavailable, "the folder " + folder.string() + " is in use by " +
-                                                          (text ? holderOf(*text) : std::string("another process")) +
-                                                          ": end that server, or choose another folder"};
+    return core::Error{core::ErrorCode::kUnavailable,
+                       fmt::format("the folder {} is in use by {}: end that server, or choose another folder",
+                                   folder.string(), holderOf(text ? *text : core::Bytes()))};
   }
   const std::string pid = std::to_string(::getpid()) + "\n";
   if (auto cut = file->resize(0); !cut) return cut.error();
-  const core::ByteView bytes(reinterpret_cast<const std::uint8_t*>(pid.data()), pid.size());
-  if (auto written = file->writeAt(0, bytes); !written) return written.error();
-  return FolderLock(std::make_unique<File>(std::move(*file)));
+  if (auto written = file->writeAt(0, core::viewOf(pid)); !written) return written.error();
+  return FolderLock(std::make_shared<const File>(*std::move(file)));
 }
 
 }  // namespace spindrift::state

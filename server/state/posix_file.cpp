@@ -6,8 +6,8 @@
 #include <limits>
 #include <system_error>
 
-#include <dirent.h>
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
@@ -64,45 +64,18 @@ iovec partOf(core::ByteView bytes) {
 }  // namespace
 
 Error systemError(std::string_view verb, const fs::path& path, int errno_value) {
-  return {ErrorCode::kUnavailable, "could not " + std::string(verb) + " " + path.string() + " (" +
-                                       std::generic_category().message(errno_value) +
-                                       "): " + std::string(adviceFor(errno_value))};
+  return {ErrorCode::kUnavailable, fmt::format("could not {} {} ({}): {}", verb, path.string(),
+                                               std::generic_category().message(errno_value), adviceFor(errno_value))};
 }
 
-core::Result<File> File::open(const fs::path& path, int flags, std::string_view verb) {
+core::Result<File> File::open(const fs::path& path, int flags) {
   const int descriptor = uninterrupted([&] { return ::open(path.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, kFileMode); });
-  if (descriptor < 0) return systemError(verb, path, errno);
+  if (descriptor < 0) return systemError(flags & O_TRUNC ? "make" : "open", path, errno);
   return File(path, descriptor);
 }
 
-core::Result<File> File::openToRead(const fs::path& path) {
-  return open(path, O_RDONLY, "open");
-}
-
-core::Result<File> File::openToWrite(const fs::path& path) {
-  return open(path, O_WRONLY, "open");
-}
-
-core::Result<File> File::create(const fs::path& path) {
-  return open(path, O_WRONLY | O_CREAT | O_TRUNC, "make");
-}
-
-core::Result<File> File::openOrCreate(const fs::path& path) {
-  return open(path, O_RDWR | O_CREAT, "open");
-}
-
-File& File::operator=(File&& other) noexcept {
-  if (this != &other) {
-    close();
-    path_ = std::move(other.path_);
-    descriptor_ = std::exchange(other.descriptor_, -1);
-  }
-  return *this;
-}
-
-void File::close() {
+File::~File() {
   if (descriptor_ >= 0) ::close(descriptor_);
-  descriptor_ = -1;
 }
 
 core::Result<std::uint64_t> File::size_bytes() const {
@@ -211,7 +184,7 @@ core::Result<void> writeWhole(const fs::path& path, core::ByteView first, core::
   fs::path temporary = path;
   temporary += kTemporarySuffix;
   const auto write = [&]() -> core::Result<void> {
-    const auto file = File::create(temporary);
+    const auto file = File::open(temporary, O_WRONLY | O_CREAT | O_TRUNC);
     if (!file) return file.error();
     if (auto written = file->writeAt(0, first, second); !written) return written;
     if (is_forced) {
@@ -236,8 +209,16 @@ core::Result<fs::path> nameToSetAside(const fs::path& path) {
     std::error_code error;
     if (fs::symlink_status(name, error).type() == fs::file_type::not_found) return name;
   }
-  return Error{ErrorCode::kUnavailable, "there are " + std::to_string(kSetAsideMaxCount) + " files " + path.string() +
-                                            ".damaged already: look at them and remove them"};
+  return Error{ErrorCode::kUnavailable,
+               fmt::format("there are {} files {}.damaged already: look at them and remove them", kSetAsideMaxCount,
+                           path.string())};
+}
+
+core::Result<fs::path> setAside(const fs::path& path) {
+  auto aside = nameToSetAside(path);
+  if (!aside) return aside;
+  if (auto renamed = renameFile(path, *aside); !renamed) return renamed.error();
+  return aside;
 }
 
 }  // namespace spindrift::state

@@ -21,17 +21,10 @@ core::Error systemError(std::string_view verb, const std::filesystem::path& path
 /// An open file descriptor. Files are made with mode 0600 and are not inherited by child processes.
 class File {
  public:
-  /// Symbolic links are not followed.
-  static core::Result<File> openToRead(const std::filesystem::path& path);
-  static core::Result<File> openToWrite(const std::filesystem::path& path);
-  /// Makes the file, or empties the one that is there.
-  static core::Result<File> create(const std::filesystem::path& path);
-  /// Opens the file to read and write, and makes it if necessary.
-  static core::Result<File> openOrCreate(const std::filesystem::path& path);
-
+  /// `flags`: those of POSIX open(). Symbolic links are not followed.
+  static core::Result<File> open(const std::filesystem::path& path, int flags);
   File(File&& other) noexcept : path_(std::move(other.path_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
-  File& operator=(File&& other) noexcept;
-  ~File() { close(); }
+  ~File();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] int descriptor() const { return descriptor_; }
@@ -48,8 +41,6 @@ class File {
 
  private:
   File(std::filesystem::path path, int descriptor) : path_(std::move(path)), descriptor_(descriptor) {}
-  static core::Result<File> open(const std::filesystem::path& path, int flags, std::string_view verb);
-  void close();
 
   std::filesystem::path path_;
   int descriptor_;
@@ -83,6 +74,8 @@ core::Result<void> removeFile(const std::filesystem::path& path);
 /// Returns PATH.damaged, or PATH.damaged.2 and so on: the first that is not there. kUnavailable when there are
 /// kSetAsideMaxCount of them.
 core::Result<std::filesystem::path> nameToSetAside(const std::filesystem::path& path);
+/// Renames the file to that name, which it returns.
+core::Result<std::filesystem::path> setAside(const std::filesystem::path& path);
 inline constexpr std::string_view kTemporarySuffix = ".tmp";
 inline constexpr int kSetAsideMaxCount = 100;
 

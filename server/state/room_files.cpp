@@ -4,6 +4,9 @@
 #include <set>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
+
 #include <spindrift/state/room_files.h>
 
 #include "file_format.h"
@@ -36,16 +39,15 @@ RoomFiles::~RoomFiles() = default;
 
 core::Result<std::unique_ptr<RoomFiles>> RoomFiles::open(const fs::path& folder, std::string room, Options options) {
   if (room.size() > kNameMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, "a room's name of " + std::to_string(room.size()) +
-                                               " bytes does not fit into its files: at most " +
-                                               std::to_string(kNameMaxBytes) + " bytes are possible"};
+    return core::invalid(
+        fmt::format("a room's name of {} bytes does not fit into its files: at most {} bytes are possible", room.size(),
+                    kNameMaxBytes));
   }
   if (options.kept_generation_count < 1)
-    return Error{ErrorCode::kInvalidInput, "0 generations of a room's state cannot be kept: keep at least 1"};
+    return core::invalid("0 generations of a room's state cannot be kept: keep at least 1");
   if (options.log_max_bytes > kLogMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, "a log of " + std::to_string(options.log_max_bytes) +
-                                               " bytes cannot be read again: at most " + std::to_string(kLogMaxBytes) +
-                                               " bytes are possible"};
+    return core::invalid(fmt::format("a log of {} bytes cannot be read again: at most {} bytes are possible",
+                                     options.log_max_bytes, kLogMaxBytes));
   }
   auto made = makeFolder(folder);
   if (!made) return made.error();
@@ -82,7 +84,7 @@ core::Result<StatePoint> RoomFiles::beginGeneration() {
   if (waits_for_snapshot && (!is_unfit || has_too_many)) return StatePoint{last_generation_, next_number_};
   const std::uint64_t next = last_generation_ + 1;
   if (auto made = makeEmptyLog(folder_, {room_, next}, next_number_, false); !made) return made.error();
-  auto log = File::openToWrite(folder_ / logName(next));
+  auto log = File::open(folder_ / logName(next), O_WRONLY);
   if (!log) return log.error();
   if (options_.sync == Sync::kAlways && log_) unforced_logs_.push_back(log_);
   log_ = std::make_shared<File>(std::move(*log));
@@ -101,9 +103,7 @@ core::Result<void> RoomFiles::setRefusedAside() {
   for (const FolderEntry& entry : *entries) {
     const FileName name = parseFileName(entry.name);
     if (name.kind != FileKind::kSnapshot || name.generation < refused_from_) continue;
-    const auto aside = nameToSetAside(folder_ / entry.name);
-    if (!aside) return aside.error();
-    if (auto renamed = renameFile(folder_ / entry.name, *aside); !renamed) return renamed;
+    if (const auto aside = setAside(folder_ / entry.name); !aside) return aside.error();
   }
   refused_from_ = kNewest;
   return {};
@@ -117,9 +117,8 @@ core::Result<void> RoomFiles::cutToWholeRecords() {
 
 core::Result<void> RoomFiles::append(core::ByteView record) {
   if (record.empty() || record.size() > kRecordMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, "a record of " + std::to_string(record.size()) +
-                                               " bytes cannot be logged: 1 to " + std::to_string(kRecordMaxBytes) +
-                                               " bytes are possible"};
+    return core::invalid(fmt::format("a record of {} bytes cannot be logged: 1 to {} bytes are possible", record.size(),
+                                     kRecordMaxBytes));
   }
   const std::lock_guard lock(log_mutex_);
   if (!log_) return wrongOrder("append() comes after beginGeneration()");
@@ -129,9 +128,9 @@ core::Result<void> RoomFiles::append(core::ByteView record) {
   const auto header = recordHeader(next_number_, record);
   if (log_bytes_ + header.size() + record.size() > options_.log_max_bytes) {
     is_full_ = true;
-    return Error{ErrorCode::kUnavailable, "the log " + log_->path().string() + " is full at " +
-                                              std::to_string(log_bytes_) + " of at most " +
-                                              std::to_string(options_.log_max_bytes) + " bytes: a snapshot is due"};
+    return Error{ErrorCode::kUnavailable,
+                 fmt::format("the log {} is full at {} of at most {} bytes: a snapshot is due", log_->path().string(),
+                             log_bytes_.load(), options_.log_max_bytes)};
   }
   auto written = log_->writeAt(log_bytes_, header, record);
   if (!written) {
@@ -170,9 +169,10 @@ core::Result<void> RoomFiles::flush() {
     return forced;
   }
   if (needed_snapshot_generation_ > snapshot_generation_) {
-    return Error{ErrorCode::kUnavailable, "the disk refused records of " + folder_.string() +
-                                              " before: check the disk; a snapshot of generation " +
-                                              std::to_string(needed_snapshot_generation_) + " makes up for it"};
+    return Error{ErrorCode::kUnavailable,
+                 fmt::format("the disk refused records of {} before: check the disk; a snapshot of generation {} makes "
+                             "up for it",
+                             folder_.string(), needed_snapshot_generation_.load())};
   }
   return {};
 }
@@ -193,11 +193,10 @@ core::Result<void> RoomFiles::writeSnapshot(const StatePoint& point, core::ByteV
   const std::lock_guard lock(snapshot_mutex_);
   const std::uint64_t generation = point.generation;
   if (generation < 1 || generation > generation_)
-    return wrongOrder("generation " + std::to_string(generation) + " has not begun");
+    return wrongOrder(fmt::format("generation {} has not begun", generation));
   if (payload.size() > kSnapshotMaxBytes) {
-    return Error{ErrorCode::kInvalidInput, "a snapshot of " + std::to_string(payload.size()) +
-                                               " bytes cannot be written: at most " +
-                                               std::to_string(kSnapshotMaxBytes) + " bytes are possible"};
+    return core::invalid(fmt::format("a snapshot of {} bytes cannot be written: at most {} bytes are possible",
+                                     payload.size(), kSnapshotMaxBytes));
   }
   const bool is_forced = options_.sync != Sync::kNever;
   const core::Bytes header = snapshotHeader({room_, generation}, point.next_number, payload);

@@ -2,6 +2,8 @@
 #include <cerrno>
 #include <system_error>
 
+#include <fmt/format.h>
+
 #include <spindrift/core/room_name.h>
 #include <spindrift/core/text.h>
 #include <spindrift/state/room_folders.h>
@@ -39,9 +41,8 @@ core::Result<void> removeTree(const fs::path& path) {
 
 core::Result<fs::path> roomFolder(const fs::path& folder, const std::string& name) {
   if (core::isRoomName(name)) return roomsOf(folder) / name;
-  return core::Error{core::ErrorCode::kInvalidInput, "'" + core::cleanText(name, 4 * core::kRoomNameMaxBytes) +
-                                                         "' is not a name of a room: it has " +
-                                                         std::string(core::kRoomNameRule)};
+  return core::invalid(fmt::format("'{}' is not a name of a room: it has {}",
+                                   core::cleanText(name, 4 * core::kRoomNameMaxBytes), core::kRoomNameRule));
 }
 
 core::Result<RoomList> listRooms(const fs::path& folder) {

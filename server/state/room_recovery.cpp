@@ -7,6 +7,9 @@
 #include <string>
 #include <utility>
 
+#include <fcntl.h>
+#include <fmt/format.h>
+
 #include "file_names.h"
 #include "posix_file.h"
 
@@ -52,7 +55,7 @@ class Recovery {
 };
 
 std::string placeOf(const Fault& fault) {
-  return fault.reason + ", at byte " + std::to_string(fault.at_byte);
+  return fmt::format("{}, at byte {}", fault.reason, fault.at_byte);
 }
 
 core::Result<RecoveredFolder> Recovery::run() {
@@ -95,15 +98,14 @@ core::Result<void> Recovery::listFiles() {
   }
   if (foreign_count > kForeignNotesMaxCount) {
     note(folder_.string(),
-         std::to_string(foreign_count - kForeignNotesMaxCount) + " more files are not the room's; left alone");
+         fmt::format("{} more files are not the room's; left alone", foreign_count - kForeignNotesMaxCount));
   }
   return {};
 }
 
 core::Result<void> Recovery::setAside(const FolderEntry& entry, const Fault& fault) {
-  const auto aside = nameToSetAside(folder_ / entry.name);
+  const auto aside = state::setAside(folder_ / entry.name);
   if (!aside) return aside.error();
-  if (auto renamed = renameFile(folder_ / entry.name, *aside); !renamed) return renamed;
   is_changed_ = true;
   note(entry.name, placeOf(fault) + "; set aside as " + aside->filename().string());
   return {};
@@ -116,13 +118,12 @@ core::Result<core::Bytes> Recovery::readFile(const FolderEntry& entry, std::uint
     fault = Fault{"it is a folder, a link or a device, not a regular file", 0};
     return core::Bytes();
   }
-  const auto file = File::openToRead(folder_ / entry.name);
+  const auto file = File::open(folder_ / entry.name, O_RDONLY);
   if (!file) return file.error();
   const auto size = file->size_bytes();
   if (!size) return size.error();
   if (*size > max_bytes) {
-    fault = Fault{"it has " + std::to_string(*size) + " bytes (at most " + std::to_string(max_bytes) + " are possible)",
-                  max_bytes};
+    fault = Fault{fmt::format("it has {} bytes (at most {} are possible)", *size, max_bytes), max_bytes};
     return core::Bytes();
   }
   return file->read(max_bytes);
@@ -200,17 +201,14 @@ core::Result<bool> Recovery::readLog(const FolderEntry& entry, std::uint64_t gen
 std::optional<Fault> Recovery::connect(ParsedLog& log, bool is_first) const {
   if (!log.first_number || !next_number_) return std::nullopt;  // of version 1
   const std::uint64_t first = *log.first_number, expected = *next_number_, end = first + log.records.size();
-  if (first > expected)
-    return Fault{
-        "the records " + std::to_string(expected) + " to " + std::to_string(first - 1) + " before it are missing", 0};
+  if (first > expected) return Fault{fmt::format("the records {} to {} before it are missing", expected, first - 1), 0};
   if (first == expected) return std::nullopt;
   if (!is_first) {
-    return Fault{
-        "it begins with record " + std::to_string(first) + ", but record " + std::to_string(expected) + " follows", 0};
+    return Fault{fmt::format("it begins with record {}, but record {} follows", first, expected), 0};
   }
   if (end < expected) {
-    return Fault{"the records " + std::to_string(end) + " to " + std::to_string(expected - 1) +
-                     ", which the snapshot follows, are missing in it" + (log.fault ? ": " + log.fault->reason : ""),
+    return Fault{fmt::format("the records {} to {}, which the snapshot follows, are missing in it{}", end, expected - 1,
+                             log.fault ? ": " + log.fault->reason : ""),
                  log.whole_bytes};
   }
   log.records.erase(log.records.begin(), log.records.begin() + static_cast<std::ptrdiff_t>(expected - first));
@@ -227,7 +225,7 @@ core::Result<void> Recovery::repair(const FolderEntry& entry, const RoomFiles::L
 }
 
 core::Result<void> Recovery::cutLog(const fs::path& path, const ParsedLog& log) {
-  const auto file = File::openToWrite(path);
+  const auto file = File::open(path, O_WRONLY);
   if (!file) return file.error();
   if (auto cut = file->resize(log.whole_bytes); !cut) return cut;
   if (is_forced_) {
@@ -246,9 +244,8 @@ core::Result<void> Recovery::keepWholePart(const fs::path& path, const RoomFiles
   const core::ByteView whole = core::ByteView(file.file).first(log.whole_bytes);
   if (auto written = writeWhole(path, whole, {}, is_forced_); !written) return written;
   is_changed_ = true;
-  note(path.filename().string(), placeOf(*log.fault) + "; its " + std::to_string(log.records.size()) +
-                                     " records before are used, the whole file is kept as " +
-                                     aside->filename().string());
+  note(path.filename().string(), fmt::format("{}; its {} records before are used, the whole file is kept as {}",
+                                             placeOf(*log.fault), log.records.size(), aside->filename().string()));
   return {};
 }
 
@@ -261,8 +258,9 @@ core::Result<void> Recovery::completeLogs() {
     if (auto aside = setAside(later->second, *fault); !aside) return aside;
   }
   if (snapshot == 0 || !out_.content.logs.empty()) return {};
-  note(logName(snapshot), "it is missing or unusable, so what happened after the snapshot of generation " +
-                              std::to_string(snapshot) + " is lost");
+  note(
+      logName(snapshot),
+      fmt::format("it is missing or unusable, so what happened after the snapshot of generation {} is lost", snapshot));
   RoomFiles::Log log;
   log.generation = snapshot;
   out_.content.logs.push_back(std::move(log));
@@ -278,10 +276,11 @@ core::Result<Fault> Recovery::whyNotUsed(const FolderEntry& entry, std::uint64_t
   if (unusable) return *unusable;
   const ParsedLog parsed = parseLog(*bytes, {room_, generation});
   if (parsed.whole_bytes == 0) return *parsed.fault;
-  return Fault{"what it continues is missing or damaged (the last whole generation is " +
-                   std::to_string(out_.last_generation) + "); its " + std::to_string(parsed.records.size()) +
-                   " records are not used",
-               0};
+  return Fault{
+      fmt::format(
+          "what it continues is missing or damaged (the last whole generation is {}); its {} records are not used",
+          out_.last_generation, parsed.records.size()),
+      0};
 }
 
 }  // namespace

@@ -28,10 +28,9 @@ std::uint64_t hashOfVersion0(const sim::StateCopy& state) {
 core::Result<std::uint64_t> recordedHash(sim::WaterSim& water, std::uint32_t version) {
   if (version == 0) return hashOfVersion0(water.copyState());
   if (version == kStateHashVersion) return water.stateHash();
-  return core::Error{core::ErrorCode::kInvalidInput,
-                     fmt::format("its state hashes are of version {}, and this program knows versions up to {}: use "
-                                 "the program that wrote them",
-                                 version, kStateHashVersion)};
+  return core::invalid(fmt::format(
+      "its state hashes are of version {}, and this program knows versions up to {}: use the program that wrote them",
+      version, kStateHashVersion));
 }
 
 }  // namespace spindrift::water

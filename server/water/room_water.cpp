@@ -32,12 +32,21 @@ wire::CommandRejection whyNot(const v1::SetParameter& change, core::Scene wanted
   return wire::rejection(reason(), change.path(), message);
 }
 
+/// Returns the rejection with `reason`, or BUSY, if the water did not take a command.
+template <typename T>
+RoomWater::Outcome outcomeOf(const core::Result<T>& done, std::string field = "",
+                             v1::RejectReason reason = v1::REJECT_REASON_ABSENT_PART) {
+  if (done) return {};
+  const bool is_busy = done.error().code == core::ErrorCode::kUnavailable;
+  return wire::rejection(is_busy ? v1::REJECT_REASON_BUSY : reason, std::move(field), done.error().message);
+}
+
 }  // namespace
 
 RoomWater::RoomWater(std::unique_ptr<Water> water) : water_(std::move(water)), tick_shift_(0 - water_->sim().tick()) {}
 
 bool RoomWater::takes(const v1::Command& command) {
-  return handlerOf(command) != nullptr;
+  return handlerOf(command.action_case()) != nullptr;
 }
 
 void RoomWater::fillIn(v1::Command& command) const {
@@ -45,24 +54,41 @@ void RoomWater::fillIn(v1::Command& command) const {
   command.mutable_breaking_wave()->set_side(toMessage(sim::openSide(sim().scene())));
 }
 
-RoomWater::Handler RoomWater::handlerOf(const v1::Command& command) {
-  switch (command.action_case()) {
-    case v1::Command::kSplash:
-      return &RoomWater::splash;
-    case v1::Command::kBreakingWave:
-      return &RoomWater::breakingWave;
-    case v1::Command::kStroke:
-      return &RoomWater::stroke;
-    case v1::Command::kSetParameter:
-      return &RoomWater::setParameter;
-    case v1::Command::kReset:
-      return &RoomWater::reset;
-    case v1::Command::kSpawnBoat:
-      return &RoomWater::spawnBoat;
-    case v1::Command::kControlBoat:
-      return &RoomWater::controlBoat;
-    case v1::Command::kRemoveBoat:
-      return &RoomWater::removeBoat;
+RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
+  using Command = v1::Command;
+  switch (action) {
+    case Command::kSplash:
+      return [](RoomWater& room, const Command& command) {
+        return outcomeOf(room.sim().start(scene::toCore(command.splash())));
+      };
+    case Command::kBreakingWave:
+      return [](RoomWater& room, const Command& command) {
+        return outcomeOf(room.sim().start(scene::toCore(command.breaking_wave())));
+      };
+    case Command::kStroke:
+      return [](RoomWater& room, const Command& command) {
+        return outcomeOf(room.sim().draw(toStrokePart(command.stroke())));
+      };
+    case Command::kSetParameter:
+      return [](RoomWater& room, const Command& command) { return room.setParameter(command.set_parameter()); };
+    case Command::kReset:
+      return [](RoomWater& room, const Command&) {
+        room.sim().reset();
+        return Outcome();
+      };
+    case Command::kSpawnBoat:
+      return [](RoomWater& room, const Command& command) { return room.spawnBoat(command.spawn_boat()); };
+    case Command::kControlBoat:
+      return [](RoomWater& room, const Command& command) {
+        const v1::ControlBoat& control = command.control_boat();
+        return outcomeOf(room.sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio()),
+                         "control_boat.boat_id", v1::REJECT_REASON_UNKNOWN_BOAT);
+      };
+    case Command::kRemoveBoat:
+      return [](RoomWater& room, const Command& command) {
+        return outcomeOf(room.sim().removeBoat(command.remove_boat().boat_id()), "remove_boat.boat_id",
+                         v1::REJECT_REASON_UNKNOWN_BOAT);
+      };
     default:
       return nullptr;
   }
@@ -70,36 +96,12 @@ RoomWater::Handler RoomWater::handlerOf(const v1::Command& command) {
 
 RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
   assert(takes(command));
-  Outcome outcome = (this->*handlerOf(command))(command);
+  Outcome outcome = handlerOf(command.action_case())(*this, command);
   if (!outcome) ++state_id_;
   return outcome;
 }
 
-RoomWater::Outcome RoomWater::splash(const v1::Command& command) {
-  return outcomeOf(sim().start(scene::toCore(command.splash())));
-}
-
-RoomWater::Outcome RoomWater::breakingWave(const v1::Command& command) {
-  return outcomeOf(sim().start(scene::toCore(command.breaking_wave())));
-}
-
-RoomWater::Outcome RoomWater::stroke(const v1::Command& command) {
-  return outcomeOf(sim().draw(toStrokePart(command.stroke())));
-}
-
-RoomWater::Outcome RoomWater::reset(const v1::Command& /*command*/) {
-  sim().reset();
-  return {};
-}
-
-RoomWater::Outcome RoomWater::outcomeOf(const core::Result<void>& started) {
-  if (started) return {};
-  const bool busy = started.error().code == core::ErrorCode::kUnavailable;
-  return wire::rejection(busy ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "", started.error().message);
-}
-
-RoomWater::Outcome RoomWater::setParameter(const v1::Command& command) {
-  const v1::SetParameter& change = command.set_parameter();
+RoomWater::Outcome RoomWater::setParameter(const v1::SetParameter& change) {
   v1::Scene changed = scene();
   if (auto error = scene::setParameter(changed, change.path(), change.value())) {
     return wire::rejection(error->reason, error->field, error->message);
@@ -141,28 +143,10 @@ std::optional<TickWork> RoomWater::workWith(const v1::SetParameter& change) cons
   return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }
 
-RoomWater::Outcome RoomWater::spawnBoat(const v1::Command& command) {
-  const auto boat_id = sim().spawnBoat(scene::toCore(command.spawn_boat().boat()));
-  if (!boat_id) {
-    const bool full = boat_id.error().code == core::ErrorCode::kUnavailable;
-    return wire::rejection(full ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_ABSENT_PART, "spawn_boat",
-                           boat_id.error().message);
-  }
-  spawned_boat_id_ = *boat_id;
-  return {};
-}
-
-RoomWater::Outcome RoomWater::controlBoat(const v1::Command& command) {
-  const v1::ControlBoat& control = command.control_boat();
-  const auto done = sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio());
-  if (done) return {};
-  return wire::rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "control_boat.boat_id", done.error().message);
-}
-
-RoomWater::Outcome RoomWater::removeBoat(const v1::Command& command) {
-  const auto done = sim().removeBoat(command.remove_boat().boat_id());
-  if (done) return {};
-  return wire::rejection(v1::REJECT_REASON_UNKNOWN_BOAT, "remove_boat.boat_id", done.error().message);
+RoomWater::Outcome RoomWater::spawnBoat(const v1::SpawnBoat& spawn) {
+  const auto boat_id = sim().spawnBoat(scene::toCore(spawn.boat()));
+  if (boat_id) spawned_boat_id_ = *boat_id;
+  return outcomeOf(boat_id, "spawn_boat");
 }
 
 std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
@@ -209,9 +193,8 @@ core::Result<void> RoomWater::restore(const v1::KeptState& state) {
   const auto hash = recordedHash(sim(), state.state_hash_version());
   if (!hash) return hash.error();
   if (*hash != state.state_hash()) {
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       fmt::format("the saved water is damaged: its hash is {:016x}, {:016x} was expected", *hash,
-                                   state.state_hash())};
+    return core::invalid(fmt::format("the saved water is damaged: its hash is {:016x}, {:016x} was expected", *hash,
+                                     state.state_hash()));
   }
   setScene(std::move(now));
   tick_shift_ = state.tick() - sim().tick();

@@ -2,6 +2,7 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <variant>
 
@@ -25,135 +26,89 @@ bool readWords(const std::string& bytes, std::vector<std::uint32_t>& words) {
   return true;
 }
 
+/// A number that a message and a struct have under the same name: how to write it into the message, and to read it.
+#define NUMBER(name)                                                                \
+  std::pair([](auto& message, const auto& from) { message.set_##name(from.name); }, \
+            [](const auto& message, auto& to) { to.name = message.name(); })
+
+constexpr std::tuple kSplashNumbers{NUMBER(x_m), NUMBER(z_m), NUMBER(radius_m), NUMBER(depth_m), NUMBER(duration_s)};
+constexpr std::tuple kWaveNumbers{NUMBER(amplitude_m), NUMBER(length_m), NUMBER(duration_s), NUMBER(direction_deg),
+                                  NUMBER(width_m),     NUMBER(x_m),      NUMBER(z_m)};
+constexpr std::tuple kStrokeNumbers{NUMBER(person_id), NUMBER(stroke_id), NUMBER(radius_m), NUMBER(depth_m)};
+constexpr std::tuple kPointNumbers{NUMBER(time_s), NUMBER(x_m), NUMBER(z_m), NUMBER(pressure_ratio)};
+constexpr std::tuple kActiveStrokeNumbers{NUMBER(is_whole), NUMBER(play_s), NUMBER(still_s),
+                                          NUMBER(x_m),      NUMBER(z_m),    NUMBER(level_ratio)};
+constexpr std::tuple kBoatNumbers{
+    NUMBER(x_m),      NUMBER(z_m),           NUMBER(heading_deg),   NUMBER(length_m),       NUMBER(beam_m),
+    NUMBER(height_m), NUMBER(density_ratio), NUMBER(max_speed_mps), NUMBER(throttle_ratio), NUMBER(rudder_ratio)};
+constexpr std::tuple kSeaNumbers{NUMBER(wind_speed_mps), NUMBER(significant_height_m), NUMBER(peak_period_s),
+                                 NUMBER(peak_length_m)};
+constexpr std::tuple kSeaWaveNumbers{NUMBER(amplitude_m), NUMBER(omega_radps), NUMBER(kx_radpm), NUMBER(kz_radpm),
+                                     NUMBER(phase_rad),   NUMBER(decay_pm),    NUMBER(sides)};
+constexpr std::tuple kLayoutNumbers{NUMBER(count),        NUMBER(columns_x_count),   NUMBER(columns_z_count),
+                                    NUMBER(layers_count), NUMBER(spacing_m),         NUMBER(pitch_x_m),
+                                    NUMBER(pitch_z_m),    NUMBER(volume_m3),         NUMBER(support_radius_m),
+                                    NUMBER(mass_kg),      NUMBER(virtual_mass_kg),   NUMBER(floor_drag_pm2),
+                                    NUMBER(wall_share),   NUMBER(wall_reach_m),      NUMBER(constraint_softness_pm2),
+                                    NUMBER(band_m),       NUMBER(splat_reach_count), NUMBER(neighbours_count),
+                                    NUMBER(cell_count)};
+#undef NUMBER
+
+template <typename Message, typename Struct, typename Numbers>
+void write(Message& out, const Struct& from, const Numbers& numbers) {
+  std::apply([&](const auto&... number) { (number.first(out, from), ...); }, numbers);
+}
+
+template <typename Message, typename Struct, typename Numbers>
+void read(const Message& message, Struct& out, const Numbers& numbers) {
+  std::apply([&](const auto&... number) { (number.second(message, out), ...); }, numbers);
+}
+
 void fill(v1::ActiveEffect& out, const core::Splash& splash) {
-  v1::Splash& message = *out.mutable_splash();
-  message.set_x_m(splash.x_m);
-  message.set_z_m(splash.z_m);
-  message.set_radius_m(splash.radius_m);
-  message.set_depth_m(splash.depth_m);
-  message.set_duration_s(splash.duration_s);
+  write(*out.mutable_splash(), splash, kSplashNumbers);
 }
 
 void fill(v1::ActiveEffect& out, const core::BreakingWave& wave) {
   v1::BreakingWave& message = *out.mutable_breaking_wave();
+  write(message, wave, kWaveNumbers);
   message.set_side(toMessage(wave.side.value()));  // an active one has a side
-  message.set_amplitude_m(wave.amplitude_m);
-  message.set_length_m(wave.length_m);
-  message.set_duration_s(wave.duration_s);
   message.set_shape(wave.shape == core::WaveShape::kSwell ? v1::WAVE_SHAPE_SWELL : v1::WAVE_SHAPE_BREAKING);
-  message.set_direction_deg(wave.direction_deg);
-  message.set_width_m(wave.width_m);
-  message.set_x_m(wave.x_m);
-  message.set_z_m(wave.z_m);
 }
 
 void fill(v1::ActiveStroke& out, const sim::Stroke& stroke) {
   v1::Stroke& message = *out.mutable_stroke();
-  message.set_person_id(stroke.person_id);
-  message.set_stroke_id(stroke.stroke_id);
+  write(message, stroke, kStrokeNumbers);
   message.set_tool(toMessage(stroke.tool));
-  message.set_radius_m(stroke.radius_m);
-  message.set_depth_m(stroke.depth_m);
   message.set_ends(stroke.is_lifted);
-  for (const sim::StrokePoint& point : stroke.path) {
-    v1::StrokePoint& one = *message.add_points();
-    one.set_time_s(point.time_s);
-    one.set_x_m(point.x_m);
-    one.set_z_m(point.z_m);
-    one.set_pressure_ratio(point.pressure_ratio);
-  }
-  out.set_is_whole(stroke.is_whole);
-  out.set_play_s(stroke.play_s);
-  out.set_still_s(stroke.still_s);
-  out.set_x_m(stroke.x_m);
-  out.set_z_m(stroke.z_m);
-  out.set_level_ratio(stroke.level_ratio);
+  for (const sim::StrokePoint& point : stroke.path) write(*message.add_points(), point, kPointNumbers);
+  write(out, stroke, kActiveStrokeNumbers);
 }
 
 sim::Stroke toStroke(const v1::ActiveStroke& message) {
+  sim::Stroke out;
+  read(message.stroke(), out, kStrokeNumbers);
   sim::StrokePart part = toStrokePart(message.stroke());
-  return {.person_id = part.person_id,
-          .stroke_id = part.stroke_id,
-          .tool = part.tool,
-          .radius_m = part.radius_m,
-          .depth_m = part.depth_m,
-          .path = std::move(part.points),
-          .is_lifted = part.ends,
-          .is_whole = message.is_whole(),
-          .play_s = message.play_s(),
-          .still_s = message.still_s(),
-          .x_m = message.x_m(),
-          .z_m = message.z_m(),
-          .level_ratio = message.level_ratio()};
-}
-
-void fill(v1::Boat& out, const core::Boat& boat) {
-  out.set_x_m(boat.x_m);
-  out.set_z_m(boat.z_m);
-  out.set_heading_deg(boat.heading_deg);
-  out.set_length_m(boat.length_m);
-  out.set_beam_m(boat.beam_m);
-  out.set_height_m(boat.height_m);
-  out.set_density_ratio(boat.density_ratio);
-  out.set_max_speed_mps(boat.max_speed_mps);
-  out.set_throttle_ratio(boat.throttle_ratio);
-  out.set_rudder_ratio(boat.rudder_ratio);
+  out.tool = part.tool;
+  out.path = std::move(part.points);
+  out.is_lifted = part.ends;
+  read(message, out, kActiveStrokeNumbers);
+  return out;
 }
 
 void fill(v1::SeaState& out, const sim::SeaState& sea) {
-  out.set_wind_speed_mps(sea.wind_speed_mps);
-  out.set_significant_height_m(sea.significant_height_m);
-  out.set_peak_period_s(sea.peak_period_s);
-  out.set_peak_length_m(sea.peak_length_m);
-  for (const sim::PlaneWave& wave : sea.waves) {
-    v1::SeaWave& message = *out.add_waves();
-    message.set_amplitude_m(wave.amplitude_m);
-    message.set_omega_radps(wave.omega_radps);
-    message.set_kx_radpm(wave.kx_radpm);
-    message.set_kz_radpm(wave.kz_radpm);
-    message.set_phase_rad(wave.phase_rad);
-    message.set_decay_pm(wave.decay_pm);
-    message.set_sides(wave.sides);
-  }
+  write(out, sea, kSeaNumbers);
+  for (const sim::PlaneWave& wave : sea.waves) write(*out.add_waves(), wave, kSeaWaveNumbers);
 }
 
 sim::SeaState toSea(const v1::SeaState& message) {
-  sim::SeaState out{.wind_speed_mps = message.wind_speed_mps(),
-                    .significant_height_m = message.significant_height_m(),
-                    .peak_period_s = message.peak_period_s(),
-                    .peak_length_m = message.peak_length_m(),
-                    .waves = {}};
-  for (const v1::SeaWave& wave : message.waves())
-    out.waves.push_back({.amplitude_m = wave.amplitude_m(),
-                         .omega_radps = wave.omega_radps(),
-                         .kx_radpm = wave.kx_radpm(),
-                         .kz_radpm = wave.kz_radpm(),
-                         .phase_rad = wave.phase_rad(),
-                         .decay_pm = wave.decay_pm(),
-                         .sides = wave.sides()});
+  sim::SeaState out;
+  read(message, out, kSeaNumbers);
+  for (const v1::SeaWave& wave : message.waves()) read(wave, out.waves.emplace_back(), kSeaWaveNumbers);
   return out;
 }
 
 void fill(v1::ParticleLayout& out, const sim::ParticleLayout& layout) {
-  out.set_count(layout.count);
-  out.set_columns_x_count(layout.columns_x_count);
-  out.set_columns_z_count(layout.columns_z_count);
-  out.set_layers_count(layout.layers_count);
-  out.set_spacing_m(layout.spacing_m);
-  out.set_pitch_x_m(layout.pitch_x_m);
-  out.set_pitch_z_m(layout.pitch_z_m);
-  out.set_volume_m3(layout.volume_m3);
-  out.set_support_radius_m(layout.support_radius_m);
-  out.set_mass_kg(layout.mass_kg);
-  out.set_virtual_mass_kg(layout.virtual_mass_kg);
-  out.set_floor_drag_pm2(layout.floor_drag_pm2);
-  out.set_wall_share(layout.wall_share);
-  out.set_wall_reach_m(layout.wall_reach_m);
-  out.set_constraint_softness_pm2(layout.constraint_softness_pm2);
-  out.set_band_m(layout.band_m);
-  out.set_splat_reach_count(layout.splat_reach_count);
-  out.set_neighbours_count(layout.neighbours_count);
-  out.set_cell_count(layout.cell_count);
+  write(out, layout, kLayoutNumbers);
   out.mutable_layer_heights_m()->Add(layout.layer_heights_m.begin(), layout.layer_heights_m.end());
   out.mutable_min_m()->Add(layout.min_m.begin(), layout.min_m.end());
   out.mutable_max_m()->Add(layout.max_m.begin(), layout.max_m.end());
@@ -162,27 +117,9 @@ void fill(v1::ParticleLayout& out, const sim::ParticleLayout& layout) {
 
 /// nullopt if a corner or the cells do not have three numbers.
 std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
-  sim::ParticleLayout out;
   if (message.min_m_size() != 3 || message.max_m_size() != 3 || message.cells_size() != 3) return std::nullopt;
-  out.count = message.count();
-  out.columns_x_count = message.columns_x_count();
-  out.columns_z_count = message.columns_z_count();
-  out.layers_count = message.layers_count();
-  out.spacing_m = message.spacing_m();
-  out.pitch_x_m = message.pitch_x_m();
-  out.pitch_z_m = message.pitch_z_m();
-  out.volume_m3 = message.volume_m3();
-  out.support_radius_m = message.support_radius_m();
-  out.mass_kg = message.mass_kg();
-  out.virtual_mass_kg = message.virtual_mass_kg();
-  out.floor_drag_pm2 = message.floor_drag_pm2();
-  out.wall_share = message.wall_share();
-  out.wall_reach_m = message.wall_reach_m();
-  out.constraint_softness_pm2 = message.constraint_softness_pm2();
-  out.band_m = message.band_m();
-  out.splat_reach_count = message.splat_reach_count();
-  out.neighbours_count = message.neighbours_count();
-  out.cell_count = message.cell_count();
+  sim::ParticleLayout out;
+  read(message, out, kLayoutNumbers);
   out.layer_heights_m.assign(message.layer_heights_m().begin(), message.layer_heights_m().end());
   std::ranges::copy(message.min_m(), out.min_m.begin());
   std::ranges::copy(message.max_m(), out.max_m.begin());
@@ -193,17 +130,8 @@ std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
 }  // namespace
 
 v1::Side toMessage(core::Side side) {
-  switch (side) {
-    case core::Side::kPlusX:
-      return v1::SIDE_PLUS_X;
-    case core::Side::kMinusX:
-      return v1::SIDE_MINUS_X;
-    case core::Side::kPlusZ:
-      return v1::SIDE_PLUS_Z;
-    case core::Side::kMinusZ:
-      return v1::SIDE_MINUS_Z;
-    case core::Side::kDirection:
-      break;
+  for (const v1::Side one : {v1::SIDE_PLUS_X, v1::SIDE_MINUS_X, v1::SIDE_PLUS_Z, v1::SIDE_MINUS_Z}) {
+    if (scene::toCore(one) == side) return one;
   }
   return v1::SIDE_DIRECTION;
 }
@@ -230,14 +158,9 @@ sim::StrokeTool toTool(v1::StrokeTool tool) {
 }  // namespace
 
 sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
-  sim::StrokePart out{.person_id = stroke.person_id(),
-                      .stroke_id = stroke.stroke_id(),
-                      .radius_m = stroke.radius_m(),
-                      .depth_m = stroke.depth_m(),
-                      .ends = stroke.ends(),
-                      .tool = toTool(stroke.tool())};
-  for (const v1::StrokePoint& point : stroke.points())
-    out.points.push_back({point.time_s(), point.x_m(), point.z_m(), point.pressure_ratio()});
+  sim::StrokePart out{.ends = stroke.ends(), .tool = toTool(stroke.tool())};
+  read(stroke, out, kStrokeNumbers);
+  for (const v1::StrokePoint& point : stroke.points()) read(point, out.points.emplace_back(), kPointNumbers);
   return out;
 }
 
@@ -261,7 +184,7 @@ v1::WaterState toMessage(const sim::SavedState& state) {
   for (const sim::BoatPlace& place : state.host.boats.places) {
     v1::BoatPlace& message = *out.add_boats();
     message.set_boat_id(place.boat_id);
-    fill(*message.mutable_boat(), place.boat);
+    write(*message.mutable_boat(), place.boat, kBoatNumbers);
   }
   out.set_first_boat_id(state.host.boats.first_id);
   out.set_next_boat_id(state.host.boats.next_id);
@@ -276,7 +199,7 @@ v1::WaterState toMessage(const sim::SavedState& state) {
 
 core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   const auto invalid = [](const char* what) {
-    return core::Error{core::ErrorCode::kInvalidInput, std::string("the saved water is damaged: ") + what};
+    return core::invalid(std::string("the saved water is damaged: ") + what);
   };
   sim::SavedState out;
   out.run_tick = message.run_tick();

@@ -161,6 +161,13 @@ v1::Role toWire(core::Role role) {
   return v1::ROLE_OPERATOR;
 }
 
+std::optional<core::Role> fromWire(v1::Role role) {
+  for (const core::Role one : {core::Role::kViewer, core::Role::kPlayer, core::Role::kOperator}) {
+    if (toWire(one) == role) return one;
+  }
+  return std::nullopt;
+}
+
 v1::Reject toWire(const CommandRejection& rejection) {
   v1::Reject out;
   out.set_command_id(rejection.command_id);

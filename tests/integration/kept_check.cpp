@@ -11,6 +11,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/water/water_builder.h>
 
+#include "open_room.h"
 #include "silent_outlets.h"
 
 namespace spindrift::test {
@@ -151,7 +152,7 @@ core::Result<std::optional<v1::KeptState>> restoredRoom(history::StateStore& sto
   if (!water) return water.error();
   (*water)->bind();
   {
-    auto made = rooms::Room::create(room, *std::move(water), rules, builder, outlets, *std::move(place));
+    auto made = test::openRoom(room, *std::move(water), rules, builder, outlets, *std::move(place));
     if (!made) return made.error();
     (*made)->releaseDevice();
   }

@@ -7,6 +7,7 @@
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
 
+#include "open_room.h"
 #include "server_fixture.h"
 
 namespace spindrift::test {
@@ -58,7 +59,7 @@ class RoomTest : public testing::Test {
     ASSERT_TRUE(water);
     context_ = &(*water)->context();
     builder_ = std::make_unique<water::WaterBuilder>(device_, rules_.scenes);
-    auto room = rooms::Room::create("main", *std::move(water), rules_, *builder_, outlets_, place());
+    auto room = test::openRoom("main", *std::move(water), rules_, *builder_, outlets_, place());
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     watchEverything();

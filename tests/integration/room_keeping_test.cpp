@@ -2,6 +2,7 @@
 #include <spindrift/history/state_store.h>
 
 #include "full_disk.h"
+#include "open_room.h"
 #include "room_fixture.h"
 #include "silent_outlets.h"
 #include "temporary_folder.h"
@@ -58,7 +59,7 @@ class KeptRoomTest : public RoomTest {
   /// As a server that starts again.
   void comeBack() {
     comeBackBy([&](std::unique_ptr<water::Water> water, history::RoomPlace kept) {
-      return rooms::Room::create("main", std::move(water), rules_, *builder_, outlets_, std::move(kept));
+      return test::openRoom("main", std::move(water), rules_, *builder_, outlets_, std::move(kept));
     });
   }
   /// As a server that opens the room while others run. Returns the number of pieces.
@@ -378,7 +379,7 @@ TEST_F(SleepingRoomTest, TakesCommandsAgainAfterAFullDisk) {
   ASSERT_TRUE(scene);
   auto water = water::Water::create(device_, *std::move(scene));
   ASSERT_TRUE(water);
-  auto room = rooms::Room::create("asleep", *std::move(water), rules_, *builder_, deserted_, *std::move(kept));
+  auto room = test::openRoom("asleep", *std::move(water), rules_, *builder_, deserted_, *std::move(kept));
   ASSERT_TRUE(room) << room.error().message;
   room_ = *std::move(room);
   room_->start(Clock::now());

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/clock_watch.h>
+#include <spindrift/rooms/simulation_thread.h>
 
 namespace spindrift::rooms {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/growth_news.h>
+#include <spindrift/rooms/room_reports.h>
 
 namespace spindrift::rooms {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/real_time_clock.h>
+#include <spindrift/rooms/room_time.h>
 
 namespace spindrift::rooms {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/tick_times.h>
+#include <spindrift/rooms/tick_meter.h>
 
 namespace spindrift::rooms {
 namespace {

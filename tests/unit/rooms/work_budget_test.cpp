@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/work_budget.h>
+#include <spindrift/rooms/command_desk.h>
 
 namespace spindrift::rooms {
 namespace {

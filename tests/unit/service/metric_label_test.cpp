@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/service/metric_label.h>
+#include <spindrift/service/metrics.h>
 
 namespace spindrift::service {
 namespace {

@@ -1,6 +1,5 @@
 #include <array>
 #include <csignal>
-#include <optional>
 
 #include <gmock/gmock.h>
 #include <sys/wait.h>
@@ -19,28 +18,28 @@ TEST(FolderLock, IsTakenOnceAtATime) {
   const test::TemporaryFolder folder;
   const auto place = folder.path() / "state";
   {
-    const auto lock = FolderLock::take(place);
+    const auto lock = lockFolder(place);
     ASSERT_TRUE(lock) << lock.error().message;
-    const auto second = FolderLock::take(place);
+    const auto second = lockFolder(place);
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().code, core::ErrorCode::kUnavailable);
     EXPECT_THAT(second.error().message, HasSubstr(place.string()));
     EXPECT_THAT(second.error().message, HasSubstr("process " + std::to_string(::getpid()) + ":"));
   }
-  EXPECT_TRUE(FolderLock::take(place));
+  EXPECT_TRUE(lockFolder(place));
 }
 
 TEST(FolderLock, MovesWithItsObject) {
   const test::TemporaryFolder folder;
-  std::optional<FolderLock> kept;
+  FolderLock kept;
   {
-    auto lock = FolderLock::take(folder.path());
+    auto lock = lockFolder(folder.path());
     ASSERT_TRUE(lock);
-    kept.emplace(std::move(*lock));
+    kept = std::move(*lock);
   }
-  EXPECT_FALSE(FolderLock::take(folder.path()));
+  EXPECT_FALSE(lockFolder(folder.path()));
   kept.reset();
-  EXPECT_TRUE(FolderLock::take(folder.path()));
+  EXPECT_TRUE(lockFolder(folder.path()));
 }
 
 TEST(FolderLock, EndsWithAKilledProcess) {
@@ -49,7 +48,7 @@ TEST(FolderLock, EndsWithAKilledProcess) {
   ASSERT_EQ(::pipe(taken.data()), 0);
   const pid_t child = ::fork();
   if (child == 0) {
-    const auto lock = FolderLock::take(folder.path());
+    const auto lock = lockFolder(folder.path());
     const char answer = lock ? 'y' : 'n';
     if (::write(taken[1], &answer, 1) == 1) ::pause();
     ::_exit(1);
@@ -57,10 +56,10 @@ TEST(FolderLock, EndsWithAKilledProcess) {
   char answer = 0;
   ASSERT_EQ(::read(taken[0], &answer, 1), 1);
   EXPECT_EQ(answer, 'y');
-  EXPECT_THAT(FolderLock::take(folder.path()).error().message, HasSubstr("process " + std::to_string(child) + ":"));
+  EXPECT_THAT(lockFolder(folder.path()).error().message, HasSubstr("process " + std::to_string(child) + ":"));
   ::kill(child, SIGKILL);
   ::waitpid(child, nullptr, 0);
-  EXPECT_TRUE(FolderLock::take(folder.path()));
+  EXPECT_TRUE(lockFolder(folder.path()));
   ::close(taken[0]);
   ::close(taken[1]);
 }
@@ -68,7 +67,7 @@ TEST(FolderLock, EndsWithAKilledProcess) {
 TEST(FolderLock, AFolderThatCannotBeUsedIsNamed) {
   const test::TemporaryFolder folder;
   folder.write("file", "");
-  EXPECT_THAT(FolderLock::take(folder.path() / "file").error().message, HasSubstr("file"));
+  EXPECT_THAT(lockFolder(folder.path() / "file").error().message, HasSubstr("file"));
 }
 
 }  // namespace

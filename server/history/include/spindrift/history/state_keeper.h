@@ -32,7 +32,7 @@ class StateKeeper {
   /// Takes over files that recover() was called on. `writer` writes the snapshots; it outlives this. `lock` is held as
   /// long as the files are; it may be null.
   StateKeeper(std::string room, std::unique_ptr<state::RoomFiles> files, std::chrono::milliseconds interval,
-              core::Worker& writer, std::shared_ptr<state::FolderLock> lock = nullptr);
+              core::Worker& writer, state::FolderLock lock = nullptr);
   /// Waits for a snapshot that is being written.
   ~StateKeeper();
   StateKeeper(const StateKeeper&) = delete;

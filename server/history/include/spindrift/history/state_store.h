@@ -56,10 +56,10 @@ class StateStore {
   [[nodiscard]] const std::filesystem::path& folder() const { return options_.folder; }
 
  private:
-  StateStore(StateOptions options, std::optional<state::FolderLock> lock);
+  StateStore(StateOptions options, state::FolderLock lock);
 
   const StateOptions options_;
-  std::optional<state::FolderLock> lock_;  ///< of the whole folder
+  state::FolderLock lock_;  ///< of the whole folder; null if it is shared
   core::Worker writer_;
 };
 

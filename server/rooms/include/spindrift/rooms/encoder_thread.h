@@ -13,11 +13,22 @@
 #include <thread>
 
 #include <spindrift/codec/frame_encoder.h>
+#include <spindrift/codec/stream.h>
 #include <spindrift/core/demand_table.h>
 #include <spindrift/core/frame_view.h>
-#include <spindrift/rooms/frame_outlet.h>
+#include <spindrift/core/level.h>
 
 namespace spindrift::rooms {
+
+/// Receives encoded frames, on the encoder thread; must not block.
+class FrameOutlet {
+ public:
+  virtual ~FrameOutlet() = default;
+
+  /// Sends the data of one level of a frame to the sessions that take it. `levels`: which these are.
+  virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
+                       const core::FrameLevels& levels) = 0;
+};
 
 /// Encodes frames in the order of their rooms' arrival. At most one frame waits per room: a newer one replaces it in
 /// its place of the queue, and the loss is counted. So no room waits for more than one frame of each other room.

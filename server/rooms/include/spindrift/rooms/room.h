@@ -38,26 +38,20 @@ class Room {
   using TimePoint = RoomTime::TimePoint;
 
   /// `water` is bound to the calling thread, which runs the room; it lives until releaseDevice(). `builder` makes the
-  /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, the room continues
-  /// from there; `water` is then built from its start_scene. Errors: kInvalidInput if the room cannot continue from
-  /// there; those of the log; kUnavailable if the first snapshot cannot be written.
-  static core::Result<std::shared_ptr<Room>> create(std::string name, std::unique_ptr<water::Water> water,
-                                                    const RoomRules& rules, water::WaterBuilder& builder,
-                                                    RoomOutlets& outlets, history::RoomPlace place = {},
-                                                    v1::RoomAccess access = {});
-  /// The same, but a kept room is only at its snapshot. Before anything else it has to be brought where it was, by
-  /// restoreUntil().
+  /// water of scene changes. `builder` and `outlets` outlive the room. With a kept room in `place`, `water` is built
+  /// from its start_scene, and the room is at its snapshot. Before anything else restoreUntil() has to bring it where
+  /// it was. Errors: kInvalidInput if the room cannot continue from there; those of the log.
   static core::Result<std::shared_ptr<Room>> begin(std::string name, std::unique_ptr<water::Water> water,
                                                    const RoomRules& rules, water::WaterBuilder& builder,
                                                    RoomOutlets& outlets, history::RoomPlace place,
                                                    v1::RoomAccess access);
   /// Repeats what happened after the snapshot, at least a tick and then until the deadline; with TimePoint::max() to
   /// the end. Returns whether the room is where it was; a new snapshot of it is then being written. Errors: those of
-  /// create(); the room is of no use then.
+  /// begin(), and kUnavailable if the snapshot cannot be written; the room is of no use then.
   core::Result<bool> restoreUntil(TimePoint deadline);
   /// Waits until the deadline for the snapshot that restoreUntil() has begun. Returns whether the room can run: the
-  /// snapshot is on the disk, or the disk has had RoomRules::disk_patience for it. Errors: those of create(); the room
-  /// is of no use then.
+  /// snapshot is on the disk, or the disk has had RoomRules::disk_patience for it. Error: kUnavailable if it
+  /// cannot be written; the room is of no use then.
   core::Result<bool> isOnDisk(TimePoint deadline) { return keeping_.isOnDisk(deadline); }
 
   // Any thread.
@@ -96,7 +90,6 @@ class Room {
   /// finished frames. At most one tick per call, so that rooms share the thread.
   void run(TimePoint now, const ServerLoad& load = {});
 
-  /// For the summary at the end.
   [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.
   [[nodiscard]] std::uint64_t tick() const { return water_->tick(); }
@@ -110,8 +103,8 @@ class Room {
   core::Result<void> saveUntil(TimePoint deadline);
   /// Ends the simulation; only the any-thread functions may be called afterwards.
   void releaseDevice();
-  [[nodiscard]] double meanRealTimeFactor(TimePoint now) const { return time_.meanRealTimeFactor(now); }
-  [[nodiscard]] std::uint64_t droppedFrameCount() const { return frames_.droppedCount(); }
+  /// Returns one line for the end of the server.
+  [[nodiscard]] std::string summary(TimePoint now) const;
 
  private:
   Room(std::string name, const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets,
@@ -135,7 +128,7 @@ class Room {
   void publishVitals(TimePoint now);
 
   const std::string name_;
-  v1::RoomAccess access_;  ///< set by create() only
+  v1::RoomAccess access_;  ///< set by begin() and restoreUntil() only
   RoomOutlets& outlets_;
   const std::shared_ptr<core::DemandTable> demand_ = std::make_shared<core::DemandTable>();
   std::unique_ptr<water::RoomWater> water_;

@@ -35,7 +35,7 @@ class RoomOpener {
   core::Result<Opening> begin(RoomSetup setup);
   /// Works until the deadline, at least for a tick; with TimePoint::max() to the end. Returns whether the room is where
   /// it was. A room that cannot continue from a snapshot continues from the one before, and begins anew, with its
-  /// scene, if it cannot continue from any. Errors: those of Room::create().
+  /// scene, if it cannot continue from any. Errors: those of Room.
   core::Result<bool> restore(Opening& opening, TimePoint deadline);
   /// Call it for an opening that ends with an error, or is not continued. A state on disk stays there.
   void giveUp(Opening& opening);

@@ -2,12 +2,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include <spindrift/rooms/growth_news.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_time.h>
 #include <spindrift/rooms/room_view.h>
@@ -25,6 +25,29 @@ struct News {
   std::map<std::string, double> parameters{};  ///< current values by path
   std::string recovered{};                     ///< one line for people, after the device failed
   std::string fidelity{};                      ///< the same, after the fidelity changed
+};
+
+/// Reports the growth of a counter at most once per interval; the next report includes all growth in between.
+class GrowthNews {
+ public:
+  using TimePoint = std::chrono::steady_clock::time_point;
+
+  explicit GrowthNews(TimePoint::duration interval) : interval_(interval) {}
+
+  /// Returns whether to report `count` now; if so, it counts as reported.
+  [[nodiscard]] bool tell(std::uint64_t count, TimePoint now) {
+    if (count == told_count_ || now < next_) return false;
+    told_count_ = count;
+    next_ = now + interval_;
+    return true;
+  }
+  /// Sets a new starting value of the counter.
+  void restart(std::uint64_t count) { told_count_ = count; }
+
+ private:
+  TimePoint::duration interval_;
+  std::uint64_t told_count_ = 0;
+  TimePoint next_{};
 };
 
 /// Lives on the simulation thread, except for snapshot().

@@ -9,7 +9,6 @@
 
 #include <spindrift/core/frame_view.h>
 #include <spindrift/rooms/tick_meter.h>
-#include <spindrift/rooms/tick_times.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/v1/wire.pb.h>

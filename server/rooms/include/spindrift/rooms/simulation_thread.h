@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -17,12 +18,33 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/device.h>
-#include <spindrift/rooms/clock_watch.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/room_opener.h>
 #include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
+
+/// Notices that somebody set the clock of the system: compares it with one that nobody sets. Both run at nearly the
+/// same rate: corrections by NTP are below 0.05 %, so only a step makes them differ by seconds between two calls.
+class ClockWatch {
+ public:
+  using Seconds = std::chrono::duration<double>;
+
+  /// Returns by how much the system's clock was set since the last call, positive for forward; nothing if it was not.
+  /// Steps below kLeast are not reported.
+  std::optional<Seconds> step(std::chrono::system_clock::time_point wall,
+                              std::chrono::steady_clock::time_point steady) {
+    const Seconds offset = Seconds(wall.time_since_epoch()) - Seconds(steady.time_since_epoch());
+    const Seconds step = offset - offset_.value_or(offset);
+    offset_ = offset;
+    if (std::chrono::abs(step) < kLeast) return std::nullopt;
+    return step;
+  }
+
+ private:
+  static constexpr Seconds kLeast{2.0};
+  std::optional<Seconds> offset_;
+};
 
 class SimulationThread {
  public:
@@ -76,9 +98,11 @@ class SimulationThread {
   [[nodiscard]] const std::vector<std::string>& summary() const { return summary_; }
 
  private:
-  /// Runs on the thread between two rounds; called with false when it will not be carried out.
-  using Change = std::function<void(bool runs)>;
-
+  /// Runs on the thread between two rounds; if it will not run, `done` gets the error.
+  struct Change {
+    std::function<void()> run;
+    Done done;
+  };
   struct Opening {
     RoomOpener::Opening room;
     Done done;
@@ -90,7 +114,7 @@ class SimulationThread {
   void loop();
   /// Ends the wait between two rounds. Any thread.
   void wake();
-  void carryOut(Change change, const Done& done);
+  void carryOut(Change change);
   /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
   /// Continues with the openings, between the ticks of the rooms that run.
@@ -100,7 +124,6 @@ class SimulationThread {
   void add(std::shared_ptr<Room> room);
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
-  void summarise(const Room& room);
 
   RoomOutlets& outlets_;
   RoomRules rules_;

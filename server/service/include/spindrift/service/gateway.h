@@ -8,7 +8,6 @@
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/frame_outlet.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/cluster_hooks.h>

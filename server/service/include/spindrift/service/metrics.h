@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
@@ -34,6 +35,13 @@ struct MetricsSources {
   std::atomic<const net::Server*> network{nullptr};
   std::atomic<const rooms::EncoderThread*> encoder{nullptr};
 };
+
+/// Returns NAME="VALUE" for any bytes as value: quotes, backslashes and line breaks are escaped as the format of
+/// Prometheus says, and what is not UTF-8 is replaced by U+FFFD.
+std::string metricLabel(std::string_view name, std::string_view value);
+
+/// "out_of_range", as the page names REJECT_REASON_OUT_OF_RANGE.
+std::string nameOf(v1::RejectReason reason);
 
 /// Returns the page of a process without rooms: its network and the answers to commands that it passed on.
 std::string metricsText(const net::ServerStats& network, const CommandCounters& commands);

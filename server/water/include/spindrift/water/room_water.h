@@ -103,19 +103,11 @@ class RoomWater {
   [[nodiscard]] std::set<std::uint32_t> boatIds() const;
 
  private:
-  using Handler = Outcome (RoomWater::*)(const v1::Command& command);
+  using Handler = Outcome (*)(RoomWater& room, const v1::Command& command);
   /// Returns the handler of a command; null if it does not change the water.
-  static Handler handlerOf(const v1::Command& command);
-  Outcome splash(const v1::Command& command);
-  Outcome breakingWave(const v1::Command& command);
-  Outcome stroke(const v1::Command& command);
-  Outcome setParameter(const v1::Command& command);
-  Outcome reset(const v1::Command& command);
-  Outcome spawnBoat(const v1::Command& command);
-  Outcome controlBoat(const v1::Command& command);
-  Outcome removeBoat(const v1::Command& command);
-  /// Returns the rejection if the water did not take a command.
-  static Outcome outcomeOf(const core::Result<void>& started);
+  static Handler handlerOf(v1::Command::ActionCase action);
+  Outcome setParameter(const v1::SetParameter& change);
+  Outcome spawnBoat(const v1::SpawnBoat& spawn);
   /// Exchanges the waters between two ticks.
   void exchange(std::unique_ptr<Water>& water);
 

@@ -80,6 +80,8 @@ ClientMessage parseClientMessage(core::ByteView bytes);
 std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command);
 
 v1::Role toWire(core::Role role);
+/// Returns nullopt for an unknown role.
+std::optional<core::Role> fromWire(v1::Role role);
 v1::Reject toWire(const CommandRejection& rejection);
 
 /// Returns nullopt if this server supports the client's version, otherwise one line for a Refusal.
