@@ -1,6 +1,6 @@
-#include "scene_folder.h"
-
 #include <system_error>
+
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 
@@ -27,12 +27,9 @@ std::string leavesFolder(const fs::path& folder, const fs::path& name) {
 
 core::Result<fs::path> fileInFolder(const std::optional<fs::path>& folder, const fs::path& name,
                                     const std::string& instead) {
-  const auto invalid = [](std::string message) {
-    return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
-  };
-  if (!folder) return invalid("cannot be read, because this scene is not a file; give " + instead + " instead");
+  if (!folder) return core::invalid("cannot be read, because this scene is not a file; give " + instead + " instead");
   if (const std::string why = leavesFolder(*folder, name); !why.empty())
-    return invalid(why + "; put the file into the folder of the scene file");
+    return core::invalid(why + "; put the file into the folder of the scene file");
   return *folder / name;
 }
 

@@ -8,8 +8,7 @@
 #include <spindrift/core/text.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "bed_rules.h"
-#include "wave_makers.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -21,10 +20,6 @@ constexpr double kMaxBoatWidthRatio = 0.5;
 constexpr double kFittingDraughtRatio = 0.6;
 
 using core::metres;
-
-std::string indexed(const char* list, int index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
 
 /// A rectangle seen from above. half_z is to the left of the heading; the heading turns from +x toward +z.
 struct Footprint {
