@@ -40,16 +40,16 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   boost::asio::awaitable<void> finish();
   /// Asks the application; 503 if the server ends meanwhile.
   boost::asio::awaitable<Reply> ask(const HttpRequest& request);
-  boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
+  boost::asio::awaitable<void> upgrade(const Request& request);
   /// Adapts the reply to this request's target and origin: see asProblem() and allowOrigin().
-  Reply fitted(const UpgradeRequest& request, Reply reply) const;
+  Reply fitted(const Request& request, Reply reply) const;
   /// Returns whether this is a CORS preflight of an allowed Origin for the REST interface.
-  bool isPreflight(const UpgradeRequest& request) const;
+  bool isPreflight(const Request& request) const;
   /// Sets peer_ and address_ for this request, whose client a trusted proxy may name; returns the refusal of a
   /// malformed X-Forwarded-For.
-  std::optional<Reply> identify(const UpgradeRequest& request);
+  std::optional<Reply> identify(const Request& request);
   /// Returns a refusal for a request over its address's rate or from a foreign page, upgrade or not; else nullopt.
-  std::optional<Reply> refuseAny(const UpgradeRequest& request);
+  std::optional<Reply> refuseAny(const Request& request);
   /// Returns false if the connection is gone.
   boost::asio::awaitable<bool> send(const Reply& reply, bool head_only, unsigned version, bool keep_alive);
   /// Sends the last reply of this connection, then closes so that the peer can still read it.
