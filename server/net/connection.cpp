@@ -207,7 +207,7 @@ asio::awaitable<bool> Connection::secure() {
     }
     co_return false;
   }
-  stream_.useTls(makeServerTls(stream_.tcp(), *context_.credentials->context()));
+  stream_.useServerTls(*context_.credentials->context());
   std::tie(error, std::ignore) = co_await stream_.async_handshake(asio::buffer(first), kToken);
   if (error) {
     ++context_.counters.failed_tls_handshake_count;

@@ -19,7 +19,7 @@
 
 namespace spindrift::net {
 
-class Connection final : public Stoppable, public std::enable_shared_from_this<Connection> {
+class Connection final : public std::enable_shared_from_this<Connection> {
  public:
   /// The socket's executor must be a strand of its own.
   Connection(std::uint64_t id, boost::asio::ip::tcp::socket socket, ServerContext& context);
@@ -27,8 +27,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   /// Serves in the background until the connection is gone, then leaves context.connections.
   void start();
 
-  void shutDown() override;
-  void cut() override;
+  /// A session closes with 1001; a plain HTTP connection is just closed. Thread-safe; returns at once.
+  void shutDown();
+  /// Closes the socket now. Thread-safe; returns at once.
+  void cut();
 
  private:
   boost::asio::awaitable<void> run();

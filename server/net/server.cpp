@@ -17,7 +17,6 @@
 #include <spindrift/net/server.h>
 
 #include "connection.h"
-#include "descriptors.h"
 #include "server_context.h"
 
 namespace spindrift::net {
@@ -38,7 +37,7 @@ class ServerImpl final : public Server {
  public:
   ServerImpl(const ServerOptions& options, TrustedNetworks proxies, std::unique_ptr<TlsCredentials> credentials,
              Application& application)
-      : context_(options, std::move(proxies), std::move(credentials), application),
+      : context_{options, std::move(proxies), std::move(credentials), application},
         accept_strand_(asio::make_strand(io_)),
         acceptor_(accept_strand_) {
     context_.hub.gatherFrames([this](std::function<void()> wake) {

@@ -300,10 +300,6 @@ void Session::offerNewest(StreamIndex stream, const FrameBytes& frame) {
   if (outbox_.offerNewest(stream, frame).wake) wakeWriter();
 }
 
-void Session::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
-  outbox_.setWatch(stream, watch);
-}
-
 void Session::close(CloseCode code, std::string reason) {
   if (!outbox_.requestClose(code, std::move(reason))) return;
   asio::post(strand_, [self = shared_from_this()] { self->armCloseDeadline(); });

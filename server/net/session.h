@@ -36,7 +36,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) override;
   void wakeForFrames() override;
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
-  void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override;
+  void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override { outbox_.setWatch(stream, watch); }
   void enterRoom(std::shared_ptr<core::DemandTable> demand) override { outbox_.enterRoom(std::move(demand)); }
   Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;
