@@ -45,11 +45,8 @@ void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) 
 }
 
 void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
-  if (scene.bed().floor_depth_m() > scene.wave().depth_m()) {
-    addRange(issues, "bed.floor_depth_m",
-             metres(scene.bed().floor_depth_m()) + " is deeper than the water of " + metres(scene.wave().depth_m()) +
-                 "; choose at most " + metres(scene.wave().depth_m()));
-  }
+  checkAtMost(scene.bed().floor_depth_m(), scene.wave().depth_m(), "bed.floor_depth_m",
+              "is deeper than the water of " + metres(scene.wave().depth_m()), issues);
   for (int i = 0; i < scene.bed().shapes_size(); ++i) {
     const v1::BedShape& shape = scene.bed().shapes(i);
     if (shape.cone().crest_radius_m() <= shape.cone().toe_radius_m()) continue;

@@ -5,7 +5,6 @@
 
 #include <spindrift/core/text.h>
 
-#include "gray_png.h"
 #include "scene_parts.h"
 
 namespace spindrift::scene {

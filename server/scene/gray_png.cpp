@@ -1,5 +1,3 @@
-#include "gray_png.h"
-
 #include <algorithm>
 #include <array>
 #include <csetjmp>
@@ -12,6 +10,8 @@
 #include <png.h>
 
 #include <spindrift/core/files.h>
+
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {

@@ -5,7 +5,6 @@
 
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/scene/setting.h>
 #include <spindrift/scene/to_core.h>
 
 namespace spindrift::scene {

@@ -200,7 +200,31 @@ std::string report(const std::string& file_label, std::vector<LocatedError> erro
   return text;
 }
 
+/// Returns the reason why a name does not stay in the folder; empty if it does.
+std::string leavesFolder(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  if (name.is_absolute()) return "is an absolute path";
+  for (const std::filesystem::path& part : name) {
+    if (part == "..") return "goes up by \"..\"";
+  }
+  // Links are followed: what they point to has to be in the folder, too.
+  std::error_code error;
+  const std::filesystem::path root =
+      std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
+  const std::filesystem::path file = std::filesystem::weakly_canonical(root / name, error);
+  if (error) return "cannot be found: " + error.message();
+  const std::filesystem::path inside = file.lexically_relative(root);
+  return inside.empty() || *inside.begin() == ".." ? "is a link that leads out of it" : "";
+}
+
 }  // namespace
+
+core::Result<std::filesystem::path> fileInFolder(const std::optional<std::filesystem::path>& folder,
+                                                 const std::filesystem::path& name, const std::string& instead) {
+  if (!folder) return core::invalid("cannot be read, because this scene is not a file; give " + instead + " instead");
+  if (const std::string why = leavesFolder(*folder, name); !why.empty())
+    return core::invalid(why + "; put the file into the folder of the scene file");
+  return *folder / name;
+}
 
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
                                        std::optional<v1::Fidelity> fidelity,

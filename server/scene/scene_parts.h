@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -29,6 +30,10 @@ void checkCount(int count, int max_count, const char* path, const char* what, st
 /// Checks that a point lies in the water along one axis.
 void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues);
 
+/// Checks a length; `what` says of one that is too long what it is: "is more than the side of the water".
+void checkAtMost(double value_m, double max_m, const std::string& path, const std::string& what,
+                 std::vector<FieldIssue>& issues);
+
 /// Bed and gauges: counts, names, and shapes that are missing.
 void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues);
 
@@ -51,6 +56,20 @@ core::Result<std::filesystem::path> fileInFolder(const std::optional<std::filesy
 /// wrong to `issues`, with paths that start with "bed.grid".
 void readDepthGrid(v1::DepthGrid& grid, const std::optional<std::filesystem::path>& folder,
                    std::vector<FieldIssue>& issues);
+
+/// Larger images are refused before their pixels are read.
+inline constexpr std::uint32_t kImageSideMaxCount = 1024;
+
+/// A 16-bit grayscale image.
+struct GrayImage {
+  std::uint32_t width_count = 0;
+  std::uint32_t height_count = 0;
+  std::vector<std::uint16_t> values;  ///< width * height, the upper row first
+};
+
+/// Reads a 16-bit grayscale PNG. Errors: those of openFile(); kInvalidInput with the reason, without the file's name:
+/// too big, no PNG, damaged, of another kind than 16-bit grayscale without transparency.
+core::Result<GrayImage> readGrayPng(const std::filesystem::path& file);
 
 /// Adds the numbers of the files that series of wave-makers name. `folder`: as for fileInFolder(). Adds what is wrong
 /// to `issues`.

@@ -140,6 +140,12 @@ void checkCount(int count, int max_count, const char* path, const char* what, st
            std::to_string(count) + " " + what + " are more than " + std::to_string(max_count) + "; " + advice);
 }
 
+void checkAtMost(double value_m, double max_m, const std::string& path, const std::string& what,
+                 std::vector<FieldIssue>& issues) {
+  if (value_m > max_m)
+    addRange(issues, path, metres(value_m) + " " + what + "; choose at most " + metres(max_m), max_m);
+}
+
 void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
   if (std::abs(value_m) <= 0.5 * side_m) return;
   addRange(issues, path,
@@ -169,22 +175,14 @@ std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene&
   if (const auto* splash = std::get_if<core::Splash>(&effect)) {
     checkPosition(splash->x_m, water.side_x_m, "splash.x_m", issues);
     checkPosition(splash->z_m, water.side_z_m, "splash.z_m", issues);
-    const double max_radius_m = 0.5 * water.shorterSide_m();
-    if (splash->radius_m > max_radius_m) {
-      addRange(
-          issues, "splash.radius_m",
-          metres(splash->radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m),
-          max_radius_m);
-    }
+    checkAtMost(splash->radius_m, 0.5 * water.shorterSide_m(), "splash.radius_m",
+                "is more than half the side of the water", issues);
     checkHeight(splash->depth_m, water.depth_m, "splash.depth_m", issues);
   } else {
     const auto& wave = std::get<core::BreakingWave>(effect);
     checkHeight(wave.amplitude_m, water.depth_m, "breaking_wave.amplitude_m", issues);
-    const double side_m = sideAlong(wave.side, water);
-    if (wave.length_m > side_m) {
-      addRange(issues, "breaking_wave.length_m",
-               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m), side_m);
-    }
+    checkAtMost(wave.length_m, sideAlong(wave.side, water), "breaking_wave.length_m",
+                "is more than the side of the water", issues);
   }
   return issues;
 }
@@ -208,14 +206,12 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
                    "points in the order of their times");
     }
   }
-  const auto atMost = [&](double value_m, double max_m, const char* path, const char* rule) {
-    if (value_m > max_m)
-      addRange(issues, path, metres(value_m) + " is more than " + rule + "; choose at most " + metres(max_m));
-  };
-  atMost(stroke.radius_m(), kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
-         "an eighth of the side of the water");
-  atMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m", "a third of the water's depth");
-  atMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m", "half the radius");
+  checkAtMost(stroke.radius_m(), kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
+              "is more than an eighth of the side of the water", issues);
+  checkAtMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m",
+              "is more than a third of the water's depth", issues);
+  checkAtMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m",
+              "is more than half the radius", issues);
   return issues;
 }
 
