@@ -293,8 +293,6 @@ asio::awaitable<Reply> Connection::ask(const HttpRequest& request) {
   switch (outcome.end) {
     case PendingAnswer::End::kAnswered:
       co_return applicationReply(request.path, std::move(outcome.reply));
-    case PendingAnswer::End::kUnknown:
-      co_return applicationReply(request.path, std::nullopt);
     case PendingAnswer::End::kDropped:
       spdlog::error("{} {} was never answered", request.method, request.path);
       co_return textReply(500, kFailed);

@@ -110,18 +110,13 @@ class ErrorCollector : public google::protobuf::io::ErrorCollector {
 
 /// Blanks a line that contains only one "field: value" and no brackets, so that parsing can continue after it.
 bool blankSimpleLine(std::string& text, int line) {
-  std::size_t begin = 0;
-  for (int i = 0; i < line; ++i) {
-    begin = text.find('\n', begin);
-    if (begin == std::string::npos) return false;
-    ++begin;
-  }
+  const std::size_t begin = offsetOf(text, {line, 0});
   const std::size_t end = std::min(text.find('\n', begin), text.size());
   const std::string_view content(text.data() + begin, end - begin);
   const bool simple =
       content.find(':') != std::string_view::npos && content.find_first_of("{}<>[]") == std::string_view::npos;
   if (!simple) return false;
-  std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  text.replace(begin, end - begin, end - begin, ' ');
   return true;
 }
 
@@ -150,7 +145,7 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
     const bool parsed = parser.ParseFromString(text, &scene);
     // A later attempt reports the unknown fields of an earlier one again.
     for (LocatedError& error : found) {
-      const bool known = std::any_of(errors.begin(), errors.end(), [&](const LocatedError& other) {
+      const bool known = std::ranges::any_of(errors, [&](const LocatedError& other) {
         return other.location.line == error.location.line && other.message == error.message;
       });
       if (!known) errors.push_back(std::move(error));
