@@ -33,8 +33,8 @@ constexpr std::size_t kLongBytes = 8 * 1024;
 }  // namespace
 
 struct Transport::Tls {
-  Tls(boost::beast::tcp_stream& tcp, TlsContext& context, ssl::stream_base::handshake_type our_role)
-      : stream(tcp, context.asio()), role(our_role) {}
+  Tls(boost::beast::tcp_stream& tcp, TlsContext& settings, ssl::stream_base::handshake_type our_role)
+      : stream(tcp, settings.context), role(our_role) {}
 
   void write(std::span<const asio::const_buffer> parts, Handler handler) {
     if (parts.size() == 1 || parts[0].size() >= kLongBytes)

@@ -27,7 +27,7 @@ namespace spindrift::net {
 inline constexpr auto kToken = boost::asio::as_tuple(boost::asio::use_awaitable);
 
 /// Settings of many connections: certificate and key of a server, or the authorities that a client trusts. Thread-safe.
-class TlsContext;
+struct TlsContext;
 
 /// Models AsyncStream of Beast. Used on its executor, a strand; one read and one write may be in progress at a time.
 /// Movable; a moved-from stream can only be destroyed.
