@@ -9,7 +9,6 @@
 #include <spindrift/core/paths.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/scene/setting.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/open_side.h>

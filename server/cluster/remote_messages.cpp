@@ -132,7 +132,7 @@ void RemoteRoom::takeNews(const v1::RoomNews& message) {
         room->boats = content.boat_list();
       } else if (const auto error = scene::setParameter(room->scene, content.parameter_changed().path(),
                                                         content.parameter_changed().value())) {
-        spdlog::error("room {}: the change of {} could not be followed: {}", name_, error->field, error->message);
+        spdlog::error("room {}: the change of {} could not be followed: {}", name_, error->path, error->message);
       }
       auto view = std::make_shared<service::VenueView>(*view_);
       view->room = std::move(room);

@@ -11,10 +11,6 @@ namespace fs = std::filesystem;
 
 namespace {
 
-Error unavailable(std::string message) {
-  return {ErrorCode::kUnavailable, std::move(message)};
-}
-
 /// Returns the name of an encoding other than UTF-8: told by its byte order mark, or by the zero bytes of two
 /// characters of ASCII, with which all texts here begin. Empty for UTF-8.
 std::string otherEncoding(std::string_view text) {
@@ -32,8 +28,7 @@ std::string otherEncoding(std::string_view text) {
 
 Result<FileStream> openFile(const fs::path& file, const std::string& what) {
   // The system would open the file whose name ends there.
-  if (file.native().find('\0') != std::string::npos)
-    return Error{ErrorCode::kInvalidInput, "has a zero byte in its name; remove it"};
+  if (file.native().find('\0') != std::string::npos) return invalid("has a zero byte in its name; remove it");
   std::error_code error;
   const fs::file_status status = fs::status(file, error);
   if (!fs::exists(status)) return unavailable("there is no such file; check the path");
@@ -53,14 +48,12 @@ Result<std::string> readText(const fs::path& file, std::size_t max_bytes, const 
   text.resize(std::fread(text.data(), 1, text.size(), stream->get()));
   if (std::ferror(stream->get()) != 0)
     return unavailable(std::string("cannot be read: ") + std::strerror(errno) + "; check the file");
-  if (text.size() > max_bytes)
-    return Error{ErrorCode::kInvalidInput, "is bigger than " + std::to_string(max_bytes) + " bytes; " + advice};
+  if (text.size() > max_bytes) return invalid("is bigger than " + std::to_string(max_bytes) + " bytes; " + advice);
   if (const std::string encoding = otherEncoding(text); !encoding.empty()) {
-    return Error{ErrorCode::kInvalidInput,
-                 "is " + encoding +
-                     " text; save it as UTF-8: choose this encoding where the editor saves the file, or "
-                     "run iconv -f " +
-                     encoding + " -t UTF-8"};
+    return invalid("is " + encoding +
+                   " text; save it as UTF-8: choose this encoding where the editor saves the file, or "
+                   "run iconv -f " +
+                   encoding + " -t UTF-8");
   }
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
   if (text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());

@@ -32,7 +32,7 @@ fs::path findWebRoot() {
   return findAboveProgram({"share/spindrift/web", "web-client/dist"});
 }
 
-core::Result<fs::path> findScene(const std::string& given) {
+Result<fs::path> findScene(const std::string& given) {
   std::error_code error;
   const fs::path folder = findSceneFolder();
   const bool is_name = given.find('/') == std::string::npos && !given.empty();
@@ -48,12 +48,10 @@ core::Result<fs::path> findScene(const std::string& given) {
     }
     std::string listed;
     for (const std::string& name : names) listed += (listed.empty() ? "" : ", ") + name;
-    return core::Error{core::ErrorCode::kUnavailable,
-                       "scene '" + given + "': neither a file nor a shipped scene; shipped are: " + listed};
+    return unavailable("scene '" + given + "': neither a file nor a shipped scene; shipped are: " + listed);
   }
-  return core::Error{
-      core::ErrorCode::kUnavailable,
-      "scene '" + given + "': no such file: give the path of a .textproto file or the name of a shipped scene"};
+  return unavailable("scene '" + given +
+                     "': no such file: give the path of a .textproto file or the name of a shipped scene");
 }
 
 }  // namespace spindrift::core

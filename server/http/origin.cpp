@@ -1,21 +1,21 @@
 #include <algorithm>
 #include <cctype>
-#include <charconv>
+
+#include <boost/beast/core/string.hpp>
 
 #include <spindrift/http/network_text.h>
-#include <spindrift/http/origin.h>
+
+#include "field_list.h"
 
 namespace spindrift::net {
 namespace {
 
-bool equalsIgnoringCase(std::string_view a, std::string_view b) {
-  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
-}
+using boost::beast::iequals;
 
 /// "http://host:8080" -> "host:8080"; empty without http:// or https:// ("null").
 std::string_view hostOf(std::string_view origin) {
   for (const std::string_view scheme : {std::string_view("http://"), std::string_view("https://")}) {
-    if (origin.size() > scheme.size() && equalsIgnoringCase(origin.substr(0, scheme.size()), scheme))
+    if (origin.size() > scheme.size() && iequals(origin.substr(0, scheme.size()), scheme))
       return origin.substr(scheme.size());
   }
   return {};
@@ -26,7 +26,7 @@ bool isLoopbackName(std::string_view host) {
   const std::size_t end = is_bracketed ? host.find(']') : host.rfind(':');
   const std::string_view name =
       is_bracketed && end != std::string_view::npos ? host.substr(0, end + 1) : host.substr(0, end);
-  if (equalsIgnoringCase(name, "localhost") || name == "[::1]") return true;
+  if (iequals(name, "localhost") || name == "[::1]") return true;
   // 127.0.0.0/8, but not a host name that starts with "127.".
   return name.starts_with("127.") &&
          std::ranges::all_of(name, [](unsigned char c) { return std::isdigit(c) || c == '.'; });
@@ -38,23 +38,17 @@ core::Error wrongOrigin(const std::string& text, const std::string& why) {
 
 /// Returns "host:port" without the port that the scheme has by default, which browsers leave out.
 std::string_view withoutDefaultPort(std::string_view scheme, std::string_view authority) {
-  const std::string_view port = equalsIgnoringCase(scheme, "https")  ? ":443"
-                                : equalsIgnoringCase(scheme, "http") ? ":80"
-                                                                     : std::string_view();
+  const std::string_view port = iequals(scheme, "https")  ? ":443"
+                                : iequals(scheme, "http") ? ":80"
+                                                          : std::string_view();
   return authority.substr(0, authority.size() - (authority.ends_with(port) ? port.size() : 0));
 }
 
 /// A host in the characters that browsers send, with an optional port.
 bool isAuthority(std::string_view text) {
-  constexpr int kPortMax = 65535;
   const std::size_t colon = text.ends_with(']') ? std::string_view::npos : text.rfind(':');
   const std::string_view host = text.substr(0, colon);
-  if (colon != std::string_view::npos) {
-    const std::string_view digits = text.substr(colon + 1);
-    int port = 0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), port);
-    if (error != std::errc() || end != digits.data() + digits.size() || port < 1 || port > kPortMax) return false;
-  }
+  if (colon != std::string_view::npos && wholeNumber(text.substr(colon + 1), kPortMax).value_or(0) == 0) return false;
   const bool is_ipv6 = host.starts_with('[') && host.ends_with(']');
   const std::string_view marks = is_ipv6 ? "[:]." : "-._";
   return !host.empty() && std::ranges::all_of(host, [&](unsigned char c) {
@@ -79,28 +73,27 @@ core::Result<void> checkOrigin(const std::string& text) {
   const std::string_view rest = std::string_view(text).substr(mark + 3);
   const std::string_view whole = rest.substr(0, rest.find_first_of("/?#"));
   const std::string_view authority = withoutDefaultPort(scheme, whole.substr(whole.rfind('@') + 1));
-  const bool is_socket = equalsIgnoringCase(scheme, "ws") || equalsIgnoringCase(scheme, "wss");
+  const bool is_socket = iequals(scheme, "ws") || iequals(scheme, "wss");
   if (!isAuthority(authority)) {
     return wrongOrigin(text, std::string("its host or port is invalid; ") + kForm +
                                  ", other letters than ASCII in the host as browsers send them (xn--…)");
   }
-  const std::string meant = (is_socket ? equalsIgnoringCase(scheme, "ws") ? "http" : "https" : std::string(scheme)) +
-                            "://" + std::string(authority);
+  const std::string meant =
+      (is_socket ? iequals(scheme, "ws") ? "http" : "https" : std::string(scheme)) + "://" + std::string(authority);
   if (meant == text) return {};
   return wrongOrigin(
       text, "browsers send the scheme of the page, its host, and a port other than the scheme's own; write " + meant);
 }
 
 bool isOriginListed(std::string_view origin, std::span<const std::string> allowed) {
-  return std::ranges::any_of(
-      allowed, [&](const std::string& known) { return known == "*" || equalsIgnoringCase(known, origin); });
+  return std::ranges::any_of(allowed, [&](const std::string& known) { return known == "*" || iequals(known, origin); });
 }
 
 bool isOriginAllowed(std::string_view origin, std::string_view host, bool listens_on_loopback,
                      std::span<const std::string> allowed) {
   if (origin.empty() || isOriginListed(origin, allowed)) return true;
   const std::string_view page_host = hostOf(origin);
-  if (page_host.empty() || !equalsIgnoringCase(page_host, host)) return false;
+  if (page_host.empty() || !iequals(page_host, host)) return false;
   return !listens_on_loopback || isLoopbackName(host);
 }
 

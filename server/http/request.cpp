@@ -41,10 +41,6 @@ bool isHost(std::string_view host) {
   });
 }
 
-std::string_view viewOf(beast::string_view text) {
-  return {text.data(), text.size()};
-}
-
 /// RFC 9112 section 3.2.2: a request for a proxy names the whole URL, and servers have to accept it. Its host counts
 /// then, whatever the Host header says.
 void useOriginForm(Request& request) {
@@ -67,32 +63,32 @@ std::optional<Reply> refuseHead(RequestParser& parser) {
   for (const http::field field : kSingleFields) {
     if (request.count(field) <= 1) continue;
     return textReply(400, "There are " + std::to_string(request.count(field)) + " " +
-                              std::string(viewOf(http::to_string(field))) + " headers; send one.");
+                              std::string(http::to_string(field)) + " headers; send one.");
   }
   if (request.version() >= kHttp11 && request.count(http::field::host) == 0) {
     return textReply(400, "An HTTP/1.1 request needs a Host header.");
   }
   useOriginForm(request);
-  if (!isHost(viewOf(request[http::field::host]))) {
+  if (!isHost(request[http::field::host])) {
     return textReply(400, "The Host header is not a host with an optional port.");
   }
   if (parser.chunked()) return textReply(411, "A body needs a Content-Length here; it may not come in chunks.");
   // RFC 9112 section 6.3: with another coding two readers could disagree where the body ends. Boost's parser ignores
   // it.
   if (const auto coding = request.find(http::field::transfer_encoding); coding != request.end()) {
-    return textReply(400, "The Transfer-Encoding " + printable(viewOf(coding->value())) +
+    return textReply(400, "The Transfer-Encoding " + printable(coding->value()) +
                               " is not known here: send a Content-Length instead.");
   }
   // RFC 9110 section 10.1.1.
   if (const auto expected = request.find(http::field::expect); expected != request.end() && !expectsContinue(request)) {
-    return textReply(417, "The Expect header " + printable(viewOf(expected->value())) +
+    return textReply(417, "The Expect header " + printable(expected->value()) +
                               " is not known here: send 100-continue, or leave it out.");
   }
   const bool has_body = request.method() == http::verb::post || request.method() == http::verb::put ||
                         request.method() == http::verb::patch;
-  if (has_body && isApiTarget(viewOf(request.target())) && request.count(http::field::content_length) == 0) {
-    return textReply(411, "A " + std::string(viewOf(request.method_string())) +
-                              " needs a Content-Length, also where its body is empty.");
+  if (has_body && isApiTarget(request.target()) && request.count(http::field::content_length) == 0) {
+    return textReply(
+        411, "A " + std::string(request.method_string()) + " needs a Content-Length, also where its body is empty.");
   }
   return std::nullopt;
 }
@@ -158,16 +154,15 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   if (more_bytes_count > 0) {
     return {textReply(400, "Nothing may follow an upgrade request before it is answered.")};
   }
-  const auto target = parseTarget(std::string_view(request.target().data(), request.target().size()));
+  const auto target = parseTarget(request.target());
   if (!target) return {textReply(400, "The request's path is not a plain absolute path.")};
-  if (const auto version = viewOf(request[http::field::sec_websocket_version]); version != kWebSocketVersion) {
+  if (const auto version = request[http::field::sec_websocket_version]; version != kWebSocketVersion) {
     return {
         webSocketReply((version.empty() ? "The upgrade has no Sec-WebSocket-Version"
                                         : "Sec-WebSocket-Version " + printable(version) + " is not supported here") +
                        ": send version 13.")};
   }
-  const auto key = request[http::field::sec_websocket_key];
-  if (!isKey({key.data(), key.size()})) {
+  if (!isKey(request[http::field::sec_websocket_key])) {
     return {textReply(400, "An upgrade needs a Sec-WebSocket-Key of 16 bytes in base64.")};
   }
   auto named = roomOfPath(target->path);
@@ -203,9 +198,8 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
     const core::Result<void> accepted = accept_room(decision.room);
     if (!accepted) {
       const bool is_temporary = accepted.error().code == core::ErrorCode::kUnavailable;
-      Reply reply = textReply(is_temporary ? 503 : 404, accepted.error().message);
-      if (is_temporary) reply.headers.emplace_back("Retry-After", "1");
-      return {.refusal = std::move(reply), .is_room_refused = true};
+      const std::string& why = accepted.error().message;
+      return {.refusal = is_temporary ? retryReply(503, why) : textReply(404, why), .is_room_refused = true};
     }
   } catch (const std::exception& error) {
     spdlog::error("whether a session may enter a room could not be decided: {}", error.what());

@@ -21,11 +21,7 @@ bool isHealthPath(std::string_view path) {
 
 /// RFC 9110 section 9.3.7.
 Reply optionsReply(std::string_view allowed) {
-  Reply reply;
-  reply.status = 204;
-  reply.body = std::make_shared<const std::string>();
-  reply.headers = {{"Cache-Control", "no-store"}, {"Allow", std::string(allowed)}};
-  return reply;
+  return {.status = 204, .headers = {{"Cache-Control", "no-store"}, {"Allow", std::string(allowed)}}};
 }
 
 Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
@@ -57,7 +53,6 @@ Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& f
   reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
   if (matchesEtag(head.if_none_match, file->etag)) {
     reply.status = 304;
-    reply.body = std::make_shared<const std::string>();
     return reply;
   }
   if (!file->coding.empty()) reply.headers.emplace_back("Content-Encoding", file->coding);
@@ -69,10 +64,14 @@ Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& f
 }  // namespace
 
 Reply textReply(unsigned status, std::string line) {
-  Reply reply;
-  reply.status = status;
-  reply.body = std::make_shared<const std::string>(std::move(line) + "\n");
-  reply.headers.emplace_back("Cache-Control", "no-store");
+  return {.status = status,
+          .body = std::make_shared<const std::string>(std::move(line) + "\n"),
+          .headers = {{"Cache-Control", "no-store"}}};
+}
+
+Reply retryReply(unsigned status, std::string line, std::int64_t after_s) {
+  Reply reply = textReply(status, std::move(line));
+  reply.headers.emplace_back("Retry-After", std::to_string(after_s));
   return reply;
 }
 
@@ -103,14 +102,11 @@ Reply asProblem(Reply reply) {
 }
 
 Reply preflightReply() {
-  Reply reply;
-  reply.status = 204;
-  reply.body = std::make_shared<const std::string>();
-  reply.headers = {{"Cache-Control", "no-store"},
-                   {"Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE"},
-                   {"Access-Control-Allow-Headers", "Authorization, Content-Type"},
-                   {"Access-Control-Max-Age", "600"}};
-  return reply;
+  return {.status = 204,
+          .headers = {{"Cache-Control", "no-store"},
+                      {"Access-Control-Allow-Methods", "GET, HEAD, POST, DELETE"},
+                      {"Access-Control-Allow-Headers", "Authorization, Content-Type"},
+                      {"Access-Control-Max-Age", "600"}}};
 }
 
 void allowOrigin(Reply& reply, std::string_view origin) {
@@ -144,13 +140,11 @@ std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticF
 
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
   if (!answer) return textReply(404, "There is nothing at " + printable(path) + ".");
-  Reply reply;
-  reply.status = answer->status;
-  reply.content_type = std::move(answer->content_type);
-  reply.body = std::make_shared<const std::string>(std::move(answer->body));
-  reply.headers = std::move(answer->headers);
-  reply.headers.emplace_back("Cache-Control", "no-store");
-  return reply;
+  answer->headers.emplace_back("Cache-Control", "no-store");
+  return {.status = answer->status,
+          .content_type = std::move(answer->content_type),
+          .body = std::make_shared<const std::string>(std::move(answer->body)),
+          .headers = std::move(answer->headers)};
 }
 
 std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {

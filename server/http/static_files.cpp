@@ -1,13 +1,18 @@
+#include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <chrono>
 #include <fstream>
 #include <system_error>
 #include <utility>
 
+#include <boost/beast/core/string.hpp>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/http/static_files.h>
+
+#include "field_list.h"
 
 namespace spindrift::net {
 namespace {
@@ -33,12 +38,8 @@ bool plainSegments(std::string_view relative) {
 
 /// Returns true if `path` lies inside `root` (both canonical): a link may lead outside.
 bool inside(const fs::path& root, const fs::path& path) {
-  auto part = path.begin();
-  for (const fs::path& root_part : root) {
-    if (part == path.end() || *part != root_part) return false;
-    ++part;
-  }
-  return part != path.end();
+  const auto [left, rest] = std::mismatch(root.begin(), root.end(), path.begin(), path.end());
+  return left == root.end() && rest != path.end();
 }
 
 std::string makeEtag(fs::file_time_type modified, std::uintmax_t size_bytes, std::string_view coding) {
@@ -46,7 +47,32 @@ std::string makeEtag(fs::file_time_type modified, std::uintmax_t size_bytes, std
          (coding.empty() ? "" : "-" + std::string(coding)) + "\"";
 }
 
+/// Returns the value of "q=0.5"; 0 if it is malformed.
+double weightOf(std::string_view parameter) {
+  parameter = trimmed(parameter);
+  if (!parameter.starts_with("q=") && !parameter.starts_with("Q=")) return 0.0;
+  parameter.remove_prefix(2);
+  double weight = 0.0;
+  const auto [end, error] = std::from_chars(parameter.data(), parameter.data() + parameter.size(), weight);
+  const bool is_weight =
+      error == std::errc() && end == parameter.data() + parameter.size() && weight >= 0 && weight <= 1;
+  return is_weight ? weight : 0.0;
+}
+
 }  // namespace
+
+double codingWeight(std::string_view accept_encoding, std::string_view coding) {
+  double of_others = 0.0;
+  while (!accept_encoding.empty()) {
+    const std::string_view entry = takeEntry(accept_encoding);
+    const std::size_t semicolon = entry.find(';');
+    const std::string_view name = trimmed(entry.substr(0, semicolon));
+    const double weight = semicolon == std::string_view::npos ? 1.0 : weightOf(entry.substr(semicolon + 1));
+    if (boost::beast::iequals(name, coding)) return weight;
+    if (name == "*") of_others = weight;
+  }
+  return of_others;
+}
 
 StaticFiles::StaticFiles(const std::string& web_root) {
   if (web_root.empty()) return;

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <charconv>
 
 #include <boost/asio/ip/address_v4.hpp>
 #include <boost/asio/ip/address_v6.hpp>
@@ -30,14 +29,6 @@ ip::address firstOf(const ip::address& address, unsigned bits) {
   return ip::network_v6(ip::address_v6(address.to_v6().to_bytes()), static_cast<unsigned short>(bits)).network();
 }
 
-/// Returns nullopt for anything but digits with an optional value up to `max`.
-std::optional<unsigned> number(std::string_view text, unsigned max) {
-  unsigned value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (text.empty() || error != std::errc() || end != text.data() + text.size() || value > max) return std::nullopt;
-  return value;
-}
-
 /// An address of a zone (fe80::1%eth0) means something on one machine only.
 std::optional<ip::address> addressOf(std::string_view text) {
   constexpr std::size_t kLongest = 45;  // an IPv4-mapped address with all digits
@@ -49,7 +40,6 @@ std::optional<ip::address> addressOf(std::string_view text) {
 
 /// An address with an optional port: 192.0.2.1, 192.0.2.1:80, 2001:db8::1, [2001:db8::1], [2001:db8::1]:80.
 std::optional<ip::address> entryOf(std::string_view text) {
-  constexpr unsigned kPortMax = 65535;
   std::string_view port;
   bool has_port = false;
   if (text.starts_with('[')) {
@@ -66,7 +56,7 @@ std::optional<ip::address> entryOf(std::string_view text) {
     port = text.substr(text.find(':') + 1);
     text = text.substr(0, text.find(':'));
   }
-  if (has_port && !number(port, kPortMax)) return std::nullopt;
+  if (has_port && !wholeNumber(port, kPortMax)) return std::nullopt;
   return addressOf(text);
 }
 
@@ -92,8 +82,8 @@ core::Result<TrustedNetworks::Network> TrustedNetworks::parseOne(const std::stri
     return invalid("'" + text + "' is not a network: write ADDRESS/BITS, such as 10.0.0.0/8 or 2001:db8::/32");
   }
   const unsigned bits_max = address.is_v4() ? kV4Bits : kV6Bits;
-  const auto bits =
-      slash == std::string::npos ? std::optional(bits_max) : number(std::string_view(text).substr(slash + 1), bits_max);
+  const auto bits = slash == std::string::npos ? std::optional(bits_max)
+                                               : wholeNumber(std::string_view(text).substr(slash + 1), bits_max);
   if (!bits) {
     return invalid("'" + text + "': the part behind '/' is a number of bits from 0 to " + std::to_string(bits_max));
   }

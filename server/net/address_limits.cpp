@@ -5,10 +5,7 @@
 namespace spindrift::net {
 
 AddressLimits::AddressLimits(const ServerOptions& options)
-    : requests_per_s_(options.address_requests_per_s),
-      request_burst_count_(options.address_request_burst_count),
-      messages_per_s_(options.address_messages_per_s),
-      message_burst_count_(options.address_message_burst_count),
+    : options_(options),
       session_max_count_(std::max<std::size_t>(
           1,
           static_cast<std::size_t>(options.address_session_share * static_cast<double>(options.max_session_count)))) {}
@@ -48,8 +45,8 @@ AddressLimits::Account& AddressLimits::account(const std::string& address, Clock
     if (accounts_.size() >= kMaxAddressCount) {
       accounts_.erase(std::ranges::min_element(accounts_, {}, [](const auto& entry) { return entry.second.used; }));
     }
-    const TokenBucket requests(requests_per_s_, request_burst_count_, now);
-    const TokenBucket messages(messages_per_s_, message_burst_count_, now);
+    const TokenBucket requests(options_.address_requests_per_s, options_.address_request_burst_count, now);
+    const TokenBucket messages(options_.address_messages_per_s, options_.address_message_burst_count, now);
     found = accounts_.emplace(address, Account{requests, messages, now}).first;
   }
   found->second.used = now;

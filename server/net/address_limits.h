@@ -39,10 +39,7 @@ class AddressLimits {
   };
   Account& account(const std::string& address, Clock::time_point now);
 
-  const double requests_per_s_;
-  const double request_burst_count_;
-  const double messages_per_s_;
-  const double message_burst_count_;
+  const ServerOptions options_;
   const std::size_t session_max_count_;
   mutable std::mutex mutex_;
   std::unordered_map<std::string, Account> accounts_;

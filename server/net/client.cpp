@@ -112,10 +112,10 @@ class ClientImpl final : public Client, public std::enable_shared_from_this<Clie
       stream.socket().set_option(asio::socket_base::receive_buffer_size(options_.receive_buffer_bytes), ignored);
     }
     if (url_.is_tls) {
-      stream.useTls(makeClientTls(stream.tcp(), **tls_, url_.host));
+      stream.useClientTls(**tls_, url_.host);
       const auto [tls_error, bytes_count] = co_await stream.async_handshake({}, kToken);
       if (tls_error) {
-        co_return "no TLS with " + url_.host + ":" + url_.port + ": " + stream.tls()->reasonOf(tls_error);
+        co_return "no TLS with " + url_.host + ":" + url_.port + ": " + stream.tlsReasonOf(tls_error);
       }
     }
     stream.expires_never();

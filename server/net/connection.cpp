@@ -16,7 +16,7 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/http/origin.h>
+#include <spindrift/http/network_text.h>
 
 namespace spindrift::net {
 namespace {
@@ -207,7 +207,7 @@ asio::awaitable<bool> Connection::secure() {
     }
     co_return false;
   }
-  stream_.useTls(makeServerTls(stream_.tcp(), *context_.credentials->context()));
+  stream_.useServerTls(*context_.credentials->context());
   std::tie(error, std::ignore) = co_await stream_.async_handshake(asio::buffer(first), kToken);
   if (error) {
     ++context_.counters.failed_tls_handshake_count;
@@ -225,34 +225,29 @@ asio::awaitable<void> Connection::finish() {
   stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
 
-Reply Connection::fitted(const UpgradeRequest& request, Reply reply) const {
-  const auto target = request.target();
-  if (!isApiTarget({target.data(), target.size()})) return reply;
+Reply Connection::fitted(const Request& request, Reply reply) const {
+  if (!isApiTarget(request.target())) return reply;
   reply = asProblem(std::move(reply));
   reply.headers.emplace_back("Vary", "Origin");
-  const auto origin = request[http::field::origin];
-  if (!origin.empty() && isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins)) {
-    allowOrigin(reply, {origin.data(), origin.size()});
-  }
+  const std::string_view origin = request[http::field::origin];
+  if (!origin.empty() && isOriginListed(origin, context_.options.allowed_origins)) allowOrigin(reply, origin);
   return reply;
 }
 
-bool Connection::isPreflight(const UpgradeRequest& request) const {
-  const auto target = request.target();
-  const auto origin = request[http::field::origin];
+bool Connection::isPreflight(const Request& request) const {
   return request.method() == http::verb::options && request.count(http::field::access_control_request_method) > 0 &&
-         isApiTarget({target.data(), target.size()}) &&
-         isOriginListed({origin.data(), origin.size()}, context_.options.allowed_origins);
+         isApiTarget(request.target()) &&
+         isOriginListed(request[http::field::origin], context_.options.allowed_origins);
 }
 
-std::optional<Reply> Connection::identify(const UpgradeRequest& request) {
+std::optional<Reply> Connection::identify(const Request& request) {
   if (!is_by_proxy_) return std::nullopt;
   // A proxy may send the requests of several clients through one connection.
   peer_ = nameOf(endpoint_);
   address_ = limitKey(endpoint_.address());
   std::vector<std::string_view> lines;
   const auto [first, end] = request.equal_range("X-Forwarded-For");
-  for (auto line = first; line != end; ++line) lines.emplace_back(line->value().data(), line->value().size());
+  for (auto line = first; line != end; ++line) lines.emplace_back(line->value());
   const auto client = forwardedClient(lines, context_.proxies);
   if (!client) {
     spdlog::debug("{}: {}", peer_, client.error().message);
@@ -265,25 +260,22 @@ std::optional<Reply> Connection::identify(const UpgradeRequest& request) {
   return std::nullopt;
 }
 
-std::optional<Reply> Connection::refuseAny(const UpgradeRequest& request) {
+std::optional<Reply> Connection::refuseAny(const Request& request) {
   if (!context_.addresses.takeRequest(address_, Clock::now())) {
     context_.counters.refused(Refused::kRate);
-    Reply reply = textReply(429, "Too many requests from your address: slow down.");
-    reply.headers.emplace_back("Retry-After", "1");
-    return reply;
+    return retryReply(429, "Too many requests from your address: slow down.");
   }
   // Any page may read what is public; only allowed Origins may send commands or open a stream.
   const bool acts = request.method() != http::verb::get && request.method() != http::verb::head;
   if (!acts && !beast::websocket::is_upgrade(request)) return std::nullopt;
-  const auto origin = request[http::field::origin];
-  const auto host = request[http::field::host];
-  if (isOriginAllowed({origin.data(), origin.size()}, {host.data(), host.size()}, context_.listens_on_loopback,
+  const std::string_view origin = request[http::field::origin];
+  if (isOriginAllowed(origin, request[http::field::host], context_.listens_on_loopback,
                       context_.options.allowed_origins)) {
     return std::nullopt;
   }
   context_.counters.refused(Refused::kOrigin);
-  return textReply(403, "Pages of this origin may not act here: start the server with --origin " +
-                            printable({origin.data(), origin.size()}) + " to allow them.");
+  return textReply(403, "Pages of this origin may not act here: start the server with --origin " + printable(origin) +
+                            " to allow them.");
 }
 
 asio::awaitable<Reply> Connection::ask(const HttpRequest& request) {
@@ -301,23 +293,18 @@ asio::awaitable<Reply> Connection::ask(const HttpRequest& request) {
   switch (outcome.end) {
     case PendingAnswer::End::kAnswered:
       co_return applicationReply(request.path, std::move(outcome.reply));
-    case PendingAnswer::End::kUnknown:
-      co_return applicationReply(request.path, std::nullopt);
     case PendingAnswer::End::kDropped:
       spdlog::error("{} {} was never answered", request.method, request.path);
       co_return textReply(500, kFailed);
-    case PendingAnswer::End::kCancelled: {
-      Reply reply = textReply(503, "The server ends before it has the answer; what was asked for may have been done.");
-      reply.headers.emplace_back("Retry-After", "1");
-      co_return reply;
-    }
+    case PendingAnswer::End::kCancelled:
+      co_return retryReply(503, "The server ends before it has the answer; what was asked for may have been done.");
     case PendingAnswer::End::kTimeout:
       break;
   }
   co_return textReply(504, "The server did not answer in time; what was asked for may still happen.");
 }
 
-asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
+asio::awaitable<void> Connection::upgrade(const Request& request) {
   // Reserved before the handshake, so that many simultaneous handshakes cannot exceed the limit.
   struct Place {
     ServerContext& context;
@@ -338,9 +325,8 @@ asio::awaitable<void> Connection::upgrade(const UpgradeRequest& request) {
   };
   if (const std::int64_t retry_after_s = context_.retry_after_s; retry_after_s > 0) {
     context_.counters.refused(Refused::kDraining);
-    Reply reply = textReply(503, "The server is about to end: try again in " + std::to_string(retry_after_s) + " s.");
-    reply.headers.emplace_back("Retry-After", std::to_string(retry_after_s));
-    co_await sendLast(std::move(reply), false);
+    const std::string line = "The server is about to end: try again in " + std::to_string(retry_after_s) + " s.";
+    co_await sendLast(retryReply(503, line, retry_after_s), false);
     co_return;
   }
   const Place place(context_, address_);

@@ -19,7 +19,7 @@
 
 namespace spindrift::net {
 
-class Connection final : public Stoppable, public std::enable_shared_from_this<Connection> {
+class Connection final : public std::enable_shared_from_this<Connection> {
  public:
   /// The socket's executor must be a strand of its own.
   Connection(std::uint64_t id, boost::asio::ip::tcp::socket socket, ServerContext& context);
@@ -27,8 +27,10 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   /// Serves in the background until the connection is gone, then leaves context.connections.
   void start();
 
-  void shutDown() override;
-  void cut() override;
+  /// A session closes with 1001; a plain HTTP connection is just closed. Thread-safe; returns at once.
+  void shutDown();
+  /// Closes the socket now. Thread-safe; returns at once.
+  void cut();
 
  private:
   boost::asio::awaitable<void> run();
@@ -40,16 +42,16 @@ class Connection final : public Stoppable, public std::enable_shared_from_this<C
   boost::asio::awaitable<void> finish();
   /// Asks the application; 503 if the server ends meanwhile.
   boost::asio::awaitable<Reply> ask(const HttpRequest& request);
-  boost::asio::awaitable<void> upgrade(const UpgradeRequest& request);
+  boost::asio::awaitable<void> upgrade(const Request& request);
   /// Adapts the reply to this request's target and origin: see asProblem() and allowOrigin().
-  Reply fitted(const UpgradeRequest& request, Reply reply) const;
+  Reply fitted(const Request& request, Reply reply) const;
   /// Returns whether this is a CORS preflight of an allowed Origin for the REST interface.
-  bool isPreflight(const UpgradeRequest& request) const;
+  bool isPreflight(const Request& request) const;
   /// Sets peer_ and address_ for this request, whose client a trusted proxy may name; returns the refusal of a
   /// malformed X-Forwarded-For.
-  std::optional<Reply> identify(const UpgradeRequest& request);
+  std::optional<Reply> identify(const Request& request);
   /// Returns a refusal for a request over its address's rate or from a foreign page, upgrade or not; else nullopt.
-  std::optional<Reply> refuseAny(const UpgradeRequest& request);
+  std::optional<Reply> refuseAny(const Request& request);
   /// Returns false if the connection is gone.
   boost::asio::awaitable<bool> send(const Reply& reply, bool head_only, unsigned version, bool keep_alive);
   /// Sends the last reply of this connection, then closes so that the peer can still read it.

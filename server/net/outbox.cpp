@@ -9,10 +9,7 @@ Outbox::Outcome Outbox::pushAnswer(core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_) return {};
   if (answer_count_ >= answer_max_count_) {
-    close_ = SessionEnd{static_cast<std::uint16_t>(CloseCode::kTryAgainLater),
-                        std::to_string(answer_max_count_) + " answers wait to be read: read faster"};
-    for (Slot& slot : slots_) slot.frame.reset();
-    tellNeeds();
+    beginClose(CloseCode::kTryAgainLater, std::to_string(answer_max_count_) + " answers wait to be read: read faster");
     return {.wake = takeWake(), .overflow = true};
   }
   control_.push_back({std::move(message), std::nullopt});
@@ -181,10 +178,14 @@ core::Level Outbox::level() const {
 bool Outbox::requestClose(CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_) return false;
+  beginClose(code, std::move(reason));
+  return true;
+}
+
+void Outbox::beginClose(CloseCode code, std::string reason) {
   close_ = SessionEnd{static_cast<std::uint16_t>(code), std::move(reason)};
   for (Slot& slot : slots_) slot.frame.reset();
   tellNeeds();
-  return true;
 }
 
 void Outbox::shut() {

@@ -116,6 +116,7 @@ class Outbox {
   struct Slot;
   /// Call with the mutex held. Returns true once after the writer went to sleep.
   bool takeWake();
+  void beginClose(CloseCode code, std::string reason);
   /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
   Outcome put(Slot& slot, const FrameBytes& frame, Clock::time_point now);

@@ -12,20 +12,19 @@ namespace asio = boost::asio;
 
 void PendingAnswer::State::settle(Outcome settled) {
   const std::lock_guard lock(mutex);
-  if (outcome || !wake) return;
+  if (outcome || !timer) return;
   outcome = std::move(settled);
-  wake();
+  asio::post(timer->get_executor(), [kept = timer] { kept->cancel(); });
 }
 
-PendingAnswer::PendingAnswer(const asio::any_io_executor& strand)
-    : timer_(std::make_shared<asio::steady_timer>(strand)), state_(std::make_shared<State>()) {
-  state_->wake = [strand, timer = timer_] { asio::post(strand, [timer] { timer->cancel(); }); };
+PendingAnswer::PendingAnswer(const asio::any_io_executor& strand) {
+  state_->timer = std::make_shared<asio::steady_timer>(strand);
 }
 
 PendingAnswer::~PendingAnswer() {
   // Responders may outlive the server's threads; the objects that they hold must not.
   const std::lock_guard lock(state_->mutex);
-  state_->wake = nullptr;
+  state_->timer = nullptr;
 }
 
 HttpResponder PendingAnswer::responder() {
@@ -38,25 +37,22 @@ HttpResponder PendingAnswer::responder() {
     std::shared_ptr<State> state;
   };
   return [promise = std::make_shared<Promise>(state_)](std::optional<HttpReply> reply) {
-    if (reply) {
-      promise->state->settle({.end = End::kAnswered, .reply = *std::move(reply)});
-    } else {
-      promise->state->settle({.end = End::kUnknown});
-    }
+    promise->state->settle({.end = End::kAnswered, .reply = std::move(reply)});
   };
 }
 
 asio::awaitable<PendingAnswer::Outcome> PendingAnswer::wait(std::chrono::milliseconds timeout) {
   // An answer posts its wake-up to this strand, so it cannot run between this check and the wait.
-  timer_->expires_after(timeout);
+  const std::shared_ptr<asio::steady_timer> timer = state_->timer;
+  timer->expires_after(timeout);
   bool is_settled = false;
   {
     const std::lock_guard lock(state_->mutex);
     is_settled = state_->outcome.has_value();
   }
-  if (!is_settled) (void)co_await timer_->async_wait(asio::as_tuple(asio::use_awaitable));
+  if (!is_settled) (void)co_await timer->async_wait(asio::as_tuple(asio::use_awaitable));
   const std::lock_guard lock(state_->mutex);
-  state_->wake = nullptr;
+  state_->timer = nullptr;
   co_return state_->outcome.value_or(Outcome{});
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -18,10 +17,10 @@ namespace spindrift::net {
 /// One per request. Lives on the strand; its responders may outlive it and then do nothing.
 class PendingAnswer {
  public:
-  enum class End { kAnswered, kUnknown, kDropped, kTimeout, kCancelled };
+  enum class End { kAnswered, kDropped, kTimeout, kCancelled };
   struct Outcome {
     End end = End::kTimeout;
-    HttpReply reply{};  ///< for kAnswered
+    std::optional<HttpReply> reply{};  ///< of kAnswered; nullopt: the application knows no such path
   };
 
   explicit PendingAnswer(const boost::asio::any_io_executor& strand);
@@ -38,13 +37,12 @@ class PendingAnswer {
   struct State {
     std::mutex mutex;
     std::optional<Outcome> outcome;
-    std::function<void()> wake;  ///< empty once wait() has ended
+    std::shared_ptr<boost::asio::steady_timer> timer;  ///< for wait(); null once it has ended
 
     void settle(Outcome settled);
   };
 
-  std::shared_ptr<boost::asio::steady_timer> timer_;
-  std::shared_ptr<State> state_;
+  std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 }  // namespace spindrift::net

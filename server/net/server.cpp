@@ -17,7 +17,6 @@
 #include <spindrift/net/server.h>
 
 #include "connection.h"
-#include "descriptors.h"
 #include "server_context.h"
 
 namespace spindrift::net {
@@ -38,7 +37,7 @@ class ServerImpl final : public Server {
  public:
   ServerImpl(const ServerOptions& options, TrustedNetworks proxies, std::unique_ptr<TlsCredentials> credentials,
              Application& application)
-      : context_(options, std::move(proxies), std::move(credentials), application),
+      : context_{options, std::move(proxies), std::move(credentials), application},
         accept_strand_(asio::make_strand(io_)),
         acceptor_(accept_strand_) {
     context_.hub.gatherFrames([this](std::function<void()> wake) {
@@ -83,23 +82,19 @@ class ServerImpl final : public Server {
   std::vector<std::thread> threads_;
 };
 
-core::Error unavailable(std::string message) {
-  return {core::ErrorCode::kUnavailable, std::move(message)};
-}
-
 core::Result<void> ServerImpl::listen() {
   const ServerOptions& options = context_.options;
   boost::system::error_code error;
   const auto address = asio::ip::make_address(options.address, error);
   if (error) {
-    return unavailable("the address \"" + options.address + "\" (port " + std::to_string(options.port) +
-                       ") is not an IP address: give one such as 127.0.0.1, 0.0.0.0 or ::1 with --address");
+    return core::unavailable("the address \"" + options.address + "\" (port " + std::to_string(options.port) +
+                             ") is not an IP address: give one such as 127.0.0.1, 0.0.0.0 or ::1 with --address");
   }
   if (options.listening_socket) {
     acceptor_.assign(address.is_v6() ? tcp::v6() : tcp::v4(), *options.listening_socket, error);
     if (error) {
-      return unavailable("the listening socket in descriptor " + std::to_string(*options.listening_socket) +
-                         " cannot be used (" + error.message() + "): pass a TCP socket that listens");
+      return core::unavailable("the listening socket in descriptor " + std::to_string(*options.listening_socket) +
+                               " cannot be used (" + error.message() + "): pass a TCP socket that listens");
     }
   } else if (const core::Result<void> bound = bind(address); !bound) {
     return bound;
@@ -126,16 +121,16 @@ core::Result<void> ServerImpl::bind(const asio::ip::address& address) {
   step([&] { acceptor_.listen(asio::socket_base::max_listen_connections, error); });
   const std::string where = "port " + port_text + " on " + options.address;
   if (error == boost::system::errc::address_in_use) {
-    return unavailable(where + " is in use: stop the other program or choose another with --port");
+    return core::unavailable(where + " is in use: stop the other program or choose another with --port");
   }
   if (error == boost::system::errc::address_not_available) {
-    return unavailable(where +
-                       " is not available: this machine does not have that address; choose another with --address");
+    return core::unavailable(
+        where + " is not available: this machine does not have that address; choose another with --address");
   }
   if (error == boost::system::errc::permission_denied) {
-    return unavailable(where + " needs more rights than this user has: choose one above 1023 with --port");
+    return core::unavailable(where + " needs more rights than this user has: choose one above 1023 with --port");
   }
-  if (error) return unavailable(where + " cannot be listened on (" + error.message() + "): choose another");
+  if (error) return core::unavailable(where + " cannot be listened on (" + error.message() + "): choose another");
   return {};
 }
 

@@ -14,7 +14,6 @@
 
 #include "address_limits.h"
 #include "connection_set.h"
-#include "descriptors.h"
 #include "room_hub.h"
 #include "tls_credentials.h"
 
@@ -38,53 +37,38 @@ struct Counters {
   std::array<std::atomic<std::uint64_t>, kRefusedCount> refused_count{};
 
   void refused(Refused why) { ++refused_count[static_cast<std::size_t>(why)]; }
-  void closed(std::uint16_t code);
-  std::map<std::uint16_t, std::uint64_t> closedByCode() const;
+  void closed(std::uint16_t code) {
+    // Peers choose their codes: unregistered codes are counted together.
+    const bool is_known = code == 0 || (code >= 1000 && code < 1016) || (code >= 4400 && code < 4410);
+    const std::lock_guard lock(mutex_);
+    ++closed_by_code_[is_known ? code : std::uint16_t{4000}];
+  }
+  std::map<std::uint16_t, std::uint64_t> closedByCode() const {
+    const std::lock_guard lock(mutex_);
+    return closed_by_code_;
+  }
 
  private:
   mutable std::mutex mutex_;
   std::map<std::uint16_t, std::uint64_t> closed_by_code_;
 };
 
-inline void Counters::closed(std::uint16_t code) {
-  // Peers choose their codes: unregistered codes are counted together.
-  const bool is_known = code == 0 || (code >= 1000 && code < 1016) || (code >= 4400 && code < 4410);
-  const std::lock_guard lock(mutex_);
-  ++closed_by_code_[is_known ? code : std::uint16_t{4000}];
-}
-
-inline std::map<std::uint16_t, std::uint64_t> Counters::closedByCode() const {
-  const std::lock_guard lock(mutex_);
-  return closed_by_code_;
-}
-
 /// TCP connections beyond the sessions, for page loads, probes and unknown peers. Further ones are closed without a
 /// reply.
 inline constexpr std::size_t kSpareConnectionCount = 512;
 
 struct ServerContext {
-  ServerContext(const ServerOptions& chosen, TrustedNetworks trusted, std::unique_ptr<TlsCredentials> tls_credentials,
-                Application& served)
-      : options(chosen),
-        proxies(std::move(trusted)),
-        credentials(std::move(tls_credentials)),
-        application(served),
-        files(chosen.web_root),
-        connections(
-            limitConnections(chosen.max_session_count + kSpareConnectionCount, chosen.reserved_descriptor_count)),
-        addresses(chosen),
-        listens_on_loopback(isLoopback(chosen.address)) {}
-
   const ServerOptions options;
   const TrustedNetworks proxies;
   const std::unique_ptr<TlsCredentials> credentials;  ///< null: the port speaks plain HTTP
   Application& application;
-  RoomHub hub;
-  StaticFiles files;
-  ConnectionSet connections;
-  AddressLimits addresses;
-  const bool listens_on_loopback;
-  Counters counters;
+  RoomHub hub{};
+  StaticFiles files{options.web_root};
+  ConnectionSet connections{
+      limitConnections(options.max_session_count + kSpareConnectionCount, options.reserved_descriptor_count)};
+  AddressLimits addresses{options};
+  const bool listens_on_loopback = isLoopback(options.address);
+  Counters counters{};
   std::atomic<std::int64_t> retry_after_s{0};  ///< > 0: draining, see Server::drain()
   std::atomic<std::uint64_t> last_session_id{0};
   /// Sessions open or in their handshake; at most max_session_count.

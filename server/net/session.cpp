@@ -60,8 +60,8 @@ Session::Session(Transport stream, ServerContext& context)
       end_timer_(strand_),
       end_of_delay_(strand_) {}
 
-asio::awaitable<void> Session::run(const UpgradeRequest& request, std::string room, std::string peer,
-                                   std::string address, bool echo_subprotocol) {
+asio::awaitable<void> Session::run(const Request& request, std::string room, std::string peer, std::string address,
+                                   bool echo_subprotocol) {
   using asio::experimental::awaitable_operators::operator&&;
   address_ = std::move(address);
   configure(echo_subprotocol);
@@ -298,10 +298,6 @@ void Session::wakeForFrames() {
 
 void Session::offerNewest(StreamIndex stream, const FrameBytes& frame) {
   if (outbox_.offerNewest(stream, frame).wake) wakeWriter();
-}
-
-void Session::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
-  outbox_.setWatch(stream, watch);
 }
 
 void Session::close(CloseCode code, std::string reason) {

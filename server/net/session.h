@@ -8,10 +8,10 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/http/message.hpp>
-#include <boost/beast/http/string_body.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <boost/container/small_vector.hpp>
+
+#include <spindrift/http/request.h>
 
 #include "message_stream.h"
 #include "outbox.h"
@@ -21,8 +21,6 @@
 
 namespace spindrift::net {
 
-using UpgradeRequest = boost::beast::http::request<boost::beast::http::string_body>;
-
 class Session final : public SessionLink, public std::enable_shared_from_this<Session> {
  public:
   /// Takes over the stream; its executor is the session's strand.
@@ -30,15 +28,15 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
   /// sessionClosed last; neither if the handshake fails. Call it on the strand.
-  boost::asio::awaitable<void> run(const UpgradeRequest& request, std::string room, std::string peer,
-                                   std::string address, bool echo_subprotocol);
+  boost::asio::awaitable<void> run(const Request& request, std::string room, std::string peer, std::string address,
+                                   bool echo_subprotocol);
 
   void sendAnswer(core::SharedBytes message) override;
   void sendState(const StateTopic& topic, core::SharedBytes message) override;
   void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) override;
   void wakeForFrames() override;
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
-  void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override;
+  void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override { outbox_.setWatch(stream, watch); }
   void enterRoom(std::shared_ptr<core::DemandTable> demand) override { outbox_.enterRoom(std::move(demand)); }
   Outbox::Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;

@@ -94,23 +94,23 @@ core::Result<std::shared_ptr<TlsContext>> TlsContext::forServer(const std::strin
   if (!certificates) return certificates.error();
   const auto key = readPem("--tls-key", key_file);
   if (!key) return key.error();
-  auto out = std::shared_ptr<TlsContext>(new TlsContext(ssl::context(ssl::context::tls_server)));
-  SSL_CTX* const context = out->context_.native_handle();
+  auto out = std::make_shared<TlsContext>(TlsContext{.context = ssl::context(ssl::context::tls_server)});
+  SSL_CTX* const context = out->context.native_handle();
   setVersions(context);
   SSL_CTX_set_alpn_select_cb(context, chooseProtocol, nullptr);
   // Without this function OpenSSL asks at the terminal. The context keeps it.
   const auto is_asked = std::make_shared<bool>(false);
-  out->context_.set_password_callback([is_asked](std::size_t, ssl::context::password_purpose) {
+  out->context.set_password_callback([is_asked](std::size_t, ssl::context::password_purpose) {
     *is_asked = true;
     return std::string();
   });
   boost::system::error_code error;
-  out->context_.use_certificate_chain(boost::asio::buffer(*certificates), error);
+  out->context.use_certificate_chain(boost::asio::buffer(*certificates), error);
   if (error) {
     return invalid("--tls-cert " + certificate_file + ": " + reasonOf(error) +
                    "; give a chain of certificates in PEM form, the server's own first");
   }
-  out->context_.use_private_key(boost::asio::buffer(*key), ssl::context::pem, error);
+  out->context.use_private_key(boost::asio::buffer(*key), ssl::context::pem, error);
   if (error) {
     const std::string reason = error.message();
     ERR_clear_error();
@@ -123,13 +123,13 @@ core::Result<std::shared_ptr<TlsContext>> TlsContext::forServer(const std::strin
                    certificate_file);
   }
   warnAboutKey(key_file);
-  out->expires_ = firstEnd(context);
+  out->expires = firstEnd(context);
   return out;
 }
 
 core::Result<std::shared_ptr<TlsContext>> TlsContext::forClient(const std::string& ca_file) {
-  auto out = std::shared_ptr<TlsContext>(new TlsContext(ssl::context(ssl::context::tls_client)));
-  SSL_CTX* const context = out->context_.native_handle();
+  auto out = std::make_shared<TlsContext>(TlsContext{.context = ssl::context(ssl::context::tls_client)});
+  SSL_CTX* const context = out->context.native_handle();
   setVersions(context);
   SSL_CTX_set_verify(context, SSL_VERIFY_PEER, nullptr);
   ERR_clear_error();
@@ -140,7 +140,7 @@ core::Result<std::shared_ptr<TlsContext>> TlsContext::forClient(const std::strin
   const auto authorities = readPem("--tls-ca", ca_file);
   if (!authorities) return authorities.error();
   boost::system::error_code error;
-  out->context_.add_certificate_authority(boost::asio::buffer(*authorities), error);
+  out->context.add_certificate_authority(boost::asio::buffer(*authorities), error);
   if (error) {
     return invalid("--tls-ca " + ca_file + ": " + reasonOf(error) + "; give certificates of authorities in PEM form");
   }

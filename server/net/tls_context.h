@@ -12,8 +12,7 @@
 
 namespace spindrift::net {
 
-class TlsContext {
- public:
+struct TlsContext {
   /// Reads a chain of certificates (leaf first) and its private key, both PEM. Errors (kUnavailable, kInvalidInput)
   /// name the file and the reason: unreadable, no PEM, a key that belongs to another certificate, a key with a
   /// passphrase.
@@ -22,15 +21,8 @@ class TlsContext {
   /// Trusts the system's authorities, and those in `ca_file` (PEM) if it is not empty.
   static core::Result<std::shared_ptr<TlsContext>> forClient(const std::string& ca_file);
 
-  [[nodiscard]] boost::asio::ssl::context& asio() { return context_; }
-  /// When the first certificate of the chain expires; servers only.
-  [[nodiscard]] std::chrono::system_clock::time_point expires() const { return expires_; }
-
- private:
-  explicit TlsContext(boost::asio::ssl::context&& context) : context_(std::move(context)) {}
-
-  boost::asio::ssl::context context_;
-  std::chrono::system_clock::time_point expires_{};
+  boost::asio::ssl::context context;
+  std::chrono::system_clock::time_point expires{};  ///< the first certificate of the chain; servers only
 };
 
 }  // namespace spindrift::net

@@ -13,7 +13,7 @@ namespace spindrift::net {
 namespace {
 
 void report(const TlsFiles& files, const TlsContext& context, const char* what) {
-  const auto end = context.expires();
+  const auto end = context.expires;
   const std::string text = fmt::format("{:%Y-%m-%d %H:%M} UTC", fmt::gmtime(std::chrono::system_clock::to_time_t(end)));
   if (end < std::chrono::system_clock::now()) {
     spdlog::warn("--tls-cert {}: the certificate has expired on {}: clients refuse it", files.certificate_file, text);
@@ -40,7 +40,7 @@ std::shared_ptr<TlsContext> TlsCredentials::context() const {
 }
 
 std::chrono::system_clock::time_point TlsCredentials::expires() const {
-  return context()->expires();
+  return context()->expires;
 }
 
 void TlsCredentials::reload() {

@@ -15,7 +15,7 @@
 
 namespace spindrift::net {
 
-class TlsContext;
+struct TlsContext;
 
 /// Thread-safe. A connection keeps the context that it began with.
 class TlsCredentials {

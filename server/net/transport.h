@@ -1,6 +1,6 @@
 // The stream below HTTP and WebSocket: TCP, or TLS over TCP. Beast reads and writes through functions without
-// templates: what lies below them is compiled once and not for each of Beast's operations, for one allocation per
-// operation.
+// templates: what lies below them, OpenSSL included, is compiled once and not for each of Beast's operations, for one
+// allocation per operation.
 #pragma once
 
 #include <chrono>
@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -18,20 +19,23 @@
 #include <boost/beast/core/role.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/container/static_vector.hpp>
-
-#include "tls_layer.h"
+#include <boost/system/error_code.hpp>
 
 namespace spindrift::net {
 
 /// Completion token: co_await returns a tuple that begins with the error code, and throws nothing.
 inline constexpr auto kToken = boost::asio::as_tuple(boost::asio::use_awaitable);
 
-/// Models AsyncStream of Beast. Used on its executor, a strand. Movable; a moved-from stream can only be destroyed.
+/// Settings of many connections: certificate and key of a server, or the authorities that a client trusts. Thread-safe.
+struct TlsContext;
+
+/// Models AsyncStream of Beast. Used on its executor, a strand; one read and one write may be in progress at a time.
+/// Movable; a moved-from stream can only be destroyed.
 class Transport {
  public:
   using executor_type = boost::beast::tcp_stream::executor_type;
   /// Called on the executor, never before the function that took it returns.
-  using Handler = TlsLayer::Handler;
+  using Handler = std::function<void(boost::system::error_code, std::size_t)>;
   /// Most buffers of one write; asio passes no more to the kernel, either.
   static constexpr std::size_t kPartMaxCount = 64;
   using Parts = boost::container::static_vector<boost::asio::const_buffer, kPartMaxCount>;
@@ -52,11 +56,13 @@ class Transport {
   /// Closes the socket at once.
   void close() { state_->tcp.close(); }
 
+  /// From here on everything but tcp() goes through TLS; call async_handshake() next.
+  void useServerTls(TlsContext& context);
+  /// The same at the client's side. `host`: name or IP address that the server's certificate must have.
+  void useClientTls(TlsContext& context, const std::string& host);
   [[nodiscard]] bool isTls() const { return state_->tls != nullptr; }
-  /// From here on everything but tcp() goes through the layer; call async_handshake() next.
-  void useTls(std::unique_ptr<TlsLayer> layer) { state_->tls = std::move(layer); }
-  /// Null without TLS.
-  [[nodiscard]] TlsLayer* tls() const { return state_->tls.get(); }
+  /// Says for people why a TLS handshake failed with this error.
+  [[nodiscard]] std::string tlsReasonOf(const boost::system::error_code& error) const;
 
   /// Reads at least one byte. The bytes of `into` stay valid until the handler is called.
   virtual void read(boost::asio::mutable_buffer into, Handler handler);
@@ -66,18 +72,21 @@ class Transport {
   /// Ends the connection after the close frames: the shutdown of TLS, or that of TCP.
   void tearDown(boost::beast::role_type role, Handler handler);
 
-  /// TLS only. `received`: bytes that were read from tcp() before.
+  /// TLS only. `received`: bytes that were read from tcp() before; they stay valid until the handler is called.
+  void handshake(boost::asio::const_buffer received, Handler handler);
+  /// TLS only: sends close_notify and waits for the peer's, or for the end of the connection.
+  void shutdown(Handler handler);
+
   template <typename Token>
   auto async_handshake(boost::asio::const_buffer received, Token&& token) {
     return boost::asio::async_initiate<Token, Signature>(
-        [this, received](auto handler) { tls()->handshake(received, shared(std::move(handler))); }, token);
+        [this, received](auto handler) { handshake(received, shared(std::move(handler))); }, token);
   }
 
-  /// TLS only: see TlsLayer::shutdown().
   template <typename Token>
   auto async_shutdown(Token&& token) {
-    return boost::asio::async_initiate<Token, Signature>(
-        [this](auto handler) { tls()->shutdown(shared(std::move(handler))); }, token);
+    return boost::asio::async_initiate<Token, Signature>([this](auto handler) { shutdown(shared(std::move(handler))); },
+                                                         token);
   }
 
   template <typename Buffers, typename Token>
@@ -113,13 +122,14 @@ class Transport {
   }
 
  private:
+  struct Tls;
   using Signature = void(boost::system::error_code, std::size_t);
 
   struct State {
     template <typename Socket>
     explicit State(Socket&& socket_or_executor) : tcp(std::forward<Socket>(socket_or_executor)) {}
     boost::beast::tcp_stream tcp;
-    std::unique_ptr<TlsLayer> tls;  ///< destroyed before `tcp`, which it uses
+    std::shared_ptr<Tls> tls;  ///< null without TLS; destroyed before `tcp`, which it uses
   };
 
   /// The first buffers that are not empty, as many as fit; one empty buffer if all are empty.

@@ -1,7 +1,6 @@
 #include <utility>
 
 #include <spindrift/codec/stream.h>
-#include <spindrift/core/level_demand.h>
 #include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room_frames.h>
 #include <spindrift/rooms/room_view.h>

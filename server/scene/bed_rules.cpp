@@ -1,5 +1,3 @@
-#include "bed_rules.h"
-
 #include <cmath>
 #include <set>
 #include <string>
@@ -9,6 +7,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
+#include "scene_parts.h"
+
 namespace spindrift::scene {
 namespace {
 
@@ -16,40 +16,21 @@ constexpr std::size_t kGaugeNameMaxBytes = 32;
 
 using core::metres;
 
-std::string indexed(const char* list, int index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
-
 bool isGaugeName(const std::string& name) {
   return name.size() <= kGaugeNameMaxBytes && isSceneName(name);
-}
-
-void checkInside(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
-  if (std::abs(value_m) <= 0.5 * side_m) return;
-  addRange(issues, path,
-           metres(value_m) + " lies outside of the water; choose " + core::formatNumber(-0.5 * side_m) + " to " +
-               metres(0.5 * side_m));
 }
 
 }  // namespace
 
 void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
-  if (scene.bed().shapes_size() > kSceneBedShapeMaxCount) {
-    addRange(issues, indexed("bed.shapes", kSceneBedShapeMaxCount),
-             std::to_string(scene.bed().shapes_size()) + " shapes are more than " +
-                 std::to_string(kSceneBedShapeMaxCount) + "; remove some, or give a grid");
-  }
+  checkCount(scene.bed().shapes_size(), kSceneBedShapeMaxCount, "bed.shapes", "shapes", issues,
+             "remove some, or give a grid");
   for (int i = 0; i < scene.bed().shapes_size(); ++i) {
     if (scene.bed().shapes(i).shape_case() != v1::BedShape::SHAPE_NOT_SET) continue;
     issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("bed.shapes", i),
                       "has no shape; say what is there: \"cone {}\", \"slope {}\", \"sill {}\" or \"channel {}\""});
   }
-  constexpr int kMaxCount = static_cast<int>(core::kMaxGauges);
-  if (scene.gauges_size() > kMaxCount) {
-    addRange(
-        issues, indexed("gauges", kMaxCount),
-        std::to_string(scene.gauges_size()) + " gauges are more than " + std::to_string(kMaxCount) + "; remove some");
-  }
+  checkCount(scene.gauges_size(), static_cast<int>(core::kMaxGauges), "gauges", "gauges", issues);
   std::set<std::string> names;
   for (int i = 0; i < scene.gauges_size(); ++i) {
     const std::string& name = scene.gauges(i).name();
@@ -64,11 +45,8 @@ void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) 
 }
 
 void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
-  if (scene.bed().floor_depth_m() > scene.wave().depth_m()) {
-    addRange(issues, "bed.floor_depth_m",
-             metres(scene.bed().floor_depth_m()) + " is deeper than the water of " + metres(scene.wave().depth_m()) +
-                 "; choose at most " + metres(scene.wave().depth_m()));
-  }
+  checkAtMost(scene.bed().floor_depth_m(), scene.wave().depth_m(), "bed.floor_depth_m",
+              "is deeper than the water of " + metres(scene.wave().depth_m()), issues);
   for (int i = 0; i < scene.bed().shapes_size(); ++i) {
     const v1::BedShape& shape = scene.bed().shapes(i);
     if (shape.cone().crest_radius_m() <= shape.cone().toe_radius_m()) continue;
@@ -78,8 +56,8 @@ void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   }
   const WaterExtents water = waterExtentsOf(scene);
   for (int i = 0; i < scene.gauges_size(); ++i) {
-    checkInside(scene.gauges(i).x_m(), water.side_x_m, indexed("gauges", i) + ".x_m", issues);
-    checkInside(scene.gauges(i).z_m(), water.side_z_m, indexed("gauges", i) + ".z_m", issues);
+    checkPosition(scene.gauges(i).x_m(), water.side_x_m, indexed("gauges", i) + ".x_m", issues);
+    checkPosition(scene.gauges(i).z_m(), water.side_z_m, indexed("gauges", i) + ".z_m", issues);
   }
 }
 

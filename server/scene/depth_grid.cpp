@@ -1,5 +1,3 @@
-#include "depth_grid.h"
-
 #include <bit>
 #include <cmath>
 #include <string>
@@ -7,8 +5,7 @@
 
 #include <spindrift/core/text.h>
 
-#include "gray_png.h"
-#include "scene_folder.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -42,7 +39,7 @@ void readRows(v1::DepthGrid& grid, std::vector<FieldIssue>& issues) {
   if (!checkSide(columns, "bed.grid.rows[0].depth_m", "numbers", issues)) return;
   std::vector<float> depths_m;
   for (int r = 0; r < grid.rows_size(); ++r) {
-    const std::string path = "bed.grid.rows[" + std::to_string(r) + "]";
+    const std::string path = indexed("bed.grid.rows", r);
     const auto& row = grid.rows(r).depth_m();
     if (row.size() != columns) {
       return addRange(issues, path,

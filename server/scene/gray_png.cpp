@@ -1,5 +1,3 @@
-#include "gray_png.h"
-
 #include <algorithm>
 #include <array>
 #include <csetjmp>
@@ -13,11 +11,12 @@
 
 #include <spindrift/core/files.h>
 
+#include "scene_parts.h"
+
 namespace spindrift::scene {
 namespace {
 
-using core::Error;
-using core::ErrorCode;
+using core::invalid;
 
 /// Twice the pixels of the largest image: PNG may store noise with some overhead.
 constexpr std::uintmax_t kFileMaxBytes = 4u << 20;
@@ -107,7 +106,6 @@ std::string headOf(std::FILE* stream) {
 }  // namespace
 
 core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
-  const auto invalid = [](std::string message) { return Error{ErrorCode::kInvalidInput, std::move(message)}; };
   const auto stream = core::openFile(file, "a PNG");
   if (!stream) return stream.error();
   if (const std::string kind = otherKind(headOf(stream->get())); !kind.empty())
@@ -121,7 +119,7 @@ core::Result<GrayImage> readGrayPng(const std::filesystem::path& file) {
   reader.stream = stream->get();
   reader.png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reader, &fail, &ignore);
   reader.info = reader.png ? png_create_info_struct(reader.png) : nullptr;
-  if (!reader.info) return Error{ErrorCode::kInternal, "libpng has no memory"};
+  if (!reader.info) return core::Error{core::ErrorCode::kInternal, "libpng has no memory"};
   if (!readHeader(reader)) return invalid("cannot be read as PNG: " + reader.error);
   const bool is_gray16 = reader.bit_depth == 16 && reader.color_type == PNG_COLOR_TYPE_GRAY && !reader.is_transparent;
   if (!is_gray16) return invalid("is " + kindOf(reader) + "; save it as 16-bit grayscale");

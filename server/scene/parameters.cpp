@@ -80,37 +80,37 @@ std::optional<FieldTarget> findTarget(const v1::Scene& scene, std::string_view p
   }
 }
 
-std::optional<ParameterError> checkTarget(const std::optional<FieldTarget>& target, std::string_view path,
-                                          double value) {
+std::optional<FieldIssue> checkTarget(const std::optional<FieldTarget>& target, std::string_view path, double value) {
   const std::string shown = core::cleanText(path, kPathEchoMaxBytes);
   if (!target) {
-    return ParameterError{v1::REJECT_REASON_UNKNOWN_PARAMETER, shown,
-                          "no parameter of this name; the greeting lists what can be set"};
+    return FieldIssue{v1::REJECT_REASON_UNKNOWN_PARAMETER, shown,
+                      "no parameter of this name; the greeting lists what can be set"};
   }
   if (target->part == nullptr) {
-    return ParameterError{v1::REJECT_REASON_ABSENT_PART, shown,
-                          "this scene has no " + target->absent_part + "; choose a scene that has"};
+    return FieldIssue{v1::REJECT_REASON_ABSENT_PART, shown,
+                      "this scene has no " + target->absent_part + "; choose a scene that has"};
   }
   const v1::ParameterOptions& options = *parameterOptions(*target->field);
   if (options.restart()) {
-    return ParameterError{v1::REJECT_REASON_NEEDS_RESTART, shown,
-                          "fixed while the room runs at " +
-                              core::formatQuantity(numberOf(*target->part, *target->field), options.unit()) +
-                              "; change it in the scene file and start again"};
+    return FieldIssue{v1::REJECT_REASON_NEEDS_RESTART, shown,
+                      "fixed while the room runs at " +
+                          core::formatQuantity(numberOf(*target->part, *target->field), options.unit()) +
+                          "; change it in the scene file and start again"};
   }
-  if (auto issue = checkNumber(*target->field, value)) return ParameterError{issue->reason, shown, issue->message};
-  return std::nullopt;
+  auto issue = checkNumber(*target->field, value);
+  if (issue) issue->path = shown;
+  return issue;
 }
 
 /// Returns why the rest of the scene forbids a value that is within its own range, such as water too shallow for a
 /// boat.
-std::optional<ParameterError> checkChanged(const v1::Scene& changed, std::string_view path) {
+std::optional<FieldIssue> checkChanged(const v1::Scene& changed, std::string_view path) {
   if (!changed.has_wave()) return std::nullopt;
   const std::vector<FieldIssue> issues = checkWater(changed);
   if (issues.empty()) return std::nullopt;
   const FieldIssue& issue = issues.front();
-  return ParameterError{issue.reason, std::string(path),
-                        issue.path == path ? issue.message : issue.path + ": " + issue.message};
+  return FieldIssue{issue.reason, std::string(path),
+                    issue.path == path ? issue.message : issue.path + ": " + issue.message};
 }
 
 /// Returns whether the equations of the scene's water do not have this parameter, or fix it while the room runs.
@@ -143,12 +143,12 @@ std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene)
   return out;
 }
 
-std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value) {
+std::optional<FieldIssue> checkParameter(const v1::Scene& scene, std::string_view path, double value) {
   v1::Scene changed = scene;
   return setParameter(changed, path, value);
 }
 
-std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view path, double value) {
+std::optional<FieldIssue> setParameter(v1::Scene& scene, std::string_view path, double value) {
   v1::Scene changed = scene;
   const std::optional<FieldTarget> target = findTarget(changed, path);
   if (auto error = checkTarget(target, path, value)) return error;

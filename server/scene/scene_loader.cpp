@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <charconv>
+#include <compare>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -15,8 +16,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "depth_grid.h"
-#include "wave_makers.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -39,6 +39,7 @@ constexpr std::size_t kMaxErrorBytes = 1000;
 struct Location {
   int line = 0;
   int column = 0;
+  auto operator<=>(const Location&) const = default;
 };
 
 struct LocatedError {
@@ -46,27 +47,23 @@ struct LocatedError {
   std::string message;
 };
 
-/// Returns the next column as Protobuf's tokenizer counts: bytes, with tab stops at multiples of 8.
-int nextColumn(char c, int column) {
+/// Returns the location behind a character as Protobuf's tokenizer counts: bytes, with tab stops at multiples of 8.
+Location behind(char c, Location at) {
   constexpr int kTabWidth = 8;
-  return c == '\t' ? column + kTabWidth - column % kTabWidth : column + 1;
+  if (c == '\n') return {at.line + 1, 0};
+  return {at.line, c == '\t' ? at.column + kTabWidth - at.column % kTabWidth : at.column + 1};
 }
 
 Location locationOf(std::string_view text, std::size_t offset) {
   Location at;
-  for (const char c : text.substr(0, offset)) {
-    at = c == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(c, at.column)};
-  }
+  for (const char c : text.substr(0, offset)) at = behind(c, at);
   return at;
 }
 
 std::size_t offsetOf(std::string_view text, Location wanted) {
   Location at;
   std::size_t offset = 0;
-  while (offset < text.size() && std::pair(at.line, at.column) < std::pair(wanted.line, wanted.column)) {
-    at = text[offset] == '\n' ? Location{at.line + 1, 0} : Location{at.line, nextColumn(text[offset], at.column)};
-    ++offset;
-  }
+  for (; offset < text.size() && at < wanted; ++offset) at = behind(text[offset], at);
   return offset;
 }
 
@@ -113,18 +110,13 @@ class ErrorCollector : public google::protobuf::io::ErrorCollector {
 
 /// Blanks a line that contains only one "field: value" and no brackets, so that parsing can continue after it.
 bool blankSimpleLine(std::string& text, int line) {
-  std::size_t begin = 0;
-  for (int i = 0; i < line; ++i) {
-    begin = text.find('\n', begin);
-    if (begin == std::string::npos) return false;
-    ++begin;
-  }
+  const std::size_t begin = offsetOf(text, {line, 0});
   const std::size_t end = std::min(text.find('\n', begin), text.size());
   const std::string_view content(text.data() + begin, end - begin);
   const bool simple =
       content.find(':') != std::string_view::npos && content.find_first_of("{}<>[]") == std::string_view::npos;
   if (!simple) return false;
-  std::fill(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end), ' ');
+  text.replace(begin, end - begin, end - begin, ' ');
   return true;
 }
 
@@ -153,7 +145,7 @@ std::unique_ptr<TextFormat::ParseInfoTree> parseText(std::string text, v1::Scene
     const bool parsed = parser.ParseFromString(text, &scene);
     // A later attempt reports the unknown fields of an earlier one again.
     for (LocatedError& error : found) {
-      const bool known = std::any_of(errors.begin(), errors.end(), [&](const LocatedError& other) {
+      const bool known = std::ranges::any_of(errors, [&](const LocatedError& other) {
         return other.location.line == error.location.line && other.message == error.message;
       });
       if (!known) errors.push_back(std::move(error));
@@ -191,9 +183,7 @@ Location locate(const TextFormat::ParseInfoTree& root, std::string_view path) {
 }
 
 std::string report(const std::string& file_label, std::vector<LocatedError> errors) {
-  std::stable_sort(errors.begin(), errors.end(), [](const LocatedError& a, const LocatedError& b) {
-    return std::pair(a.location.line, a.location.column) < std::pair(b.location.line, b.location.column);
-  });
+  std::ranges::stable_sort(errors, {}, &LocatedError::location);
   std::string text;
   const std::size_t shown = std::min(errors.size(), kMaxReportedErrorCount);
   for (std::size_t i = 0; i < shown; ++i) {
@@ -205,21 +195,42 @@ std::string report(const std::string& file_label, std::vector<LocatedError> erro
   return text;
 }
 
+/// Returns the reason why a name does not stay in the folder; empty if it does.
+std::string leavesFolder(const std::filesystem::path& folder, const std::filesystem::path& name) {
+  if (name.is_absolute()) return "is an absolute path";
+  for (const std::filesystem::path& part : name) {
+    if (part == "..") return "goes up by \"..\"";
+  }
+  // Links are followed: what they point to has to be in the folder, too.
+  std::error_code error;
+  const std::filesystem::path root =
+      std::filesystem::weakly_canonical(folder.empty() ? std::filesystem::path(".") : folder, error);
+  const std::filesystem::path file = std::filesystem::weakly_canonical(root / name, error);
+  if (error) return "cannot be found: " + error.message();
+  const std::filesystem::path inside = file.lexically_relative(root);
+  return inside.empty() || *inside.begin() == ".." ? "is a link that leads out of it" : "";
+}
+
 }  // namespace
+
+core::Result<std::filesystem::path> fileInFolder(const std::optional<std::filesystem::path>& folder,
+                                                 const std::filesystem::path& name, const std::string& instead) {
+  if (!folder) return core::invalid("cannot be read, because this scene is not a file; give " + instead + " instead");
+  if (const std::string why = leavesFolder(*folder, name); !why.empty())
+    return core::invalid(why + "; put the file into the folder of the scene file");
+  return *folder / name;
+}
 
 core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string& file_label,
                                        std::optional<v1::Fidelity> fidelity,
                                        const std::optional<std::filesystem::path>& folder) {
-  const auto invalid = [&](std::string message) {
-    return core::Error{core::ErrorCode::kInvalidInput, std::move(message)};
-  };
   if (text.size() > kSceneFileMaxBytes) {
-    return invalid(file_label + ": " + std::to_string(text.size()) + " bytes are more than " +
-                   std::to_string(kSceneFileMaxBytes) + "; a scene is a small text");
+    return core::invalid(file_label + ": " + std::to_string(text.size()) + " bytes are more than " +
+                         std::to_string(kSceneFileMaxBytes) + "; a scene is a small text");
   }
   if (nestsTooDeep(text)) {
-    return invalid(file_label + ": braces nest deeper than " + std::to_string(kMaxNestingDepth) +
-                   "; a scene needs four levels");
+    return core::invalid(file_label + ": braces nest deeper than " + std::to_string(kMaxNestingDepth) +
+                         "; a scene needs four levels");
   }
   v1::Scene scene;
   std::vector<LocatedError> errors;
@@ -246,7 +257,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
   for (FieldIssue& issue : issues) {
     errors.push_back({locate(*tree, issue.path), issue.path + ": " + issue.message});
   }
-  if (!errors.empty()) return invalid(report(file_label, std::move(errors)));
+  if (!errors.empty()) return core::invalid(report(file_label, std::move(errors)));
   return scene;
 }
 

@@ -7,8 +7,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "bed_rules.h"
-#include "wave_makers.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -32,13 +31,6 @@ void checkHeight(double value_m, double depth_m, const std::string& path, std::v
            metres(value_m) + " is above " + metres(max_m) + ", 0.9 of the water's depth of " + metres(depth_m) +
                "; choose at most " + metres(max_m) + " or a deeper water",
            max_m);
-}
-
-void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
-  if (std::abs(value_m) <= 0.5 * side_m) return;
-  addRange(issues, path,
-           metres(value_m) + " lies outside of the water; choose " + core::formatNumber(-0.5 * side_m) + " to " +
-               metres(0.5 * side_m));
 }
 
 void checkPatch(double shift_m, double scale, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
@@ -105,12 +97,6 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.wave_makers_size() > 0) needsWave("wave_makers[0]", "the wave-makers");
 }
 
-void checkCount(int count, int max_count, const std::string& path, const char* what, std::vector<FieldIssue>& issues) {
-  if (count <= max_count) return;
-  addRange(issues, path + "[" + std::to_string(max_count) + "]",
-           std::to_string(count) + " " + what + " are more than " + std::to_string(max_count) + "; remove some");
-}
-
 void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   checkCount(scene.obstacles_size(), kSceneObstacleMaxCount, "obstacles", "obstacles", issues);
   checkCount(scene.beaches_size(), kSceneBeachMaxCount, "beaches", "beaches", issues);
@@ -118,20 +104,8 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
-    issues.push_back({v1::REJECT_REASON_MALFORMED, "obstacles[" + std::to_string(i) + "]",
+    issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("obstacles", i),
                       "has no shape; say what stands there: \"rock {}\" or \"breakwater {}\""});
-  }
-}
-
-std::string eventPrefix(int index) {
-  return "events[" + std::to_string(index) + "].";
-}
-
-void checkEffectPart(const v1::TimedEvent& event, const std::string& prefix, std::vector<FieldIssue>& issues) {
-  const v1::Effect& effect = event.effect();
-  if (effect.effect_case() == v1::Effect::EFFECT_NOT_SET) {
-    issues.push_back({v1::REJECT_REASON_MALFORMED, prefix + "effect",
-                      "missing; say what happens: \"effect { splash {} }\" or \"effect { breaking_wave {} }\""});
   }
 }
 
@@ -160,6 +134,26 @@ double sideAlong(std::optional<core::Side> side, const WaterExtents& water) {
 
 }  // namespace
 
+void checkCount(int count, int max_count, const char* path, const char* what, std::vector<FieldIssue>& issues,
+                const char* advice) {
+  if (count <= max_count) return;
+  addRange(issues, indexed(path, max_count),
+           std::to_string(count) + " " + what + " are more than " + std::to_string(max_count) + "; " + advice);
+}
+
+void checkAtMost(double value_m, double max_m, const std::string& path, const std::string& what,
+                 std::vector<FieldIssue>& issues) {
+  if (value_m > max_m)
+    addRange(issues, path, metres(value_m) + " " + what + "; choose at most " + metres(max_m), max_m);
+}
+
+void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues) {
+  if (std::abs(value_m) <= 0.5 * side_m) return;
+  addRange(issues, path,
+           metres(value_m) + " lies outside of the water; choose " + core::formatNumber(-0.5 * side_m) + " to " +
+               metres(0.5 * side_m));
+}
+
 WaterExtents waterExtentsOf(const v1::Scene& scene) {
   if (scene.has_wave()) {
     const core::WaveCells cells = waveCellsOf(scene.wave());
@@ -178,29 +172,18 @@ bool isSceneName(const std::string& name) {
 
 std::vector<FieldIssue> checkEffect(const core::Effect& effect, const v1::Scene& scene) {
   std::vector<FieldIssue> issues;
-  const bool is_splash = std::holds_alternative<core::Splash>(effect);
   const WaterExtents water = waterExtentsOf(scene);
-  const double depth_m = water.depth_m;
-  if (is_splash) {
-    const core::Splash& splash = std::get<core::Splash>(effect);
-    checkPosition(splash.x_m, water.side_x_m, "splash.x_m", issues);
-    checkPosition(splash.z_m, water.side_z_m, "splash.z_m", issues);
-    const double max_radius_m = 0.5 * water.shorterSide_m();
-    if (splash.radius_m > max_radius_m) {
-      addRange(
-          issues, "splash.radius_m",
-          metres(splash.radius_m) + " is more than half the side of the water; choose at most " + metres(max_radius_m),
-          max_radius_m);
-    }
-    checkHeight(splash.depth_m, depth_m, "splash.depth_m", issues);
+  if (const auto* splash = std::get_if<core::Splash>(&effect)) {
+    checkPosition(splash->x_m, water.side_x_m, "splash.x_m", issues);
+    checkPosition(splash->z_m, water.side_z_m, "splash.z_m", issues);
+    checkAtMost(splash->radius_m, 0.5 * water.shorterSide_m(), "splash.radius_m",
+                "is more than half the side of the water", issues);
+    checkHeight(splash->depth_m, water.depth_m, "splash.depth_m", issues);
   } else {
-    const core::BreakingWave& wave = std::get<core::BreakingWave>(effect);
-    checkHeight(wave.amplitude_m, depth_m, "breaking_wave.amplitude_m", issues);
-    const double side_m = sideAlong(wave.side, water);
-    if (wave.length_m > side_m) {
-      addRange(issues, "breaking_wave.length_m",
-               metres(wave.length_m) + " is more than the side of the water; choose at most " + metres(side_m), side_m);
-    }
+    const auto& wave = std::get<core::BreakingWave>(effect);
+    checkHeight(wave.amplitude_m, water.depth_m, "breaking_wave.amplitude_m", issues);
+    checkAtMost(wave.length_m, sideAlong(wave.side, water), "breaking_wave.length_m",
+                "is more than the side of the water", issues);
     checkPosition(wave.x_m, water.side_x_m, "breaking_wave.x_m", issues);
     checkPosition(wave.z_m, water.side_z_m, "breaking_wave.z_m", issues);
     if (wave.width_m > 0 && wave.side != core::Side::kDirection) {
@@ -225,7 +208,7 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
     return issues;
   }
   for (int k = 0; k < stroke.points_size(); ++k) {
-    const std::string path = "stroke.points[" + std::to_string(k) + "].";
+    const std::string path = indexed("stroke.points", k) + ".";
     checkPosition(stroke.points(k).x_m(), water.side_x_m, path + "x_m", issues);
     checkPosition(stroke.points(k).z_m(), water.side_z_m, path + "z_m", issues);
     if (k > 0 && stroke.points(k).time_s() <= stroke.points(k - 1).time_s()) {
@@ -234,15 +217,15 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
                    "points in the order of their times");
     }
   }
-  const auto atMost = [&](double value_m, double max_m, const char* path, const char* rule) {
-    if (value_m > max_m)
-      addRange(issues, path, metres(value_m) + " is more than " + rule + "; choose at most " + metres(max_m));
-  };
   const bool is_disc = isDisc(stroke.tool());
-  atMost(stroke.radius_m(), (is_disc ? 2 : 1) * kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
-         is_disc ? "a quarter of the side of the water" : "an eighth of the side of the water");
-  atMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m", "a third of the water's depth");
-  atMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m", "half the radius");
+  checkAtMost(
+      stroke.radius_m(), (is_disc ? 2 : 1) * kStrokeMaxRadiusSides * water.shorterSide_m(), "stroke.radius_m",
+      is_disc ? "is more than a quarter of the side of the water" : "is more than an eighth of the side of the water",
+      issues);
+  checkAtMost(stroke.depth_m(), kStrokeMaxDepthRatio * water.depth_m, "stroke.depth_m",
+              "is more than a third of the water's depth", issues);
+  checkAtMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m",
+              "is more than half the radius", issues);
   return issues;
 }
 
@@ -260,13 +243,12 @@ std::vector<FieldIssue> checkStructure(const v1::Scene& scene) {
   checkLists(scene, issues);
   checkBedStructure(scene, issues);
   checkMakerStructure(scene, issues);
-  if (scene.events_size() > kSceneEventMaxCount) {
-    addRange(issues, "events[" + std::to_string(kSceneEventMaxCount) + "]",
-             std::to_string(scene.events_size()) + " events are more than " + std::to_string(kSceneEventMaxCount) +
-                 "; remove some, or repeat one with every_s");
-  }
+  checkCount(scene.events_size(), kSceneEventMaxCount, "events", "events", issues,
+             "remove some, or repeat one with every_s");
   for (int i = 0; i < scene.events_size(); ++i) {
-    checkEffectPart(scene.events(i), eventPrefix(i), issues);
+    if (scene.events(i).effect().effect_case() != v1::Effect::EFFECT_NOT_SET) continue;
+    issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("events", i) + ".effect",
+                      "missing; say what happens: \"effect { splash {} }\" or \"effect { breaking_wave {} }\""});
   }
   return issues;
 }
@@ -289,7 +271,8 @@ std::vector<FieldIssue> checkNumbers(const v1::Scene& scene) {
                  core::formatQuantity(kLeastRestart_s, "s"));
   }
   for (FieldIssue& issue : checkWater(scene)) issues.push_back(std::move(issue));
-  for (int i = 0; i < scene.events_size(); ++i) checkEventNumbers(scene.events(i), scene, eventPrefix(i), issues);
+  for (int i = 0; i < scene.events_size(); ++i)
+    checkEventNumbers(scene.events(i), scene, indexed("events", i) + ".", issues);
   return issues;
 }
 

@@ -1,5 +1,7 @@
+#include <algorithm>
+
+#include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
-#include <spindrift/scene/setting.h>
 
 namespace spindrift::scene {
 namespace {
@@ -65,18 +67,9 @@ v1::Setting settingOf(const v1::Scene& scene) {
 }
 
 std::string settingName(v1::Setting setting) {
-  switch (setting) {
-    case v1::SETTING_OPEN_SEA:
-      return "open sea";
-    case v1::SETTING_POOL:
-      return "pool";
-    case v1::SETTING_GLASS_TANK:
-      return "glass tank";
-    case v1::SETTING_FLUME:
-      return "flume";
-    default:
-      return "unknown";
-  }
+  std::string name = v1::Setting_Name(setting).substr(sizeof "SETTING_" - 1);
+  std::ranges::transform(name, name.begin(), [](char c) { return c == '_' ? ' ' : static_cast<char>(c - 'A' + 'a'); });
+  return name;
 }
 
 }  // namespace spindrift::scene

@@ -8,8 +8,7 @@
 #include <spindrift/core/text.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "bed_rules.h"
-#include "wave_makers.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -21,10 +20,6 @@ constexpr double kMaxBoatWidthRatio = 0.5;
 constexpr double kFittingDraughtRatio = 0.6;
 
 using core::metres;
-
-std::string indexed(const char* list, int index) {
-  return std::string(list) + "[" + std::to_string(index) + "]";
-}
 
 /// A rectangle seen from above. half_z is to the left of the heading; the heading turns from +x toward +z.
 struct Footprint {
@@ -114,10 +109,9 @@ void checkSides(const v1::WaveScene& wave, std::vector<FieldIssue>& issues) {
   const double side_m = absorbs_x && absorbs_z ? std::min(cells.length_m, cells.width_m)
                         : absorbs_x            ? cells.length_m
                                                : cells.width_m;
-  if ((absorbs_x || absorbs_z) && wave.sponge_width_m() > 0.5 * side_m) {
-    addRange(issues, "wave.sponge_width_m",
-             metres(wave.sponge_width_m()) + " is more than half the side of the water of " + metres(side_m) +
-                 "; choose at most " + metres(0.5 * side_m));
+  if (absorbs_x || absorbs_z) {
+    checkAtMost(wave.sponge_width_m(), 0.5 * side_m, "wave.sponge_width_m",
+                "is more than half the side of the water of " + metres(side_m), issues);
   }
 }
 
@@ -128,12 +122,9 @@ void checkObstacles(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     const v1::Obstacle& obstacle = scene.obstacles(i);
     if (obstacle.has_rock()) {
       const std::string prefix = indexed("obstacles", i) + ".rock.";
-      if (obstacle.rock().radius_m() > 0.5 * side_m) {
-        addRange(issues, prefix + "radius_m",
-                 metres(obstacle.rock().radius_m()) + " is more than half the side of the water; choose at most " +
-                     metres(0.5 * side_m));
-        continue;
-      }
+      checkAtMost(obstacle.rock().radius_m(), 0.5 * side_m, prefix + "radius_m",
+                  "is more than half the side of the water", issues);
+      if (obstacle.rock().radius_m() > 0.5 * side_m) continue;
       checkInside(obstacle.rock().x_m(), obstacle.rock().radius_m(), cells.length_m, prefix + "x_m", issues);
       checkInside(obstacle.rock().z_m(), obstacle.rock().radius_m(), cells.width_m, prefix + "z_m", issues);
     } else if (obstacle.has_breakwater()) {
@@ -168,15 +159,9 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     const core::WaveCells cells = waveCellsOf(wave);
     const bool along_x = beach.side() != v1::SIDE_PLUS_Z && beach.side() != v1::SIDE_MINUS_Z;
     const double side_m = along_x ? cells.length_m : cells.width_m;
-    if (beach.width_m() > side_m) {
-      addRange(issues, prefix + "width_m",
-               metres(beach.width_m()) + " is more than the side of the water; choose at most " + metres(side_m));
-    }
-    if (beach.shore_depth_m() > wave.depth_m()) {
-      addRange(issues, prefix + "shore_depth_m",
-               metres(beach.shore_depth_m()) + " is deeper than the water of " + metres(wave.depth_m()) +
-                   "; choose at most " + metres(wave.depth_m()));
-    }
+    checkAtMost(beach.width_m(), side_m, prefix + "width_m", "is more than the side of the water", issues);
+    checkAtMost(beach.shore_depth_m(), wave.depth_m(), prefix + "shore_depth_m",
+                "is deeper than the water of " + metres(wave.depth_m()), issues);
   }
 }
 
@@ -184,17 +169,11 @@ void checkHull(const core::Boat& boat, const WaterExtents& water, const std::str
                std::vector<FieldIssue>& issues) {
   const double max_length_m = std::min(kMaxBoatSideRatio * std::max(water.side_x_m, water.side_z_m),
                                        kMaxBoatWidthRatio * water.shorterSide_m());
-  if (boat.length_m > max_length_m) {
-    addRange(issues, prefix + "length_m",
-             metres(boat.length_m) + " is more than a quarter of the water's length or half of its width of " +
-                 metres(water.side_x_m) + " x " + metres(water.side_z_m) + "; choose at most " + metres(max_length_m),
-             max_length_m);
-  }
-  if (boat.beam_m > boat.length_m) {
-    addRange(issues, prefix + "beam_m",
-             metres(boat.beam_m) + " is more than the boat's length; choose at most " + metres(boat.length_m),
-             boat.length_m);
-  }
+  checkAtMost(boat.length_m, max_length_m, prefix + "length_m",
+              "is more than a quarter of the water's length or half of its width of " + metres(water.side_x_m) + " x " +
+                  metres(water.side_z_m),
+              issues);
+  checkAtMost(boat.beam_m, boat.length_m, prefix + "beam_m", "is more than the boat's length", issues);
   const double draught_m = boat.density_ratio * boat.height_m;
   if (draught_m >= water.depth_m) {
     addRange(issues, prefix + "height_m",

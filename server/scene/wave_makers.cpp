@@ -1,5 +1,3 @@
-#include "wave_makers.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -11,7 +9,7 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
-#include "scene_folder.h"
+#include "scene_parts.h"
 
 namespace spindrift::scene {
 namespace {
@@ -29,7 +27,7 @@ constexpr std::size_t kLineEchoMaxBytes = 60;
 using core::metres;
 
 std::string makerPath(int index) {
-  return "wave_makers[" + std::to_string(index) + "]";
+  return indexed("wave_makers", index);
 }
 
 void checkHeight(double height_m, double ratio, double depth_m, const std::string& path,
@@ -72,7 +70,7 @@ void checkSeries(const v1::ElevationSeries& series, double depth_m, const std::s
   }
   for (int k = 0; k < count; ++k) {
     const double time_s = series.time_s(k);
-    const std::string at = "[" + std::to_string(k) + "]";
+    const std::string at = indexed("", k);
     if (!(time_s >= 0.0 && time_s <= kSeriesMaxTime_s)) {
       return addRange(issues, path + ".time_s" + at,
                       core::formatQuantity(time_s, "s") + " is not a time of a series; choose 0 to " +

@@ -61,26 +61,27 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
     const auto before = std::exchange(known->second.greeted, view);
     if (before && before->room == view->room) return;
   }
-  wire::GreetingFacts facts;
-  facts.server = core::nameAndVersion();
-  facts.device = view->device;
-  facts.room = venue.name();
-  facts.session_id = session;
-  facts.layers = layersOf(room.scene);
-  facts.message_max_bytes = static_cast<std::uint32_t>(rules_.message_max_bytes);
-  facts.commands_per_s = rules_.commands_per_s;
-  facts.command_burst_count = rules_.command_burst_count;
-  facts.messages_per_s = rules_.messages_per_s;
-  facts.message_burst_count = rules_.message_burst_count;
-  facts.hello_within_s = std::chrono::duration<double>(rules_.hello_patience).count();
-  facts.frame_rate_max_hz = kFrameRateMax_hz;
-  facts.server_time_s = core::monotonic_s() + view->clock_offset_s;
-  facts.paused = room.paused;
-  facts.speed = room.speed;
-  facts.boats = room.boats;
-  facts.scenes = view->scenes;
-  facts.levels = view->levels;
-  hub().sendState(session, topic::kGreeting, wire::greeting(facts, room.scene));
+  v1::Greeting greeting;
+  greeting.set_server(std::string(core::nameAndVersion()));
+  greeting.set_device(view->device);
+  greeting.set_room(venue.name());
+  greeting.set_session_id(session);
+  for (const v1::Layer layer : layersOf(room.scene)) greeting.add_layers(layer);
+  v1::Limits& limits = *greeting.mutable_limits();
+  limits.set_message_max_bytes(static_cast<std::uint32_t>(rules_.message_max_bytes));
+  limits.set_commands_per_s(rules_.commands_per_s);
+  limits.set_command_burst_count(rules_.command_burst_count);
+  limits.set_messages_per_s(rules_.messages_per_s);
+  limits.set_message_burst_count(rules_.message_burst_count);
+  limits.set_hello_within_s(std::chrono::duration<double>(rules_.hello_patience).count());
+  limits.set_frame_rate_max_hz(kFrameRateMax_hz);
+  greeting.set_server_time_s(core::monotonic_s() + view->clock_offset_s);
+  greeting.mutable_room_state()->set_paused(room.paused);
+  greeting.mutable_room_state()->set_speed(room.speed);
+  *greeting.mutable_boat_list() = room.boats;
+  for (const std::string& scene : view->scenes) greeting.add_scenes(scene);
+  if (view->levels.levels_size() > 0) *greeting.mutable_fidelity_levels() = view->levels;
+  hub().sendState(session, topic::kGreeting, wire::greeting(std::move(greeting), room.scene));
 }
 
 void Sessions::roomChanged(const Venue& venue) {

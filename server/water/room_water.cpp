@@ -104,7 +104,7 @@ RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
 RoomWater::Outcome RoomWater::setParameter(const v1::SetParameter& change) {
   v1::Scene changed = scene();
   if (auto error = scene::setParameter(changed, change.path(), change.value())) {
-    return wire::rejection(error->reason, error->field, error->message);
+    return wire::rejection(error->reason, error->path, error->message);
   }
   const core::Scene wanted = scene::toCore(changed);
   if (auto applied = sim().setScene(wanted); !applied) return whyNot(change, wanted, applied.error());

@@ -3,7 +3,7 @@
 
 #include <spdlog/spdlog.h>
 
-#include <spindrift/scene/fidelity_errors.h>
+#include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/water/scene_catalog.h>
 

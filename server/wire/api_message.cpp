@@ -56,6 +56,13 @@ std::string readJson(std::string_view json, google::protobuf::Message& out) {
   }
 }
 
+template <typename Message>
+core::Result<Message> parse(std::string_view json) {
+  Message out;
+  if (std::string why = readJson(json, out); !why.empty()) return core::invalid(std::move(why));
+  return out;
+}
+
 }  // namespace
 
 std::string toJson(const google::protobuf::Message& message) {
@@ -76,19 +83,11 @@ std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::str
 }
 
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {
-  v1::CreateRoom create;
-  if (std::string why = readJson(json, create); !why.empty()) {
-    return core::Error{core::ErrorCode::kInvalidInput, std::move(why)};
-  }
-  return create;
+  return parse<v1::CreateRoom>(json);
 }
 
 core::Result<v1::RoomList> parseRoomListJson(std::string_view json) {
-  v1::RoomList list;
-  if (std::string why = readJson(json, list); !why.empty()) {
-    return core::Error{core::ErrorCode::kInvalidInput, std::move(why)};
-  }
-  return list;
+  return parse<v1::RoomList>(json);
 }
 
 }  // namespace spindrift::wire

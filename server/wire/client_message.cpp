@@ -206,9 +206,7 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kSetParameter: {
       const v1::SetParameter& set = command.set_parameter();
-      if (auto error = scene::checkParameter(scene, set.path(), set.value())) {
-        issues.push_back({error->reason, std::move(error->field), std::move(error->message)});
-      }
+      if (auto issue = scene::checkParameter(scene, set.path(), set.value())) issues.push_back(std::move(*issue));
       break;
     }
     case v1::Command::kSpawnBoat:

@@ -17,12 +17,7 @@ constexpr std::size_t kEchoMaxBytes = 64;
 
 enum class Kind { kObject, kArray, kString, kNumber, kBoolean, kNull };
 
-bool isDigit(char c) {
-  return c >= '0' && c <= '9';
-}
-bool isHexDigit(char c) {
-  return isDigit(c) || (c >= 'a' && c <= 'f') || (c >= 'A' && c <= 'F');
-}
+constexpr std::string_view kDigits = "0123456789", kHexDigits = "0123456789abcdefABCDEF", kSpace = " \t\n\r";
 
 const FieldDescriptor* fieldOf(const Descriptor& type, const std::string& name) {
   if (const FieldDescriptor* field = type.FindFieldByName(name)) return field;
@@ -89,7 +84,11 @@ class Checker {
   }
 
   void skipSpace() {
-    while (at_ < text_.size() && std::string_view(" \t\n\r").find(text_[at_]) != std::string_view::npos) ++at_;
+    while (isAt(kSpace)) ++at_;
+  }
+  /// Returns whether one of these characters is next.
+  [[nodiscard]] bool isAt(std::string_view characters) const {
+    return at_ < text_.size() && characters.find(text_[at_]) != std::string_view::npos;
   }
   bool take(char c) {
     if (at_ == text_.size() || text_[at_] != c) return false;
@@ -101,7 +100,7 @@ class Checker {
   [[nodiscard]] std::optional<Kind> kindHere() const {
     if (at_ == text_.size()) return std::nullopt;
     const char c = text_[at_];
-    if (isDigit(c) || c == '-') return Kind::kNumber;
+    if (c == '-' || isAt(kDigits)) return Kind::kNumber;
     constexpr std::pair<char, Kind> kKinds[] = {{'{', Kind::kObject},  {'[', Kind::kArray},   {'"', Kind::kString},
                                                 {'t', Kind::kBoolean}, {'f', Kind::kBoolean}, {'n', Kind::kNull}};
     for (const auto& [first, kind] : kKinds) {
@@ -138,16 +137,28 @@ class Checker {
     return readWord("null");
   }
 
-  bool readObject(const Descriptor* type, const std::string& path, std::size_t depth) {
+  /// Reads what lies between two brackets: items, each by `readItem`, with commas between them.
+  template <typename ReadItem>
+  bool readItems(char end, std::size_t depth, ReadItem readItem) {
     if (depth > kJsonMaxDepth) return fail("at most " + std::to_string(kJsonMaxDepth) + " values within one another");
-    ++at_;  // {
+    ++at_;  // the first bracket
     skipSpace();
-    if (take('}')) return true;
+    if (take(end)) return true;
+    while (true) {
+      if (!readItem()) return false;
+      skipSpace();
+      if (take(end)) return true;
+      if (!take(',')) return fail(std::string("a comma or ") + end + " is expected");
+      skipSpace();
+    }
+  }
+
+  bool readObject(const Descriptor* type, const std::string& path, std::size_t depth) {
     // The field set in each oneof (an optional field is a oneof of its own).
     std::vector<std::pair<const google::protobuf::OneofDescriptor*, std::string>> chosen;
     std::vector<const FieldDescriptor*> known;
-    while (true) {
-      if (at_ == text_.size() || text_[at_] != '"') return fail("a name in double quotes is expected");
+    return readItems('}', depth, [&] {
+      if (!isAt("\"")) return fail("a name in double quotes is expected");
       std::string name;
       if (!readString(name)) return false;
       skipSpace();
@@ -168,26 +179,14 @@ class Checker {
           chosen.emplace_back(choice, field->name());
         }
       }
-      if (!readValue(field, false, member_path, depth + 1)) return false;
-      skipSpace();
-      if (take('}')) return true;
-      if (!take(',')) return fail("a comma or } is expected");
-      skipSpace();
-    }
+      return readValue(field, false, member_path, depth + 1);
+    });
   }
 
   bool readArray(const FieldDescriptor* field, const std::string& path, std::size_t depth) {
-    if (depth > kJsonMaxDepth) return fail("at most " + std::to_string(kJsonMaxDepth) + " values within one another");
-    ++at_;  // [
-    skipSpace();
-    if (take(']')) return true;
-    for (std::size_t index = 0;; ++index) {
-      if (!readValue(field, true, path + "[" + std::to_string(index) + "]", depth + 1)) return false;
-      skipSpace();
-      if (take(']')) return true;
-      if (!take(',')) return fail("a comma or ] is expected");
-      skipSpace();
-    }
+    return readItems(']', depth, [&, index = std::size_t{0}]() mutable {
+      return readValue(field, true, path + "[" + std::to_string(index++) + "]", depth + 1);
+    });
   }
 
   /// `out`: the characters, without those from \u escapes, which no field name needs.
@@ -214,26 +213,25 @@ class Checker {
   bool readEscape(std::string& out) {
     ++at_;  // backslash
     constexpr std::string_view kLetters = "\"\\/bfnrt";
-    if (at_ < text_.size() && kLetters.find(text_[at_]) != std::string_view::npos) {
+    if (isAt(kLetters)) {
       out.push_back(text_[at_++]);
       return true;
     }
     if (!take('u')) return fail("one of \" \\ / b f n r t u is expected behind a backslash");
     for (int k = 0; k < 4; ++k, ++at_) {
-      if (at_ == text_.size() || !isHexDigit(text_[at_]))
-        return fail("four hexadecimal digits are expected behind \\u");
+      if (!isAt(kHexDigits)) return fail("four hexadecimal digits are expected behind \\u");
     }
     return true;
   }
   bool readDigits() {
-    if (at_ == text_.size() || !isDigit(text_[at_])) return fail("a digit is expected");
-    while (at_ < text_.size() && isDigit(text_[at_])) ++at_;
+    if (!isAt(kDigits)) return fail("a digit is expected");
+    while (isAt(kDigits)) ++at_;
     return true;
   }
   bool readNumber() {
     (void)take('-');
     if (!take('0') && !readDigits()) return false;
-    if (at_ < text_.size() && isDigit(text_[at_])) return fail("a number does not begin with 0 and another digit");
+    if (isAt(kDigits)) return fail("a number does not begin with 0 and another digit");
     if (take('.') && !readDigits()) return false;
     if (!take('e') && !take('E')) return true;
     if (!take('+')) (void)take('-');

@@ -10,7 +10,7 @@
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/http/origin.h>
+#include <spindrift/http/network_text.h>
 #include <spindrift/http/request.h>
 #include <spindrift/http/routes.h>
 #include <spindrift/http/static_files.h>

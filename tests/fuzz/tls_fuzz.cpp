@@ -15,7 +15,6 @@
 #include <vector>
 
 #include <boost/asio/io_context.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <openssl/err.h>
 #include <openssl/evp.h>
 #include <openssl/ssl.h>
@@ -30,7 +29,7 @@
 #include "temporary_folder.h"
 #include "tls_context.h"
 #include "tls_credentials.h"
-#include "tls_layer.h"
+#include "transport.h"
 
 namespace spindrift::fuzz {
 namespace {
@@ -66,14 +65,14 @@ class Server {
  public:
   Server(asio::io_context& io, int socket, std::size_t buffer_bytes) : stream_(io), buffer_(buffer_bytes) {
     stream_.socket().assign(asio::ip::tcp::v4(), socket);
-    layer_ = net::makeServerTls(stream_, *fixture().server);
+    stream_.useServerTls(*fixture().server);
   }
 
   void begin(asio::const_buffer received) {
     ++pending_count_;
-    layer_->handshake(received, [this](error_code error, std::size_t) {
+    stream_.handshake(received, [this](error_code error, std::size_t) {
       answered();
-      const std::string reason = layer_->reasonOf(error);
+      const std::string reason = stream_.tlsReasonOf(error);
       must(!reason.empty() && reason.find('\n') == std::string::npos, "the reason of a failed handshake is one line");
       is_open_ = !error;
       if (is_open_)
@@ -95,7 +94,7 @@ class Server {
 
   void read() {
     ++pending_count_;
-    layer_->read(asio::buffer(buffer_), [this](error_code error, std::size_t count) {
+    stream_.read(asio::buffer(buffer_), [this](error_code error, std::size_t count) {
       answered();
       must(count <= buffer_.size(), "no more is read than the buffer holds");
       if (error) return end();
@@ -116,7 +115,7 @@ class Server {
       const std::size_t end = k + 1 == part_count ? count : begin + part_size;
       parts[k] = asio::buffer(&buffer_[begin], end - begin);
     }
-    layer_->write(std::span(parts).first(part_count), [this, done, count](error_code error, std::size_t written) {
+    stream_.write(std::span(parts).first(part_count), [this, done, count](error_code error, std::size_t written) {
       answered();
       must(written <= count - done, "no more is written than there is");
       if (error || written == 0) return end();
@@ -126,14 +125,13 @@ class Server {
 
   void end() {
     ++pending_count_;
-    layer_->shutdown([this](error_code, std::size_t) {
+    stream_.shutdown([this](error_code, std::size_t) {
       answered();
       stream_.close();
     });
   }
 
-  boost::beast::tcp_stream stream_;
-  std::unique_ptr<net::TlsLayer> layer_;
+  net::Transport stream_;
   core::Bytes buffer_;
   core::Bytes received_;
   bool is_open_ = false;

@@ -85,10 +85,11 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
   core::Result<void> acceptSession(const std::string&) override { return {}; }
   void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
     ++opened_count;
-    wire::GreetingFacts facts;
-    facts.room = room;
-    facts.session_id = session;
-    hub_->sendAnswer(session, wire::greeting(facts, scene_));
+    v1::Greeting greeting;
+    greeting.set_room(room);
+    greeting.set_session_id(session);
+    greeting.mutable_room_state()->set_speed(1.0);
+    hub_->sendAnswer(session, wire::greeting(std::move(greeting), scene_));
     hub_->join(session, room, demandOf(room));  // afterwards, so that no state message precedes the greeting
   }
   void sessionMessage(net::SessionId session, core::ByteView bytes) override {

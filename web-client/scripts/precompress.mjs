@@ -1,5 +1,5 @@
 // Compresses the built page: writes FILE.br and FILE.gz beside each file of dist that becomes smaller, which the server sends instead
-// (server/http/include/spindrift/http/content_coding.h). Prints the bytes of the page in each coding.
+// (server/http/include/spindrift/http/static_files.h). Prints the bytes of the page in each coding.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";

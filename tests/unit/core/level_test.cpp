@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/core/level.h>
-#include <spindrift/core/level_demand.h>
+#include <spindrift/core/demand_table.h>
 
 namespace spindrift::core {
 namespace {

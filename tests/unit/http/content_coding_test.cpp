@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/http/content_coding.h>
+#include <spindrift/http/static_files.h>
 
 namespace spindrift::net {
 namespace {

@@ -2,7 +2,7 @@
 // requests that the application answers late, never, or after the server has ended.
 #include <gtest/gtest.h>
 
-#include <spindrift/http/origin.h>
+#include <spindrift/http/network_text.h>
 
 #include "address_limits.h"
 #include "test_application.h"

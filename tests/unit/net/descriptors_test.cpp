@@ -1,4 +1,4 @@
-#include "descriptors.h"
+#include "connection_set.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/scene/fidelity_errors.h>
+#include <spindrift/scene/fidelity.h>
 
 #include "temporary_folder.h"
 

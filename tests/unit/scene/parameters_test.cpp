@@ -146,7 +146,7 @@ TEST(Parameters, CannotMakeTheWaterTooShallowForItsBoats) {
   const auto error = setParameter(*scene, "wave.depth_m", 0.45);
   ASSERT_TRUE(error);
   EXPECT_EQ(error->reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(error->field, "wave.depth_m");
+  EXPECT_EQ(error->path, "wave.depth_m");
   EXPECT_THAT(error->message, AllOf(HasSubstr("boats.boats[0].height_m"), HasSubstr("0.45 m")));
   EXPECT_THAT(setParameter(*scene, "wave.depth_m", 0.1)->message, HasSubstr("beaches[0].shore_depth_m"));
   EXPECT_EQ(scene->SerializeAsString(), before);
@@ -175,7 +175,7 @@ TEST_P(RejectedParameter, HasAReasonAndDoesNotChangeTheScene) {
   ASSERT_TRUE(checked);
   EXPECT_EQ(checked->message, error->message);
   EXPECT_EQ(error->reason, bad.reason) << error->message;
-  EXPECT_EQ(error->field, bad.path);
+  EXPECT_EQ(error->path, bad.path);
   EXPECT_THAT(error->message, HasSubstr(bad.must_hold));
   EXPECT_EQ(scene.SerializeAsString(), before);
 }
@@ -213,8 +213,8 @@ TEST(Parameters, ALongPathIsEchoedShortenedAndCleaned) {
   v1::Scene scene = fullScene();
   const auto error = setParameter(scene, "\n\x1b[2J" + std::string(10'000, 'x'), 1.0);
   ASSERT_TRUE(error);
-  EXPECT_LE(error->field.size(), 64u);
-  EXPECT_EQ(error->field.find_first_of("\n\x1b"), std::string::npos);
+  EXPECT_LE(error->path.size(), 64u);
+  EXPECT_EQ(error->path.find_first_of("\n\x1b"), std::string::npos);
 }
 
 TEST(Parameters, TheReferenceListsEveryNumberWithItsUnitAndRange) {

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/scene/setting.h>
 
 namespace spindrift::scene {
 namespace {

@@ -10,7 +10,7 @@
 namespace spindrift::core {
 
 /// Returns the shipped scene of that name ("harbor", "splash"), otherwise the file. kUnavailable names both paths.
-core::Result<std::filesystem::path> findScene(const std::string& given);
+Result<std::filesystem::path> findScene(const std::string& given);
 
 /// Returns the folder of the built web client: share/spindrift/web above the program, or web-client/dist of the source
 /// tree. Empty when neither exists.

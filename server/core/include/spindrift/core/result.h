@@ -29,8 +29,16 @@ inline Error invalid(std::string message) {
   return {ErrorCode::kInvalidInput, std::move(message)};
 }
 
+/// Returns the error of something outside the program that cannot be used.
+inline Error unavailable(std::string message) {
+  return {ErrorCode::kUnavailable, std::move(message)};
+}
+
 /// Returns the program's exit code for this category; never 0.
-int exitCode(ErrorCode code);
+constexpr int exitCode(ErrorCode code) {
+  if (code == ErrorCode::kNoDevice) return 3;
+  return code == ErrorCode::kInvalidInput || code == ErrorCode::kUnavailable ? 2 : 1;
+}
 
 /// Either a T or an Error. Test with `if (!result)`, then read `*result` or `result.error()`.
 template <typename T>

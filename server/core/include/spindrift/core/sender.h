@@ -1,6 +1,8 @@
 // The sender of a command and its permissions.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,10 +14,18 @@ namespace spindrift::core {
 /// Permissions of a sender; each role includes the ones before.
 enum class Role { kViewer, kPlayer, kOperator };
 
-/// Returns "viewer", "player" or "operator".
-std::string_view roleName(Role role);
+inline constexpr std::array<std::string_view, 3> kRoleNames{"viewer", "player", "operator"};  ///< indexed by Role
+
+constexpr std::string_view roleName(Role role) {
+  return kRoleNames[static_cast<std::size_t>(role)];
+}
 /// Returns nullopt for a name that is not a role.
-std::optional<Role> parseRole(std::string_view name);
+constexpr std::optional<Role> parseRole(std::string_view name) {
+  for (std::size_t k = 0; k < kRoleNames.size(); ++k) {
+    if (kRoleNames[k] == name) return static_cast<Role>(k);
+  }
+  return std::nullopt;
+}
 
 /// Identifies one connection for the life of the process; never 0, never reused.
 using SessionId = std::uint64_t;

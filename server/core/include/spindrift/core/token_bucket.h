@@ -13,9 +13,7 @@ class TokenBucket {
       : rate_per_s_(rate_per_s), burst_count_(burst_count), tokens_(burst_count), updated_(now) {}
 
   bool take(std::chrono::steady_clock::time_point now) {
-    const double elapsed_s = std::chrono::duration<double>(now - updated_).count();
-    updated_ = now;
-    tokens_ = std::min(burst_count_, tokens_ + rate_per_s_ * elapsed_s);
+    refill(now);
     if (tokens_ < 1.0) return false;
     tokens_ -= 1.0;
     return true;
@@ -23,15 +21,20 @@ class TokenBucket {
 
   /// Takes a token, in advance if none is left. Returns the time until that token is due.
   std::chrono::steady_clock::duration reserve(std::chrono::steady_clock::time_point now) {
-    const double elapsed_s = std::chrono::duration<double>(now - updated_).count();
-    updated_ = now;
-    tokens_ = std::min(burst_count_, tokens_ + rate_per_s_ * elapsed_s) - 1.0;
+    refill(now);
+    tokens_ -= 1.0;
     if (tokens_ >= 0.0) return {};
     return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
         std::chrono::duration<double>(-tokens_ / rate_per_s_));
   }
 
  private:
+  void refill(std::chrono::steady_clock::time_point now) {
+    const double elapsed_s = std::chrono::duration<double>(now - updated_).count();
+    updated_ = now;
+    tokens_ = std::min(burst_count_, tokens_ + rate_per_s_ * elapsed_s);
+  }
+
   double rate_per_s_;
   double burst_count_;
   double tokens_;

@@ -1,6 +1,7 @@
 // Routes plain HTTP requests, without a socket: takes the parts of a request, returns a reply.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -27,13 +28,16 @@ struct RequestHead {
 struct Reply {
   unsigned status = 200;
   std::string content_type = "text/plain; charset=utf-8";
-  std::shared_ptr<const std::string> body;  ///< never null; empty for 304
+  std::shared_ptr<const std::string> body = std::make_shared<const std::string>();  ///< never null; empty for 304
   /// In addition to Content-Type and the security headers.
-  std::vector<std::pair<std::string, std::string>> headers;
+  std::vector<std::pair<std::string, std::string>> headers{};
 };
 
 /// Returns one plain line of text (the newline is added here), not cached.
 Reply textReply(unsigned status, std::string line);
+
+/// Returns the same with Retry-After.
+Reply retryReply(unsigned status, std::string line, std::int64_t after_s = 1);
 
 /// Name of the subprotocol defined in proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";

@@ -2,6 +2,7 @@
 // Compressed files beside it (kContentCodings) are sent in its place to clients that take them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -10,9 +11,20 @@
 #include <string_view>
 #include <unordered_map>
 
-#include <spindrift/http/content_coding.h>
-
 namespace spindrift::net {
+
+/// Coding of a static file (RFC 9110 section 12.5.3).
+struct ContentCoding {
+  std::string_view name;    ///< in Accept-Encoding and Content-Encoding
+  std::string_view suffix;  ///< of the compressed file beside the original
+};
+
+/// The smallest one first. web-client/scripts/precompress.mjs makes these files.
+inline constexpr std::array<ContentCoding, 2> kContentCodings{{{"br", ".br"}, {"gzip", ".gz"}}};
+
+/// Returns the weight of a coding in a list of Accept-Encoding, 0 to 1: that of its own entry, or that of "*"; 0 if
+/// there is neither, or if the entry is malformed.
+double codingWeight(std::string_view accept_encoding, std::string_view coding);
 
 struct StaticFile {
   std::string content;

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include <spindrift/core/result.h>
+#include <spindrift/v1/fidelity_errors.pb.h>
 #include <spindrift/v1/scene.pb.h>
 
 namespace spindrift::scene {
@@ -33,5 +36,12 @@ void applyFidelity(v1::Scene& scene);
 /// Gives `to`, the same scene at another level, the present values of the parameters that change while a room runs
 /// (`from`), except those that applyFidelity() chooses. Does not check the result.
 void keepParameters(const v1::Scene& from, v1::Scene& to);
+
+/// A file beside the scenes with their measured errors at the levels, which `./dev study --update` writes.
+inline constexpr const char* kFidelityErrorsFile = "fidelity_errors.txtpb";
+
+/// Reads kFidelityErrorsFile in a folder of scenes; empty without that file. Errors: kUnavailable if it cannot be read;
+/// kInvalidInput, with the place, if it is not a v1::FidelityErrors with an error of 0 or more per level in each scene.
+core::Result<v1::FidelityErrors> loadFidelityErrors(const std::filesystem::path& folder);
 
 }  // namespace spindrift::scene

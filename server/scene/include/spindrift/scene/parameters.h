@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include <spindrift/scene/fields.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -15,20 +16,14 @@ namespace spindrift::scene {
 /// that need no restart, in the order of the proto file. Numbers of events are not included.
 std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene);
 
-/// Reason why a parameter was not set.
-struct ParameterError {
-  v1::RejectReason reason = v1::REJECT_REASON_UNSPECIFIED;
-  std::string field;    ///< the requested path, cleaned and shortened for display
-  std::string message;  ///< one line for the user: value, bound with unit, what to do
-};
-
-/// Checks whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. Reasons: UNKNOWN_PARAMETER,
+/// Checks whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. The issue's path is the
+/// requested one, cleaned and shortened for display. Reasons: UNKNOWN_PARAMETER,
 /// ABSENT_PART, NEEDS_RESTART, NOT_FINITE, OUT_OF_RANGE (also for a count that is not whole, or a conflict with the
 /// rest of the scene, such as water shallower than a boat's draught). Slider steps are not enforced.
-std::optional<ParameterError> checkParameter(const v1::Scene& scene, std::string_view path, double value);
+std::optional<FieldIssue> checkParameter(const v1::Scene& scene, std::string_view path, double value);
 
 /// Sets the parameter. On error, returns it as checkParameter() does and leaves the scene unchanged.
-std::optional<ParameterError> setParameter(v1::Scene& scene, std::string_view path, double value);
+std::optional<FieldIssue> setParameter(v1::Scene& scene, std::string_view path, double value);
 
 /// Returns one Markdown table of every number of a scene, including restart-only ones and those of events, for the
 /// reference documentation.

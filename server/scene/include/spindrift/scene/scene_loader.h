@@ -52,6 +52,14 @@ v1::Scene forClients(const v1::Scene& scene);
 /// UNSPECIFIED enums become their documented default, seed 0 becomes 1. Idempotent.
 void fillDefaults(v1::Scene& scene);
 
+/// Returns where the water is, for those who draw it; the simulation does not depend on it: the scene's setting, or the
+/// one that follows from its sides and parts if it names none; never unspecified. Precondition: the defaults of the
+/// scene's numbers are filled in.
+v1::Setting settingOf(const v1::Scene& scene);
+
+/// Returns "open sea", ...
+std::string settingName(v1::Setting setting);
+
 /// Converts to the simulation's form. Fields left out get their defaults.
 core::Scene toCore(const v1::Scene& scene);
 
