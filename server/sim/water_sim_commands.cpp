@@ -2,7 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/effects/scheduled_effects.h>
-#include <spindrift/sim_setup/open_side.h>
+#include <spindrift/sim_setup/ground.h>
 
 #include "water_sim_parts.h"
 

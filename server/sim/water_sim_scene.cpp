@@ -2,7 +2,7 @@
 
 #include <shared/bindings.h>
 
-#include <spindrift/sim_state/starting_positions.h>
+#include <spindrift/sim_state/relay_particles.h>
 
 #include "water_sim_parts.h"
 

@@ -12,7 +12,6 @@
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
-#include <spindrift/sim_setup/spray.h>
 
 #include "wave_layout.h"
 

@@ -35,4 +35,9 @@ std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_
 /// cell. Error: kInvalidInput. Does nothing in scenes without a bed.
 core::Result<void> checkGround(const core::Scene& scene);
 
+/// Returns the side that waves come from where none is named: that with the deepest water, land and obstacles counted
+/// as no depth; of sides that are about as deep, the first one that is open to the sea, otherwise the first one: +x,
+/// -x, +z, -z. kPlusX in scenes without a wave.
+core::Side openSide(const core::Scene& scene);
+
 }  // namespace spindrift::sim
