@@ -9,8 +9,8 @@
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
 
-#include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/pulse.h>
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {
@@ -40,20 +40,20 @@ Complex factorAt(double k_radpm, double decay_pm, double share, double place_m, 
 /// Blocks with cells of a layer: first column, first row, the layers' sides, 0.
 std::vector<std::array<std::uint32_t, 4>> layerBlocks(const core::WaveScene& wave, const WaveLayout& layout) {
   std::vector<std::array<std::uint32_t, 4>> out;
-  const auto depth_in = [&](core::WaveBoundary side, std::uint32_t cells_before) {
-    return side == core::WaveBoundary::kAbsorb && (cells_before + 0.5) * layout.cell_m < wave.sponge_width_m;
-  };
+  const auto water_sides = sidesOf(wave);
   // The last block of a row may reach beyond the water.
   const auto behind = [](std::uint32_t count, std::uint32_t first) {
     return count > first + SEA_BLOCK ? count - first - SEA_BLOCK : 0;
   };
   for (std::uint32_t z = 0; z < layout.count_z; z += SEA_BLOCK) {
     for (std::uint32_t x = 0; x < layout.count_x; x += SEA_BLOCK) {
+      const std::array cells_before{x, behind(layout.count_x, x), z, behind(layout.count_z, z)};
       std::uint32_t sides = 0;
-      if (depth_in(wave.boundary_minus_x, x)) sides |= MINUS_X_BIT;
-      if (depth_in(wave.boundary_plus_x, behind(layout.count_x, x))) sides |= PLUS_X_BIT;
-      if (depth_in(wave.boundary_minus_z, z)) sides |= MINUS_Z_BIT;
-      if (depth_in(wave.boundary_plus_z, behind(layout.count_z, z))) sides |= PLUS_Z_BIT;
+      for (std::size_t k = 0; k < water_sides.size(); ++k) {
+        if (water_sides[k].boundary == core::WaveBoundary::kAbsorb &&
+            (cells_before[k] + 0.5) * layout.cell_m < wave.sponge_width_m)
+          sides |= water_sides[k].bit;
+      }
       if (sides != 0) out.push_back({x, z, sides, 0});
     }
   }

@@ -34,18 +34,16 @@ Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double
   return {dx * std::cos(heading) + dz * std::sin(heading), dz * std::cos(heading) - dx * std::sin(heading)};
 }
 
-/// Distance of a position from a side. [m]
-double distanceTo(core::Side side, const core::WaveCells& water, double x_m, double z_m) {
-  switch (side) {
-    case core::Side::kMinusX:
-      return x_m + water.length_m / 2;
-    case core::Side::kPlusZ:
-      return water.width_m / 2 - z_m;
-    case core::Side::kMinusZ:
-      return z_m + water.width_m / 2;
-    default:
-      return water.length_m / 2 - x_m;
-  }
+/// Distance in the plane from an obstacle, negative inside. [m]
+double distance(const core::Rock& rock, double x_m, double z_m) {
+  return std::hypot(x_m - rock.x_m, z_m - rock.z_m) - rock.radius_m;
+}
+
+double distance(const core::Breakwater& wall, double x_m, double z_m) {
+  const Place place = placeFrom(wall.x_m, wall.z_m, wall.heading_deg, x_m, z_m);
+  const double along = std::abs(place.along_m) - wall.length_m / 2;
+  const double across = std::abs(place.across_m) - wall.width_m / 2;
+  return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
 }
 
 double floorDepth(const core::Scene& scene) {
@@ -150,7 +148,8 @@ double shapedDepth(const core::Scene& scene, double x_m, double z_m) {
   if (scene.beaches.empty() && !scene.bed) return depth_m;
   const core::WaveCells water = core::waveCellsOf(*scene.wave);
   for (const core::Beach& beach : scene.beaches) {
-    const double share = std::clamp(distanceTo(beach.side, water, x_m, z_m) / beach.width_m, 0.0, 1.0);
+    const double share =
+        std::clamp(distanceTo(beach.side, water.length_m, water.width_m, x_m, z_m) / beach.width_m, 0.0, 1.0);
     depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, floor_m, share));
   }
   if (!scene.bed) return depth_m;
@@ -160,6 +159,30 @@ double shapedDepth(const core::Scene& scene, double x_m, double z_m) {
 }
 
 }  // namespace
+
+double distanceTo(core::Side side, double length_m, double width_m, double x_m, double z_m) {
+  switch (side) {
+    case core::Side::kMinusX:
+      return x_m + length_m / 2;
+    case core::Side::kPlusZ:
+      return width_m / 2 - z_m;
+    case core::Side::kMinusZ:
+      return z_m + width_m / 2;
+    default:
+      return length_m / 2 - x_m;
+  }
+}
+
+double obstacleDistance(const core::Obstacle& obstacle, double x_m, double z_m) {
+  return std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle);
+}
+
+double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const core::Obstacle& obstacle : scene.obstacles)
+    nearest_m = std::min(nearest_m, obstacleDistance(obstacle, x_m, z_m));
+  return nearest_m;
+}
 
 double groundDepth(const core::Scene& scene, double x_m, double z_m) {
   const double depth_m = shapedDepth(scene, x_m, z_m);
