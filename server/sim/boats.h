@@ -6,7 +6,6 @@
 
 #include <shared/boats.h>
 
-#include <spindrift/sim/boat_record.h>
 #include <spindrift/sim_state/carried_state.h>
 
 #include "creation.h"

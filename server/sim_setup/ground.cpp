@@ -12,9 +12,6 @@
 namespace spindrift::sim {
 namespace {
 
-using core::Error;
-using core::ErrorCode;
-
 /// Share of the depth by which shapes with rounded numbers may miss it: a slope of 0.049875 over 12.03 m and one of
 /// -0.099502 over 6.03 m end 0.8 um below the floor. Such ground counts as wave.depth_m.
 constexpr double kDepthTolerance = 1e-3;
@@ -220,11 +217,9 @@ core::Result<void> checkGround(const core::Scene& scene) {
   if (const auto& grid = scene.bed->grid) {
     const std::size_t wanted = std::size_t{grid->columns_count} * grid->rows_count;
     if (grid->columns_count < 2 || grid->rows_count < 2 || !grid->depths_m || grid->depths_m->size() != wanted)
-      return Error{
-          ErrorCode::kInvalidInput,
-          fmt::format("bed.grid: {} x {} points with {} depths are not a grid: give rows or a png with at least "
-                      "2 x 2 points",
-                      grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
+      return core::invalid(fmt::format(
+          "bed.grid: {} x {} points with {} depths are not a grid: give rows or a png with at least 2 x 2 points",
+          grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0));
   }
   const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
   if (deepestPossible(scene) <= limit_m) return {};
@@ -243,11 +238,11 @@ core::Result<void> checkGround(const core::Scene& scene) {
     }
   }
   if (deepest_m <= limit_m) return {};
-  return Error{ErrorCode::kInvalidInput,
-               fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
-                           "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
-                           "bed.floor_depth_m for the depth of the level floor)",
-                           deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m)};
+  return core::invalid(
+      fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
+                  "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
+                  "bed.floor_depth_m for the depth of the level floor)",
+                  deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m));
 }
 
 namespace {

@@ -13,7 +13,6 @@ namespace spindrift::sim {
 namespace {
 
 using core::Boundary;
-using core::Error;
 
 /// Softness of the position-based constraint over its squared gradient inside the lattice: with 0 pairs of particles
 /// jump, 1 halves every correction.

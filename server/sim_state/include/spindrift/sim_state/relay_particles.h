@@ -6,7 +6,7 @@
 
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_state/state_copy.h>
+#include <spindrift/sim_state/carried_state.h>
 
 namespace spindrift::sim {
 
