@@ -11,7 +11,6 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/ground.h>
-#include <spindrift/sim_setup/open_side.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 

@@ -1,14 +1,13 @@
 #include "boats.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
 
 #include <fmt/format.h>
 #include <shared/bindings.h>
-
-#include "create_all.h"
 
 namespace spindrift::sim {
 namespace {
@@ -41,42 +40,30 @@ State startingState(const core::Boat& boat, std::uint32_t boat_id) {
   return s;
 }
 
-Error unknownBoat(std::uint32_t boat_id) {
-  return {ErrorCode::kInvalidInput, fmt::format("boat_id: {} is not on the water; see the boat list", boat_id)};
-}
-
 }  // namespace
 
-Boats::Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m)
-    : ctx_(ctx), cell_m_(cell_m), places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)) {}
-
-core::Result<std::unique_ptr<Boats>> Boats::create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
-                                                   const gpu::Defines& defines) {
+Boats::Boats(Creation& create, const core::Scene& scene, double cell_m)
+    : cell_m_(cell_m),
+      places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)),
+      state_(create.texels("boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F)),
+      control_uniforms_(create.uniforms<shared::BoatControls>("boat controls")),
+      drift_(create.pass("bodies/drift.comp")),
+      kick_(create.pass("bodies/kick.comp")) {
   static_assert(core::kMaxBoats == MAX_BOATS);
+  if (scene.wave) press_ = create.pass("bodies/press.comp");
   if (scene.boats->boats.size() > scene.boats->capacity_count) {
-    return Error{ErrorCode::kInvalidInput,
-                 fmt::format("boats.boats: {} boats are more than boats.capacity_count = {}: remove some or raise it",
-                             scene.boats->boats.size(), scene.boats->capacity_count)};
+    create.fail(core::invalid(
+        fmt::format("boats.boats: {} boats are more than boats.capacity_count = {}: remove some or raise it",
+                    scene.boats->boats.size(), scene.boats->capacity_count)));
   }
-  auto out = std::unique_ptr<Boats>(new Boats(ctx, scene, cell_m));
-  Creation create;
-  create(out->state_,
-         gpu::TexelBuffer::create(ctx, "boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F));
-  create(out->control_uniforms_,
-         gpu::Buffer::create(ctx, "boat controls", sizeof(shared::BoatControls), gpu::BufferUse::kUpdatable));
-  create(out->drift_, gpu::Program::create(ctx, "bodies/drift.comp", defines));
-  create(out->kick_, gpu::Program::create(ctx, "bodies/kick.comp", defines));
-  if (scene.wave) create(out->press_, gpu::Program::create(ctx, "bodies/press.comp", defines));
-  if (create.error()) return *create.error();
-  return out;
 }
 
 void Boats::reset(const core::Scene& scene) {
   std::array<State, MAX_BOATS> states{};
   for (State& state : states) state[6] = kNobody;
-  std::ranges::fill(places_, Place{});
+  std::ranges::fill(places_, BoatPlace{});
   std::uint32_t boat_id = first_id_;
-  // create() has checked that there are enough slots.
+  // The constructor has checked that there are enough slots.
   for (std::size_t at = 0; at < scene.boats->boats.size(); ++at) {
     places_[at] = {boat_id++, scene.boats->boats[at]};
     states[at] = startingState(places_[at].boat, places_[at].boat_id);
@@ -86,10 +73,6 @@ void Boats::reset(const core::Scene& scene) {
   uploadControls();
 }
 
-void Boats::numberFrom(std::uint32_t first_id) {
-  first_id_ = next_id_ = first_id;
-}
-
 void Boats::takeOver(const CarriedBoats& carried) {
   places_ = carried.places;
   first_id_ = carried.first_id;
@@ -97,9 +80,10 @@ void Boats::takeOver(const CarriedBoats& carried) {
   uploadControls();
 }
 
-std::optional<std::size_t> Boats::find(std::uint32_t boat_id) const {
-  const auto it = std::ranges::find(places_, boat_id, &Place::boat_id);
-  if (boat_id == 0 || it == places_.end()) return std::nullopt;
+core::Result<std::size_t> Boats::find(std::uint32_t boat_id) const {
+  const auto it = std::ranges::find(places_, boat_id, &BoatPlace::boat_id);
+  if (boat_id == 0 || it == places_.end())
+    return core::invalid(fmt::format("boat_id: {} is not on the water; see the boat list", boat_id));
   return static_cast<std::size_t>(it - places_.begin());
 }
 
@@ -109,25 +93,20 @@ core::Result<std::uint32_t> Boats::spawn(const core::Boat& boat) {
         ErrorCode::kUnavailable,
         fmt::format("boats: the limit of {} boats launched in a room is reached; open another room", kBoatIdMax)};
   }
-  if (auto launched = launch(boat, next_id_); !launched) return launched.error();
-  return next_id_++;
-}
-
-core::Result<void> Boats::launch(const core::Boat& boat, std::uint32_t boat_id) {
-  const auto free = std::ranges::find(places_, 0u, &Place::boat_id);
+  const auto free = std::ranges::find(places_, 0u, &BoatPlace::boat_id);
   if (free == places_.end()) {
     return Error{ErrorCode::kUnavailable,
                  fmt::format("boats: the limit of {} boats is reached; remove a boat first", places_.size())};
   }
-  *free = {boat_id, boat};
-  state_.upload(startingState(boat, free->boat_id), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));
+  *free = {next_id_, boat};
+  state_.upload(startingState(boat, next_id_), static_cast<std::size_t>(free - places_.begin()) * sizeof(State));
   uploadControls();
-  return {};
+  return next_id_++;
 }
 
 core::Result<void> Boats::control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
   const auto at = find(boat_id);
-  if (!at) return unknownBoat(boat_id);
+  if (!at) return at.error();
   places_[*at].boat.throttle_ratio = std::clamp(throttle_ratio, -1.0, 1.0);
   places_[*at].boat.rudder_ratio = std::clamp(rudder_ratio, -1.0, 1.0);
   uploadControls();
@@ -136,7 +115,7 @@ core::Result<void> Boats::control(std::uint32_t boat_id, double throttle_ratio, 
 
 core::Result<void> Boats::remove(std::uint32_t boat_id) {
   const auto at = find(boat_id);
-  if (!at) return unknownBoat(boat_id);
+  if (!at) return at.error();
   places_[*at] = {};
   state_.uploadValue(kNobody, *at * sizeof(State) + 6 * sizeof(float));
   uploadControls();
@@ -177,16 +156,14 @@ void Boats::move(const Wave* wave) {
   }
   bind();
   state_.bindStorage(BOATS);
-  drift_.dispatchGroups(1);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-  kick_.dispatchGroups(controls_.place_count);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  drift_.runGroups(1);
+  kick_.runGroups(controls_.place_count);
 }
 
 void Boats::press(const gpu::TexelBuffer& pressure_head) {
   if (controls_.place_count == 0) return;
   double reach_m = 0.0;
-  for (const Place& place : places_) {
+  for (const BoatPlace& place : places_) {
     if (place.boat_id == 0) continue;
     reach_m = std::max(
         reach_m, HULL_REACH * 0.5 *
@@ -195,13 +172,12 @@ void Boats::press(const gpu::TexelBuffer& pressure_head) {
   const auto across = static_cast<std::uint32_t>(2 * std::ceil(reach_m / cell_m_)) + 3;
   bind();
   pressure_head.bindStorage(PRESSURE_HEAD);
-  press_.dispatch(across, across, controls_.place_count);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  press_.run(across, across, controls_.place_count);
 }
 
 std::vector<BoatRecord> Boats::records() const {
   std::vector<BoatRecord> out;
-  for (const Place& place : places_) {
+  for (const BoatPlace& place : places_) {
     if (place.boat_id == 0) continue;
     const core::Boat& b = place.boat;
     out.push_back({place.boat_id, b.length_m, b.beam_m, b.height_m, b.density_ratio * b.height_m});
@@ -210,7 +186,7 @@ std::vector<BoatRecord> Boats::records() const {
 }
 
 std::uint32_t Boats::count() const {
-  return static_cast<std::uint32_t>(std::ranges::count_if(places_, [](const Place& p) { return p.boat_id != 0; }));
+  return static_cast<std::uint32_t>(std::ranges::count_if(places_, [](const BoatPlace& p) { return p.boat_id != 0; }));
 }
 
 }  // namespace spindrift::sim

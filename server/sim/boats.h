@@ -1,36 +1,27 @@
 // Boats: the list of boats (host) and their motion (device). See shaders/shared/boats.h and shaders/bodies.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <memory>
-#include <optional>
 #include <vector>
 
 #include <shared/boats.h>
 
-#include <spindrift/core/result.h>
-#include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
-#include <spindrift/sim/boat_record.h>
-#include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_state/carried_state.h>
 
+#include "creation.h"
 #include "wave.h"
 
 namespace spindrift::sim {
 
 class Boats {
  public:
-  static core::Result<std::unique_ptr<Boats>> create(gpu::Context& ctx, const core::Scene& scene, double cell_m,
-                                                     const gpu::Defines& defines);
+  Boats(Creation& create, const core::Scene& scene, double cell_m);
 
   /// Keeps only the scene's own boats, at their starting positions and with their first ids. Ids of other boats are not
   /// reused.
   void reset(const core::Scene& scene);
   /// Sets the first id; the scene's own boats come first. Takes effect with the next reset().
-  void numberFrom(std::uint32_t first_id);
+  void numberFrom(std::uint32_t first_id) { first_id_ = next_id_ = first_id; }
   /// Returns a number above every id in use or used before.
   [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
   /// Its state on the device, which recovery mends.
@@ -61,22 +52,17 @@ class Boats {
   [[nodiscard]] std::uint32_t count() const;
 
  private:
-  Boats(gpu::Context& ctx, const core::Scene& scene, double cell_m);
-
-  using Place = BoatPlace;
-  core::Result<void> launch(const core::Boat& boat, std::uint32_t boat_id);
-  std::optional<std::size_t> find(std::uint32_t boat_id) const;
+  core::Result<std::size_t> find(std::uint32_t boat_id) const;
   void uploadControls();
 
-  gpu::Context& ctx_;
   double cell_m_;
-  std::vector<Place> places_;
+  std::vector<BoatPlace> places_;
   std::uint32_t first_id_ = 1;
   std::uint32_t next_id_ = 1;  ///< never decreases
   shared::BoatControls controls_{};
   gpu::TexelBuffer state_;
   gpu::Buffer control_uniforms_;
-  gpu::Program drift_, kick_, press_;
+  Pass drift_, kick_, press_;
 };
 
 }  // namespace spindrift::sim

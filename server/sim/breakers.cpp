@@ -2,22 +2,13 @@
 
 #include <shared/bindings.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<Breakers>> Breakers::create(gpu::Context& ctx, const WaveLayout& layout,
-                                                         const gpu::Defines& defines) {
-  auto out = std::unique_ptr<Breakers>(new Breakers(ctx, layout));
-  const std::size_t cells = layout.counts().total();
-  Creation create;
-  create(out->now_, gpu::TexelBuffer::create(ctx, "breaking", cells, gpu::TexelFormat::kRGBA32F));
-  create(out->before_, gpu::TexelBuffer::create(ctx, "breaking before", cells, gpu::TexelFormat::kRGBA32F,
-                                                gpu::BufferContent::kScratch));
-  create(out->program_, gpu::Program::create(ctx, "wave/breaking.comp", defines));
-  if (create.error()) return *create.error();
-  return out;
-}
+Breakers::Breakers(Creation& create, const WaveLayout& layout)
+    : count_(layout.counts()),
+      now_(create.texels("breaking", count_.total(), gpu::TexelFormat::kRGBA32F)),
+      before_(create.scratch("breaking before", count_.total(), gpu::TexelFormat::kRGBA32F)),
+      pass_(create.pass("wave/breaking.comp")) {}
 
 void Breakers::clear() {
   now_.clear();
@@ -36,10 +27,9 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
     wave.bindTerrain();
     pool->words().bindStorage(POOL);
     pool->emitters().bindStorage(EMITTER);
-    program_.setUniform("tick", tick);
+    pass_.setUniform("tick", tick);
   }
-  program_.dispatch(count_.x, count_.z);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  pass_.run(count_);
 }
 
 }  // namespace spindrift::sim

@@ -2,14 +2,9 @@
 // foam.
 #pragma once
 
-#include <memory>
-#include <utility>
-
-#include <spindrift/core/result.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/derive.h>
 
+#include "creation.h"
 #include "particle_pool.h"
 #include "wave.h"
 
@@ -17,8 +12,7 @@ namespace spindrift::sim {
 
 class Breakers {
  public:
-  static core::Result<std::unique_ptr<Breakers>> create(gpu::Context& ctx, const WaveLayout& layout,
-                                                        const gpu::Defines& defines);
+  Breakers(Creation& create, const WaveLayout& layout);
 
   void clear();
   void declareState(StateBuffers& out) { out.push_back({.buffer = &now_, .checkpoint = true, .carried = true}); }
@@ -29,12 +23,9 @@ class Breakers {
   [[nodiscard]] gpu::TexelBuffer& state() { return now_; }
 
  private:
-  Breakers(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()) {}
-
-  gpu::Context& ctx_;
   core::CellCounts count_;
   gpu::TexelBuffer now_, before_;
-  gpu::Program program_;
+  Pass pass_;
 };
 
 }  // namespace spindrift::sim

@@ -1,20 +1,14 @@
 #include "checkpoints.h"
 
-#include "create_all.h"
+#include <utility>
 
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<Checkpoints>> Checkpoints::create(gpu::Context& ctx, std::vector<gpu::Buffer*> state) {
-  auto out = std::unique_ptr<Checkpoints>(new Checkpoints());
-  out->state_ = std::move(state);
-  Creation create;
-  for (Copy& copy : out->copies_) {
-    for (const gpu::Buffer* live : out->state_) {
-      create(copy.buffers.emplace_back(), gpu::Buffer::create(ctx, "checkpoint of " + live->name(), live->sizeBytes()));
-    }
+Checkpoints::Checkpoints(Creation& create, std::vector<gpu::Buffer*> state) : state_(std::move(state)) {
+  for (Copy& copy : copies_) {
+    for (const gpu::Buffer* live : state_)
+      copy.buffers.push_back(create.buffer("checkpoint of " + live->name(), live->sizeBytes()));
   }
-  if (create.error()) return *create.error();
-  return out;
 }
 
 void Checkpoints::save(std::uint64_t tick) {

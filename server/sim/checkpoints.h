@@ -3,12 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include <spindrift/core/result.h>
-#include <spindrift/gpu/buffer.h>
+#include "creation.h"
 
 namespace spindrift::sim {
 
@@ -16,7 +14,7 @@ namespace spindrift::sim {
 class Checkpoints {
  public:
   /// `state` are the live buffers; the pointers must stay valid.
-  static core::Result<std::unique_ptr<Checkpoints>> create(gpu::Context& ctx, std::vector<gpu::Buffer*> state);
+  Checkpoints(Creation& create, std::vector<gpu::Buffer*> state);
 
   /// Copies the state of this tick, without waiting. Does nothing while an earlier copy still waits for its health: if
   /// each copy replaced the one before, a device that is far behind would never get a good one.
@@ -38,8 +36,6 @@ class Checkpoints {
     double flow_ratio = 1.0;
     bool is_filled = false;
   };
-
-  Checkpoints() = default;
 
   std::vector<gpu::Buffer*> state_;
   Copy copies_[2];

@@ -8,10 +8,10 @@
 
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
+#include <shared/gauge_uniforms.h>
 #include <shared/groups.h>
 #include <shared/pool.h>
 
-#include "create_all.h"
 #include "ticks_in_flight.h"
 
 namespace spindrift::sim {
@@ -57,6 +57,18 @@ Total total(std::span<const std::byte> bytes) {
   return out;
 }
 
+using GaugeTexel = std::array<float, 4>;
+
+std::vector<GaugeReading> gaugeReadings(std::span<const std::byte> bytes) {
+  std::vector<GaugeReading> out(bytes.size() / sizeof(GaugeTexel));
+  for (std::size_t k = 0; k < out.size(); ++k) {
+    GaugeTexel texel;
+    std::memcpy(texel.data(), bytes.data() + k * sizeof texel, sizeof texel);
+    out[k] = {.elevation_m = texel[0], .velocity_x_mps = texel[1], .velocity_z_mps = texel[2]};
+  }
+  return out;
+}
+
 /// Number of invocations, and of partial results, for this many items: a whole number of groups.
 std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program) {
   const std::uint32_t group = program.groupSize()[0];
@@ -73,48 +85,53 @@ std::size_t Diagnostics::gaugeOffset() const {
   return poolOffset() + (is_pooled_ ? POOL_WORDS * sizeof(std::uint32_t) : 0);
 }
 
-core::Result<std::unique_ptr<Diagnostics>> Diagnostics::create(gpu::Context& ctx, const core::Scene& scene,
-                                                               const Derived& derived, const gpu::Defines& defines) {
-  auto out = std::unique_ptr<Diagnostics>(new Diagnostics(ctx));
-  Creation create;
+Diagnostics::Diagnostics(Creation& create, const core::Scene& scene, const Derived& derived) : ctx_(create.context()) {
   if (derived.particles) {
-    out->is_pooled_ = derived.uniforms.pool_capacity_count > 0;
-    create(out->particle_program_, gpu::Program::create(ctx, "diagnostics/particles.comp", defines));
+    is_pooled_ = derived.uniforms.pool_capacity_count > 0;
+    particle_pass_ = create.pass("diagnostics/particles.comp");
   }
   if (derived.wave) {
-    out->cells_ = static_cast<std::uint32_t>(derived.wave->counts().total());
-    create(out->surface_program_, gpu::Program::create(ctx, "diagnostics/surface.comp", defines));
-    if (create.error()) return *create.error();
-    out->surface_shares_ = sharesFor(out->cells_, out->surface_program_);
-    create(out->surface_sums_, gpu::Buffer::create(ctx, "surface sums", out->surface_shares_ * sizeof(Partial),
-                                                   gpu::BufferUse::kDeviceOnly, gpu::BufferContent::kScratch));
+    cells_ = static_cast<std::uint32_t>(derived.wave->counts().total());
+    surface_pass_ = create.pass("diagnostics/surface.comp");
+    if (create.error()) return;
+    surface_shares_ = sharesFor(cells_, surface_pass_);
+    surface_sums_ = create.buffer("surface sums", surface_shares_ * sizeof(Partial), gpu::BufferContent::kScratch);
   }
-  if (!scene.gauges.empty()) create(out->gauges_, Gauges::create(ctx, scene, *derived.wave, defines));
-  if (create.error()) return *create.error();
-  if (auto sized = out->resize(derived); !sized) return sized.error();
-  return out;
+  if (!scene.gauges.empty()) createGauges(create, scene, *derived.wave);
+  resize(create, derived);
 }
 
-core::Result<void> Diagnostics::resize(const Derived& derived) {
+void Diagnostics::createGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout) {
+  static_assert(MAX_GAUGES == core::kMaxGauges);
+  shared::GaugeUniforms uniforms{};
+  uniforms.gauge_count = static_cast<std::uint32_t>(scene.gauges.size());
+  for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
+    const core::Gauge& gauge = scene.gauges[k];
+    uniforms.gauges[k].column = static_cast<float>((gauge.x_m + layout.length_m / 2) / layout.cell_m - 0.5);
+    uniforms.gauges[k].row = static_cast<float>((gauge.z_m + layout.width_m / 2) / layout.cell_m - 0.5);
+  }
+  gauge_places_ = create.uniforms<shared::GaugeUniforms>("gauges");
+  gauge_readings_ =
+      create.buffer("gauge readings", scene.gauges.size() * sizeof(GaugeTexel), gpu::BufferContent::kScratch);
+  gauge_pass_ = create.pass("diagnostics/gauges.comp");
+  if (!create.error()) gauge_places_.uploadValue(uniforms);
+}
+
+void Diagnostics::resize(Creation& create, const Derived& derived) {
+  if (create.error()) return;
   gpu::Buffer sums;
-  std::unique_ptr<gpu::ReadbackRing> ring;
-  const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_program_) : 0;
-  Creation create;
-  if (shares > 0)
-    create(sums, gpu::Buffer::create(ctx_, "particle sums", shares * sizeof(Partial), gpu::BufferUse::kDeviceOnly,
-                                     gpu::BufferContent::kScratch));
-  create(ring,
-         gpu::ReadbackRing::create(ctx_, "diagnostics",
-                                   (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) +
-                                       (gauges_ ? gauges_->readings().sizeBytes() : 0),
-                                   kReadingSlotCount));
-  if (create.error()) return *create.error();
+  const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_pass_) : 0;
+  if (shares > 0) sums = create.buffer("particle sums", shares * sizeof(Partial), gpu::BufferContent::kScratch);
+  auto ring = create.ring(
+      "diagnostics",
+      (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) + gauge_readings_.sizeBytes(),
+      kReadingSlotCount);
+  if (create.error()) return;
   particle_sums_ = std::move(sums);
   ring_ = std::move(ring);
   in_flight_.clear();
   particle_shares_ = shares;
   particles_ = derived.particles ? derived.particles->count : 0;
-  return {};
 }
 
 void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const Derived& derived,
@@ -136,7 +153,7 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
     particles->acceleration.bindTexel(ACCELERATION);
     grid->crowded().bindTexel(CROWDED);
     particle_sums_.bindStorage(PARTIAL_SUM);
-    particle_program_.dispatch(particle_shares_);
+    particle_pass_.dispatch(particle_shares_);
     copied = slot->copyFrom(particle_sums_, 0, particle_sums_.sizeBytes(), 0);
   }
   if (wave) {
@@ -147,15 +164,17 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
     if (boats) boats->bind();
     if (auto* outflow = wave->outflow()) outflow->bindTexel(OUTFLOW);
     surface_sums_.bindStorage(PARTIAL_SUM);
-    surface_program_.dispatch(surface_shares_);
+    surface_pass_.dispatch(surface_shares_);
     copied = copied && slot->copyFrom(surface_sums_, 0, surface_sums_.sizeBytes(), particle_shares_ * sizeof(Partial));
   }
   if (is_pooled_) {
     copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4, poolOffset());
   }
-  if (gauges_) {
-    gauges_->measure();
-    copied = copied && slot->copyFrom(gauges_->readings(), 0, gauges_->readings().sizeBytes(), gaugeOffset());
+  if (gauge_readings_) {  // ELEVATION, FLOW and the basin are bound
+    gauge_places_.bindUniform(GAUGE_UNIFORMS);
+    gauge_readings_.bindStorage(PARTIAL_SUM);
+    gauge_pass_.dispatch(static_cast<std::uint32_t>(gauge_readings_.sizeBytes() / sizeof(GaugeTexel)));
+    copied = copied && slot->copyFrom(gauge_readings_, 0, gauge_readings_.sizeBytes(), gaugeOffset());
   }
   // The next tick's passes write the buffers that were read here.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
@@ -214,7 +233,7 @@ std::vector<Health> Diagnostics::poll() {
       h.wave_volume_m3 = static_cast<double>(h.surface_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * scale.density_kgpm3 * area_m2 * (scale.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
-    if (gauges_) h.gauges = Gauges::parse(bytes.subspan(gaugeOffset(), gauges_->readings().sizeBytes()));
+    h.gauges = gaugeReadings(bytes.subspan(gaugeOffset(), gauge_readings_.sizeBytes()));
     out.push_back(std::move(h));
   }
   return out;

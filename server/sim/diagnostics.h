@@ -2,23 +2,19 @@
 // for them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <optional>
 #include <vector>
 
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
-#include <spindrift/gpu/readback_ring.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
 #include "breakers.h"
-#include "gauges.h"
+#include "creation.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
@@ -28,12 +24,11 @@ namespace spindrift::sim {
 
 class Diagnostics {
  public:
-  static core::Result<std::unique_ptr<Diagnostics>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                           const Derived& derived, const gpu::Defines& defines);
+  Diagnostics(Creation& create, const core::Scene& scene, const Derived& derived);
 
   /// Replaces the buffers for another number of particles and keeps the programs. Results in flight are lost. An error
   /// changes nothing.
-  core::Result<void> resize(const Derived& derived);
+  void resize(Creation& create, const Derived& derived);
 
   /// Measures the state after `tick`; absent parts are null. What the sums mean is noted with them, because parameters
   /// may change before poll() returns the result. There is one slot per tick that may be in flight (TicksInFlight), so
@@ -56,7 +51,7 @@ class Diagnostics {
     std::int64_t resting_units = 0;  ///< Wave::restingUnits()
   };
 
-  explicit Diagnostics(gpu::Context& ctx) : ctx_(ctx) {}
+  void createGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout);
   // Offsets in a slot [bytes]: words of the pool, and behind them readings of the gauges.
   [[nodiscard]] std::size_t poolOffset() const;
   [[nodiscard]] std::size_t gaugeOffset() const;
@@ -70,8 +65,10 @@ class Diagnostics {
   std::deque<Scale> in_flight_;       ///< of the slots that poll() has not returned, oldest first
   std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
-  gpu::Program particle_program_, surface_program_;
-  std::unique_ptr<Gauges> gauges_;  ///< null in scenes without gauges
+  // Gauges; empty in scenes without: their places, and 4 floats per gauge, as shaders/diagnostics/gauges.comp writes
+  // them.
+  gpu::Buffer gauge_places_, gauge_readings_;
+  Pass particle_pass_, surface_pass_, gauge_pass_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
 };
 

@@ -11,8 +11,6 @@
 
 #include <spindrift/core/half.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 namespace {
 
@@ -42,74 +40,77 @@ std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four
 /// The halo of a strip (shaders/dispersion/strip.glsl) goes around a grid with fewer cells more than once.
 constexpr std::uint32_t kNarrowCount = 2 * DISPERSION_COLUMNS;
 
+/// A table of the bottom, and its texels of one grid.
+struct BottomTable {
+  const char* name;
+  std::uint32_t unit;
+  std::vector<Four> (*of)(const DispersionLevel&);
+};
+constexpr BottomTable kBottomTables[] = {
+    {"dispersion stiffness", DISPERSION_STIFFNESS, [](const DispersionLevel& level) { return level.stiffness; }},
+    {"dispersion spread", DISPERSION_SPREAD, [](const DispersionLevel& level) { return level.spread; }},
+    {"dispersion sweep weights", DISPERSION_SWEEP, sweepWeights},
+    // None in the coarsest grid.
+    {"dispersion weights, x faces", DISPERSION_FROM_X,
+     [](const DispersionLevel& level) { return level.from_coarse_x; }},
+    {"dispersion weights, z faces", DISPERSION_FROM_Z,
+     [](const DispersionLevel& level) { return level.from_coarse_z; }}};
+
 }  // namespace
 
-core::Result<std::unique_ptr<DispersedSlope>> DispersedSlope::create(gpu::Context& ctx, const WaveLayout& layout,
-                                                                     const Basin& basin, const gpu::Defines& defines,
-                                                                     bool keeps_last_step) {
-  using gpu::Program;
-  using gpu::TexelBuffer;
-  constexpr auto kScratch = gpu::BufferContent::kScratch;
+DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const Basin& basin, bool keeps_last_step)
+    : keeps_last_step_(keeps_last_step) {
   const Dispersion dispersion = layOutDispersion(layout, basin);
   // One work group takes fewer dispatches for the bottom, but has only one core.
   const std::size_t bottom = bottomOf(dispersionGrids(layout));
   bool is_narrow[2] = {false, false};
-  auto out = std::unique_ptr<DispersedSlope>(new DispersedSlope(ctx, keeps_last_step));
-  Creation create;
   for (std::size_t k = 0; k <= bottom; ++k) {
     const std::size_t cells = dispersion.levels[k].stiffness.size();
-    Grid& grid = out->grids_.emplace_back();
+    Grid& grid = grids_.emplace_back();
     grid.count = dispersion.levels[k].count;
-    create(grid.sizes, gpu::Buffer::create(ctx, "dispersion sizes", sizeof(shared::DispersionUniforms),
-                                           gpu::BufferUse::kUpdatable));
+    grid.sizes = create.uniforms<shared::DispersionUniforms>("dispersion sizes");
     if (k > 0) {
       const CellCounts finer = dispersion.levels[k - 1].count;
       const bool is_exact = grid.count == CellCounts{finer.x / 2, finer.z / 2};
       // No pass writes the cells beyond the water: they stay 0.
-      create(grid.right, TexelBuffer::create(ctx, "dispersion right side", cells, kFloats,
-                                             is_exact ? kScratch : gpu::BufferContent::kZero));
-      create(grid.faces, TexelBuffer::create(ctx, "dispersion faces", cells, kFloats, kScratch));
+      grid.right = create.texels("dispersion right side", cells, kFloats,
+                                 is_exact ? gpu::BufferContent::kScratch : gpu::BufferContent::kZero);
+      grid.faces = create.scratch("dispersion faces", cells, kFloats);
     }
     if (k == bottom) break;
     is_narrow[k == 0] = is_narrow[k == 0] || std::min(grid.count.x, grid.count.z) < kNarrowCount;
     if (dispersion.is_flat) {
-      create(grid.coefficients, TexelBuffer::create(ctx, "dispersion coefficients", 2, kFloats));
+      grid.coefficients = create.texels("dispersion coefficients", 2, kFloats);
     } else {
-      create(grid.coefficients, TexelBuffer::create(ctx, "dispersion coefficients", cells, kWords));
-      create(grid.weights, TexelBuffer::create(ctx, "dispersion weights", cells, kWords));
+      grid.coefficients = create.texels("dispersion coefficients", cells, kWords);
+      grid.weights = create.texels("dispersion weights", cells, kWords);
     }
   }
-  Bottom& tables = out->bottom_;
   std::size_t bottom_cells = 0;
   for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) bottom_cells += dispersion.levels[k].stiffness.size();
-  create(tables.stiffness, TexelBuffer::create(ctx, "dispersion stiffness", bottom_cells, kFloats));
-  create(tables.spread, TexelBuffer::create(ctx, "dispersion spread", bottom_cells, kFloats));
-  create(tables.sweep, TexelBuffer::create(ctx, "dispersion sweep weights", bottom_cells, kFloats));
-  create(tables.from_x, TexelBuffer::create(ctx, "dispersion weights, x faces", bottom_cells, kFloats));
-  create(tables.from_z, TexelBuffer::create(ctx, "dispersion weights, z faces", bottom_cells, kFloats));
-  create(out->dispersed_, TexelBuffer::create(ctx, "dispersed slope", layout.counts().total(),
-                                              keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F,
-                                              keeps_last_step ? gpu::BufferContent::kZero : kScratch));
+  for (const BottomTable& table : kBottomTables)
+    bottom_tables_.push_back(create.texels(table.name, bottom_cells, kFloats));
+  dispersed_ =
+      create.texels("dispersed slope", layout.counts().total(), keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F,
+                    keeps_last_step ? gpu::BufferContent::kZero : gpu::BufferContent::kScratch);
   for (std::size_t finest = 0; finest < 2; ++finest) {
-    gpu::Defines of_grid = defines;
-    of_grid.emplace_back("FINEST", std::to_string(finest));
-    of_grid.emplace_back("FLAT", dispersion.is_flat ? "1" : "0");
-    of_grid.emplace_back("NARROW", is_narrow[finest] ? "1" : "0");
-    create(out->descend_[finest], Program::create(ctx, "dispersion/descend.comp", of_grid));
-    create(out->ascend_[finest], Program::create(ctx, "dispersion/ascend.comp", of_grid));
+    const gpu::Defines of_grid{{"FINEST", std::to_string(finest)},
+                               {"FLAT", dispersion.is_flat ? "1" : "0"},
+                               {"NARROW", is_narrow[finest] ? "1" : "0"}};
+    descend_[finest] = create.pass("dispersion/descend.comp", of_grid);
+    ascend_[finest] = create.pass("dispersion/ascend.comp", of_grid);
   }
-  create(tables.solve, Program::create(ctx, "dispersion/bottom.comp"));
-  if (create.error()) return *create.error();
+  solve_bottom_ = create.plainPass("dispersion/bottom.comp");
+  if (create.error()) return;
   for (std::size_t k = 0; k <= bottom; ++k) {
-    Grid& grid = out->grids_[k];
+    Grid& grid = grids_[k];
     grid.sizes.uploadValue(
         shared::DispersionUniforms{.grid_nx = grid.count.x,
                                    .grid_nz = grid.count.z,
-                                   .coarse_nx = k < bottom ? out->grids_[k + 1].count.x : 0,
+                                   .coarse_nx = k < bottom ? grids_[k + 1].count.x : 0,
                                    .grid_count = static_cast<std::uint32_t>(dispersion.levels.size() - k)});
   }
-  out->upload(dispersion);
-  return out;
+  upload(dispersion);
 }
 
 void DispersedSlope::declareState(StateBuffers& out) {
@@ -135,20 +136,12 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
       grids_[k].weights.upload(packed(level.from_coarse_x, level.from_coarse_z));
     }
   }
-  std::vector<Floats> stiffness, spread, sweep, from_x, from_z;
-  for (std::size_t k = bottom; k < dispersion.levels.size(); ++k) {
-    const DispersionLevel& level = dispersion.levels[k];
-    std::ranges::transform(level.stiffness, std::back_inserter(stiffness), floatsOf);
-    std::ranges::transform(level.spread, std::back_inserter(spread), floatsOf);
-    std::ranges::transform(sweepWeights(level), std::back_inserter(sweep), floatsOf);
-    std::ranges::transform(level.from_coarse_x, std::back_inserter(from_x), floatsOf);  // none in the coarsest grid
-    std::ranges::transform(level.from_coarse_z, std::back_inserter(from_z), floatsOf);
+  for (std::size_t table = 0; table < bottom_tables_.size(); ++table) {
+    std::vector<Floats> texels;
+    for (std::size_t k = bottom; k < dispersion.levels.size(); ++k)
+      std::ranges::transform(kBottomTables[table].of(dispersion.levels[k]), std::back_inserter(texels), floatsOf);
+    if (!texels.empty()) bottom_tables_[table].upload(texels);
   }
-  bottom_.stiffness.upload(stiffness);
-  bottom_.spread.upload(spread);
-  bottom_.sweep.upload(sweep);
-  if (!from_x.empty()) bottom_.from_x.upload(from_x);
-  if (!from_z.empty()) bottom_.from_z.upload(from_z);
 }
 
 void DispersedSlope::compute() {
@@ -168,20 +161,16 @@ void DispersedSlope::bindTables(std::size_t level) {
 void DispersedSlope::descend(std::size_t level) {
   bindTables(level);
   grids_[level + 1].right.bindStorage(DISPERSION_COARSE_RIGHT);
-  dispatch(descend_[level == 0], level);
+  run(descend_[level == 0], level);
 }
 
 void DispersedSlope::solveBottom() {
-  bottom_.stiffness.bindTexel(DISPERSION_STIFFNESS);
-  bottom_.spread.bindTexel(DISPERSION_SPREAD);
-  bottom_.sweep.bindTexel(DISPERSION_SWEEP);
-  bottom_.from_x.bindTexel(DISPERSION_FROM_X);
-  bottom_.from_z.bindTexel(DISPERSION_FROM_Z);
+  for (std::size_t table = 0; table < bottom_tables_.size(); ++table)
+    bottom_tables_[table].bindTexel(kBottomTables[table].unit);
   grids_.back().right.bindTexel(DISPERSION_RIGHT);
   grids_.back().faces.bindStorage(DISPERSION_FACES);
   grids_.back().sizes.bindUniform(DISPERSION_UNIFORMS);
-  bottom_.solve.dispatchGroups(1);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  solve_bottom_.runGroups(1);
 }
 
 void DispersedSlope::ascend(std::size_t level) {
@@ -191,15 +180,14 @@ void DispersedSlope::ascend(std::size_t level) {
     dispersed_.bindStorage(DISPERSED);
   else
     grids_[level].faces.bindStorage(DISPERSION_FACES);
-  dispatch(ascend_[level == 0], level);
+  run(ascend_[level == 0], level);
 }
 
-void DispersedSlope::dispatch(gpu::Program& pass, std::size_t level) {
+void DispersedSlope::run(Pass& pass, std::size_t level) {
   const CellCounts count = grids_[level].count;
   grids_[level].sizes.bindUniform(DISPERSION_UNIFORMS);
-  pass.dispatch((count.x + DISPERSION_COLUMNS - 1) / DISPERSION_COLUMNS,
-                (count.z + DISPERSION_STRIP - 1) / DISPERSION_STRIP);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  pass.run((count.x + DISPERSION_COLUMNS - 1) / DISPERSION_COLUMNS,
+           (count.z + DISPERSION_STRIP - 1) / DISPERSION_STRIP);
 }
 
 }  // namespace spindrift::sim

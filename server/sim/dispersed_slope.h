@@ -1,24 +1,20 @@
 // The dispersion of the wave on the device: F grad(eta) at every face, by one V-cycle (sim_setup/dispersion.h).
 #pragma once
 
-#include <cstdint>
-#include <memory>
+#include <cstddef>
 #include <vector>
 
-#include <spindrift/core/result.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/dispersion.h>
+
+#include "creation.h"
 
 namespace spindrift::sim {
 
 class DispersedSlope {
  public:
-  /// `keeps_last_step`: with a nonlinear bulk, which needs it. Errors: those of the buffers and programs.
-  static core::Result<std::unique_ptr<DispersedSlope>> create(gpu::Context& ctx, const WaveLayout& layout,
-                                                              const Basin& basin, const gpu::Defines& defines,
-                                                              bool keeps_last_step);
+  /// `keeps_last_step`: with a nonlinear bulk, which needs it.
+  DispersedSlope(Creation& create, const WaveLayout& layout, const Basin& basin, bool keeps_last_step);
   /// Uploads the tables for a changed depth.
   void upload(const WaveLayout& layout, const Basin& basin);
 
@@ -38,26 +34,20 @@ class DispersedSlope {
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };
 
-  /// The grids that one work group solves: their tables, one behind the other.
-  struct Bottom {
-    gpu::TexelBuffer stiffness, spread, sweep, from_x, from_z;
-    gpu::Program solve;
-  };
-
-  DispersedSlope(gpu::Context& ctx, bool keeps_last_step) : ctx_(ctx), keeps_last_step_(keeps_last_step) {}
   void upload(const Dispersion& dispersion);
   void bindTables(std::size_t level);
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
-  void dispatch(gpu::Program& pass, std::size_t level);
+  void run(Pass& pass, std::size_t level);
 
-  gpu::Context& ctx_;
   bool keeps_last_step_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom
-  Bottom bottom_;
+  /// Tables of the grids that one work group solves, one grid behind the other.
+  std::vector<gpu::TexelBuffer> bottom_tables_;
   gpu::TexelBuffer dispersed_;
-  gpu::Program descend_[2], ascend_[2];  ///< by whether the grid is the finest
+  Pass descend_[2], ascend_[2];  ///< by whether the grid is the finest
+  Pass solve_bottom_;
 };
 
 }  // namespace spindrift::sim

@@ -7,9 +7,7 @@
 #include <shared/bindings.h>
 #include <shared/boats.h>
 
-#include <spindrift/sim_setup/basin.h>
-
-#include "create_all.h"
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {
@@ -33,52 +31,39 @@ std::size_t particleWords(std::uint32_t count) {
 
 }  // namespace
 
-core::Result<std::unique_ptr<FramePacker>> FramePacker::create(gpu::Context& ctx, const core::Scene& scene,
-                                                               const Derived& derived, const gpu::Defines& defines) {
-  auto out = std::unique_ptr<FramePacker>(new FramePacker(ctx));
-  Creation create;
+FramePacker::FramePacker(Creation& create, const core::Scene& scene, const Derived& derived) : ctx_(create.context()) {
   if (derived.wave) {
-    out->surface_ = derived.wave->counts();
-    create(out->pack_surface_, gpu::Program::create(ctx, "stream/pack_surface.comp", defines));
+    surface_ = derived.wave->counts();
+    pack_surface_ = create.pass("stream/pack_surface.comp");
   }
-  if (derived.particles) create(out->pack_particles_, gpu::Program::create(ctx, "stream/pack_particles.comp", defines));
-  if (hasSurfaceFoam(scene)) {
-    out->has_foam_ = true;
-    create(out->pack_foam_, gpu::Program::create(ctx, "stream/pack_foam.comp", defines));
-  }
-  if (scene.boats) create(out->pack_bodies_, gpu::Program::create(ctx, "stream/pack_bodies.comp", defines));
-  if (create.error()) return *create.error();
-  if (auto sized = out->resize(derived); !sized) return sized.error();
-  return out;
+  if (derived.particles) pack_particles_ = create.pass("stream/pack_particles.comp");
+  if (hasSurfaceFoam(scene)) pack_foam_ = create.pass("stream/pack_foam.comp");
+  if (scene.boats) pack_bodies_ = create.pass("stream/pack_bodies.comp");
+  resize(create, derived);
 }
 
-core::Result<void> FramePacker::resize(const Derived& derived) {
+void FramePacker::resize(Creation& create, const Derived& derived) {
   const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
   const core::ReducedCounts reduced_counts = core::reducedCounts(surface_, particles);
   // The slot has room for all levels at once.
   std::size_t words = pack_bodies_ ? kBodyWords : 0;
   for (const core::Level level : core::kLevels) {
     if (isSent(level, reduced_counts.planes)) {
-      words += surfaceWords(surfaceCount(level)) + (has_foam_ ? foamWords(foamCount(level)) : 0);
+      words += surfaceWords(surfaceCount(level)) + (pack_foam_ ? foamWords(foamCount(level)) : 0);
     }
     if (particles > 0 && isSent(level, reduced_counts.particles)) {
       words += particleWords(std::min(particles, core::budgetOf(level).particle_count));
     }
   }
-  gpu::Buffer packed;
-  std::unique_ptr<gpu::ReadbackRing> ring;
-  Creation create;
-  create(packed, gpu::Buffer::create(ctx_, "packed frame", words * 4, gpu::BufferUse::kDeviceOnly,
-                                     gpu::BufferContent::kScratch));
-  create(ring, gpu::ReadbackRing::create(ctx_, "frames", words * 4, kFrameSlotCount));
-  if (create.error()) return *create.error();
+  gpu::Buffer packed = create.buffer("packed frame", words * 4, gpu::BufferContent::kScratch);
+  auto ring = create.ring("frames", words * 4, kFrameSlotCount);
+  if (create.error()) return;
   packed.declareDisjointWrites();  // each layer and level writes its own part
   packed_ = std::move(packed);
   ring_ = std::move(ring);
   pending_.clear();
   particles_ = particles;
   reduced_counts_ = reduced_counts;
-  return {};
 }
 
 core::CellCounts FramePacker::surfaceCount(core::Level level) const {
@@ -154,7 +139,6 @@ void FramePacker::packLevel(core::Level level, const LayerRequest& wanted, const
     view.particles = particleView(level, scene, derived);
     places.particles = take(particleWords(particleBudget(level)));
     packed_.clearRange(0, *places.particles * 4, kParticleHeaderWords * 4);
-    parts.population->bind();
     parts.particles->position.bindTexel(POSITION);
     parts.particles->velocity.bindTexel(VELOCITY);
     parts.particles->acceleration.bindTexel(ACCELERATION);
@@ -164,11 +148,11 @@ void FramePacker::packLevel(core::Level level, const LayerRequest& wanted, const
   }
 }
 
-void FramePacker::packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count) {
-  program.setUniform("first_word", static_cast<std::uint32_t>(at));
-  program.setUniform("target_nx", count.x);
-  program.setUniform("target_nz", count.z);
-  program.dispatch(static_cast<std::uint32_t>(word_count));
+void FramePacker::packPlane(Pass& pass, std::size_t at, core::CellCounts count, std::size_t word_count) {
+  pass.setUniform("first_word", static_cast<std::uint32_t>(at));
+  pass.setUniform("target_nx", count.x);
+  pass.setUniform("target_nz", count.z);
+  pass.dispatch(static_cast<std::uint32_t>(word_count));
 }
 
 core::ParticleView FramePacker::particleView(core::Level level, const core::Scene& scene,

@@ -7,18 +7,13 @@
 #include <deque>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <spindrift/core/frame_view.h>
-#include <spindrift/core/result.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
-#include <spindrift/gpu/readback_ring.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
+#include "creation.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 #include "surface_foam.h"
@@ -28,12 +23,11 @@ namespace spindrift::sim {
 
 class FramePacker {
  public:
-  static core::Result<std::unique_ptr<FramePacker>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                           const Derived& derived, const gpu::Defines& defines);
+  FramePacker(Creation& create, const core::Scene& scene, const Derived& derived);
 
   /// Replaces the buffers for another number of particles and keeps the programs. Frames in flight are lost. An error
   /// changes nothing.
-  core::Result<void> resize(const Derived& derived);
+  void resize(Creation& create, const Derived& derived);
 
   /// The parts to pack from. Frames have no layers of parts that are null. `population` belongs to `particles`.
   struct Parts {
@@ -54,8 +48,6 @@ class FramePacker {
   [[nodiscard]] std::size_t inFlightCount() const { return pending_.size(); }
 
  private:
-  explicit FramePacker(gpu::Context& ctx) : ctx_(ctx) {}
-
   /// Offsets of the parts in a slot, in words; absent parts have none.
   struct Places {
     std::optional<std::size_t> surface, particles, foam;
@@ -74,18 +66,17 @@ class FramePacker {
   [[nodiscard]] std::uint32_t particleBudget(core::Level level) const;
   void packLevel(core::Level level, const LayerRequest& wanted, const core::Scene& scene, const Derived& derived,
                  const Parts& parts, Pending& pending, std::size_t& at);
-  void packPlane(gpu::Program& program, std::size_t at, core::CellCounts count, std::size_t word_count);
+  void packPlane(Pass& pass, std::size_t at, core::CellCounts count, std::size_t word_count);
 
   [[nodiscard]] core::ParticleView particleView(core::Level level, const core::Scene& scene,
                                                 const Derived& derived) const;
 
   gpu::Context& ctx_;
   core::CellCounts surface_;  ///< cells of the surface; 0 without one
-  bool has_foam_ = false;
   std::uint32_t particles_ = 0;
   core::ReducedCounts reduced_counts_;
   gpu::Buffer packed_;  ///< one frame, its parts in a row
-  gpu::Program pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
+  Pass pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
   std::deque<Pending> pending_;
   std::uint64_t packed_count_ = 0;

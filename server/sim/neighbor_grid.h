@@ -2,13 +2,9 @@
 // neighbours are contiguous and the order is reproducible.
 #pragma once
 
-#include <memory>
-
-#include <spindrift/core/result.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/derive.h>
 
+#include "creation.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 
@@ -16,11 +12,10 @@ namespace spindrift::sim {
 
 class NeighborGrid {
  public:
-  static core::Result<std::unique_ptr<NeighborGrid>> create(gpu::Context& ctx, const ParticleLayout& layout,
-                                                            const gpu::Defines& defines, bool pooled);
+  NeighborGrid(Creation& create, const ParticleLayout& layout, bool pooled);
 
   /// Replaces the buffers for another layout and keeps the programs; an error changes nothing.
-  core::Result<void> resize(const ParticleLayout& layout);
+  void resize(Creation& create, const ParticleLayout& layout);
 
   /// Sorts position and velocity into sorted_position and sorted_velocity, by cell and then by their previous order (in
   /// a pool by position). Absorbed particles are dropped. Particles whose position is not finite come last and are in
@@ -28,18 +23,20 @@ class NeighborGrid {
   void build(const ParticleBuffers& particles, const Population& population);
 
   /// Index of the first particle of each cell, cell_count + 1 entries.
-  [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cell_start_; }
+  [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cells_.start; }
   /// Two words, see grid/candidates.glsl: number of particles, summed over the substeps since creation, with more
   /// neighbour candidates than the search limit, modulo 2^32. build() binds it for the passes that count.
   [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
   void declareState(StateBuffers& out) { out.push_back({.buffer = &crowded_, .lasts = false}); }
 
  private:
-  explicit NeighborGrid(gpu::Context& ctx) : ctx_(ctx) {}
+  struct Cells {
+    gpu::TexelBuffer count, start, arrival, member, block_total;
+  };
 
-  gpu::Context& ctx_;
-  gpu::TexelBuffer cell_count_of_, cell_start_, cell_arrival_, cell_member_, block_total_, crowded_;
-  gpu::Program clear_, count_program_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
+  Cells cells_;
+  gpu::TexelBuffer crowded_;
+  Pass clear_, count_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
 };
 
 }  // namespace spindrift::sim

@@ -3,28 +3,17 @@
 #include <bit>
 #include <cstdint>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-core::Result<ParticleBuffers> ParticleBuffers::create(gpu::Context& ctx, std::size_t count, bool stores_foam_source) {
-  ParticleBuffers p;
-  Creation create;
-  const auto make = [&](gpu::TexelBuffer& buffer, const char* name, gpu::TexelFormat format,
-                        gpu::BufferContent content = gpu::BufferContent::kZero) {
-    create(buffer, gpu::TexelBuffer::create(ctx, name, count, format, content));
-  };
-  constexpr auto kScratch = gpu::BufferContent::kScratch;
-  make(p.position, "position", gpu::TexelFormat::kRGBA32F);
-  make(p.velocity, "velocity", gpu::TexelFormat::kRGBA32F);
-  make(p.sorted_position, "sorted position", gpu::TexelFormat::kRGBA32F, kScratch);
-  make(p.sorted_velocity, "sorted velocity", gpu::TexelFormat::kRGBA32F, kScratch);
-  make(p.pressure_point, "pressure point", gpu::TexelFormat::kRGBA32F, kScratch);
-  make(p.motion_point, "motion point", gpu::TexelFormat::kRGBA32F, kScratch);
-  make(p.acceleration, "acceleration", gpu::TexelFormat::kRGBA32F);
-  if (stores_foam_source) make(p.foam_source, "foam source", gpu::TexelFormat::kR32F, kScratch);
-  if (create.error()) return *create.error();
-  return p;
+ParticleBuffers::ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source)
+    : position(create.texels("position", count, gpu::TexelFormat::kRGBA32F)),
+      velocity(create.texels("velocity", count, gpu::TexelFormat::kRGBA32F)),
+      sorted_position(create.scratch("sorted position", count, gpu::TexelFormat::kRGBA32F)),
+      sorted_velocity(create.scratch("sorted velocity", count, gpu::TexelFormat::kRGBA32F)),
+      pressure_point(create.scratch("pressure point", count, gpu::TexelFormat::kRGBA32F)),
+      motion_point(create.scratch("motion point", count, gpu::TexelFormat::kRGBA32F)),
+      acceleration(create.texels("acceleration", count, gpu::TexelFormat::kRGBA32F)) {
+  if (stores_foam_source) foam_source = create.scratch("foam source", count, gpu::TexelFormat::kR32F);
 }
 
 void ParticleBuffers::setDensity(double density_kgpm3) {

@@ -1,12 +1,11 @@
 // Particle state on the device; shaders/shared/bindings.h has the layout of each buffer.
 #pragma once
 
-#include <spindrift/core/result.h>
-#include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
+#include <cstddef>
+
 #include <spindrift/sim/state_buffer.h>
-#include <spindrift/sim_setup/derive.h>
+
+#include "creation.h"
 
 namespace spindrift::sim {
 
@@ -18,11 +17,11 @@ struct ParticleBuffers {
   gpu::TexelBuffer pressure_point, motion_point, acceleration;
   gpu::TexelBuffer foam_source;  ///< only where storesFoamSource()
 
+  ParticleBuffers() = default;
+  ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source);
   /// Gives every particle the same density; accelerations are recomputed before they are read.
   void setDensity(double density_kgpm3);
   void declareState(StateBuffers& out);
-
-  static core::Result<ParticleBuffers> create(gpu::Context& ctx, std::size_t count, bool stores_foam_source);
 };
 
 }  // namespace spindrift::sim

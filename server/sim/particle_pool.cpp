@@ -6,27 +6,36 @@
 #include <shared/groups.h>
 #include <shared/pool.h>
 
-#include "create_all.h"
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
+namespace {
 
-core::Result<std::unique_ptr<ParticlePool>> ParticlePool::create(gpu::Context& ctx, const ParticleLayout& layout,
-                                                                 const gpu::Defines& defines) {
-  auto out = std::unique_ptr<ParticlePool>(new ParticlePool(ctx));
-  Creation create;
-  create(out->words_, gpu::TexelBuffer::create(ctx, "pool", POOL_WORDS, gpu::TexelFormat::kR32UI));
-  create(out->emitters_, gpu::TexelBuffer::create(ctx, "emitters", layout.count, gpu::TexelFormat::kR32UI,
-                                                  gpu::BufferContent::kScratch));
-  create(out->plan_, gpu::Program::create(ctx, "coupling/plan.comp", defines));
-  create(out->emit_, gpu::Program::create(ctx, "coupling/emit.comp", defines));
-  if (create.error()) return *create.error();
-  return out;
+/// One buffer of the pool holds both the group counts of the next pass and words that passes write.
+constexpr gpu::Barrier kPoolReaders = gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect;
+
+}  // namespace
+
+ParticlePool::ParticlePool(Creation& create, const core::Scene& scene, const Derived& derived)
+    : wave_count_(derived.wave->counts()),
+      words_(create.texels("pool", POOL_WORDS, gpu::TexelFormat::kR32UI)),
+      emitters_(create.scratch("emitters", derived.particles->count, gpu::TexelFormat::kR32UI)),
+      plan_(create.pass("coupling/plan.comp")),
+      emit_(create.pass("coupling/emit.comp")) {
+  if (!isNonlinear(scene)) return;
+  landed_ = create.buffer("landed water", LANDED_WORDS * sizeof(std::int32_t) * wave_count_.total());
+  mix_ = create.pass("coupling/mix.comp");
+}
+
+void ParticlePool::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &words_, .checkpoint = true, .carried = true});
+  if (landed_) out.push_back({.buffer = &landed_, .lasts = false});
 }
 
 void ParticlePool::plan() {
   words_.bindStorage(POOL);
   plan_.dispatchGroups(1);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
+  plan_.barrier(kPoolReaders);
 }
 
 void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu::TexelBuffer& breaking,
@@ -42,35 +51,46 @@ void ParticlePool::emit(const ParticleBuffers& particles, Wave& wave, const gpu:
   wave.elevation().bindStorage(ELEVATION);
   emit_.setUniform("tick", tick);
   emit_.dispatchIndirect(words_, POOL_EMIT_ARGS * 4);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel | gpu::Barrier::kIndirect);
+  emit_.barrier(kPoolReaders);
 }
 
-void Population::forParticles(gpu::Program& program) const {
-  if (pool_)
-    program.dispatchIndirect(pool_->words(), POOL_PARTICLE_ARGS * 4);
-  else
-    program.dispatch(count_);
+void ParticlePool::bindLanded() const {
+  if (landed_) landed_.bindStorage(LANDED_WATER);
 }
 
-void Population::forCells(gpu::Program& program) const {
-  if (pool_)
-    program.dispatchIndirect(pool_->words(), POOL_CELL_ARGS * 4);
-  else
-    program.dispatchGroups(std::min<std::uint32_t>(cell_count_ / program.groupSize()[0] + 1, MAX_GROUPS));
+void ParticlePool::mix(Wave& wave) {
+  wave.bindBasin();
+  wave.elevation().bindTexel(ELEVATION);
+  wave.flow().bindStorage(FLOW);
+  bindLanded();
+  mix_.run(wave_count_);
+  landed_.clear();
 }
 
-void Population::forScanBlocks(gpu::Program& program) const {
+void Population::run(Pass& pass, std::size_t arguments, std::uint32_t group_count) const {
+  bind();
   if (pool_)
-    program.dispatchIndirect(pool_->words(), POOL_BLOCK_ARGS * 4);
+    pass.dispatchIndirect(pool_->words(), arguments * 4);
   else
-    program.dispatchGroups(cell_count_ / SCAN_BLOCK + 1);
+    pass.dispatchGroups(group_count);
+  pass.barrier(pool_ ? kPoolReaders : gpu::Barrier::kStorageAndTexel);
 }
 
-void Population::forOneGroup(gpu::Program& program) const {
-  if (pool_)
-    program.dispatchIndirect(pool_->words(), POOL_ONE_ARGS * 4);
-  else
-    program.dispatchGroups(1);
+void Population::forParticles(Pass& pass) const {
+  const std::uint32_t group = pass.groupSize()[0];
+  run(pass, POOL_PARTICLE_ARGS, (count_ + group - 1) / group);
+}
+
+void Population::forCells(Pass& pass) const {
+  run(pass, POOL_CELL_ARGS, std::min<std::uint32_t>(cell_count_ / pass.groupSize()[0] + 1, MAX_GROUPS));
+}
+
+void Population::forScanBlocks(Pass& pass) const {
+  run(pass, POOL_BLOCK_ARGS, cell_count_ / SCAN_BLOCK + 1);
+}
+
+void Population::forOneGroup(Pass& pass) const {
+  run(pass, POOL_ONE_ARGS, 1);
 }
 
 void Population::bind() const {

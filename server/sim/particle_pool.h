@@ -3,14 +3,12 @@
 // calm water costs one invocation.
 #pragma once
 
-#include <memory>
+#include <cstdint>
 
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/derive.h>
 
+#include "creation.h"
 #include "particle_buffers.h"
 #include "wave.h"
 
@@ -18,47 +16,53 @@ namespace spindrift::sim {
 
 class ParticlePool {
  public:
-  static core::Result<std::unique_ptr<ParticlePool>> create(gpu::Context& ctx, const ParticleLayout& layout,
-                                                            const gpu::Defines& defines);
+  ParticlePool(Creation& create, const core::Scene& scene, const Derived& derived);
 
   void clear() { words_.clear(); }
-  void declareState(StateBuffers& out) { out.push_back({.buffer = &words_, .checkpoint = true, .carried = true}); }
+  void declareState(StateBuffers& out);
   /// Plans the dispatches of a substep: emission from the cells that Breakers::update() counted, passes over the live
   /// particles.
   void plan();
   /// Emits particles; call it after plan().
   void emit(const ParticleBuffers& particles, Wave& wave, const gpu::TexelBuffer& breaking, std::uint32_t tick);
 
+  /// Binds LANDED_WATER for the passes that absorb particles. They add the momentum of what lands on each wave cell.
+  /// Does nothing with a linear bulk.
+  void bindLanded() const;
+  /// Mixes what has landed in this tick with the flow, and begins again at nothing. Only with a nonlinear bulk.
+  void mix(Wave& wave);
+
   /// POOL_WORDS words, see shaders/shared/pool.h.
-  [[nodiscard]] gpu::TexelBuffer& words() { return words_; }
   [[nodiscard]] const gpu::TexelBuffer& words() const { return words_; }
   /// Cells that emit in this tick.
   [[nodiscard]] const gpu::TexelBuffer& emitters() const { return emitters_; }
 
  private:
-  explicit ParticlePool(gpu::Context& ctx) : ctx_(ctx) {}
-
-  gpu::Context& ctx_;
+  core::CellCounts wave_count_;
   gpu::TexelBuffer words_, emitters_;
-  gpu::Program plan_, emit_;
+  gpu::Buffer landed_;  ///< words as coupling/landed_water.glsl says; only with a nonlinear bulk
+  Pass plan_, emit_, mix_;
 };
 
-/// Sizes of the dispatches over particles, grid cells and scan blocks: fixed numbers, or the counts of the pool.
+/// Runs passes over particles, grid cells and scan blocks: fixed numbers, or the counts of the pool.
 class Population {
  public:
   Population(std::uint32_t count, std::uint32_t cell_count, const ParticlePool* pool)
       : count_(count), cell_count_(cell_count), pool_(pool) {}
 
-  void forParticles(gpu::Program& program) const;
+  void forParticles(Pass& pass) const;
   /// Covers cell_count + 1 invocations, or fewer that loop over them: at most MAX_GROUPS groups.
-  void forCells(gpu::Program& program) const;
-  void forScanBlocks(gpu::Program& program) const;  ///< covers cell_count + 1
-  void forOneGroup(gpu::Program& program) const;
-  /// Makes the counts visible to the passes. Does nothing without a pool.
+  void forCells(Pass& pass) const;
+  void forScanBlocks(Pass& pass) const;  ///< covers cell_count + 1
+  void forOneGroup(Pass& pass) const;
+  /// Makes the counts visible to passes, as the functions above do. Does nothing without a pool.
   void bind() const;
   [[nodiscard]] const ParticlePool* pool() const { return pool_; }
 
  private:
+  /// `arguments`: word of the pool with the number of groups.
+  void run(Pass& pass, std::size_t arguments, std::uint32_t group_count) const;
+
   std::uint32_t count_;
   std::uint32_t cell_count_;
   const ParticlePool* pool_;

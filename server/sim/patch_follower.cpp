@@ -2,25 +2,13 @@
 
 #include <shared/bindings.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-PatchFollower::PatchFollower(gpu::Context& ctx, const core::Scene& scene)
-    : ctx_(ctx),
-      length_m_(core::waveCellsOf(*scene.wave).length_m),
-      width_m_(core::waveCellsOf(*scene.wave).width_m),
+PatchFollower::PatchFollower(Creation& create, const core::Scene& scene)
+    : water_(core::waveCellsOf(*scene.wave)),
       x_m_(scene.particles->patch_shift_x_m),
-      z_m_(scene.particles->patch_shift_z_m) {}
-
-core::Result<std::unique_ptr<PatchFollower>> PatchFollower::create(gpu::Context& ctx, const core::Scene& scene,
-                                                                   const gpu::Defines& defines) {
-  auto out = std::unique_ptr<PatchFollower>(new PatchFollower(ctx, scene));
-  Creation create;
-  create(out->program_, gpu::Program::create(ctx, "coupling/follow.comp", defines));
-  if (create.error()) return *create.error();
-  return out;
-}
+      z_m_(scene.particles->patch_shift_z_m),
+      pass_(create.pass("coupling/follow.comp")) {}
 
 void PatchFollower::goTo(double x_m, double z_m) {
   x_m_ = x_m;
@@ -30,12 +18,12 @@ void PatchFollower::goTo(double x_m, double z_m) {
 void PatchFollower::move(const gpu::Buffer& sim_uniforms, const Boats* boats) {
   if (boats) boats->bind();
   sim_uniforms.bindStorage(SIM_UNIFORMS_STORAGE);
-  program_.setUniform("wave_length_m", static_cast<float>(length_m_));
-  program_.setUniform("wave_width_m", static_cast<float>(width_m_));
-  program_.setUniform("place_x_m", static_cast<float>(x_m_));
-  program_.setUniform("place_z_m", static_cast<float>(z_m_));
-  program_.dispatchGroups(1);
-  ctx_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kStorageAndTexel);
+  pass_.setUniform("wave_length_m", static_cast<float>(water_.length_m));
+  pass_.setUniform("wave_width_m", static_cast<float>(water_.width_m));
+  pass_.setUniform("place_x_m", static_cast<float>(x_m_));
+  pass_.setUniform("place_z_m", static_cast<float>(z_m_));
+  pass_.dispatchGroups(1);
+  pass_.barrier(gpu::Barrier::kUniform | gpu::Barrier::kStorageAndTexel);
 }
 
 }  // namespace spindrift::sim

@@ -2,22 +2,16 @@
 // scale place the patch).
 #pragma once
 
-#include <memory>
-
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
-#include <spindrift/sim_setup/derive.h>
 
 #include "boats.h"
+#include "creation.h"
 
 namespace spindrift::sim {
 
 class PatchFollower {
  public:
-  static core::Result<std::unique_ptr<PatchFollower>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                             const gpu::Defines& defines);
+  PatchFollower(Creation& create, const core::Scene& scene);
 
   /// Sets the position of the next event; the next move() moves the patch there.
   void goTo(double x_m, double z_m);
@@ -27,14 +21,10 @@ class PatchFollower {
   void move(const gpu::Buffer& sim_uniforms, const Boats* boats);
 
  private:
-  PatchFollower(gpu::Context& ctx, const core::Scene& scene);
-
-  gpu::Context& ctx_;
-  double length_m_;  ///< of the water
-  double width_m_;
+  core::WaveCells water_;
   double x_m_;
   double z_m_;
-  gpu::Program program_;
+  Pass pass_;
 };
 
 }  // namespace spindrift::sim

@@ -7,26 +7,21 @@
 namespace spindrift::sim {
 namespace {
 
-using core::Error;
-using core::ErrorCode;
-
 /// Derives the values of the changed scene as for a fresh start; an error if the running room cannot take the change.
 core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& basis) {
   auto fresh = derive(scene);
   if (!fresh) return fresh;
   if (isNonlinear(scene) && scene.wave->depth_m != basis.scene.wave->depth_m) {
-    return Error{
-        ErrorCode::kInvalidInput,
+    return core::invalid(
         "wave.depth_m: cannot change while water with BULK_NONLINEAR runs, because its ground and its shore would "
-        "move; start the room again with the changed scene"};
+        "move; start the room again with the changed scene");
   }
   const bool relays = asksForOtherCount(basis.scene, scene);
   if (relays && isTwoWay(basis.scene)) {
     // The device counts the slots of a pool, and their number is fixed.
-    return Error{ErrorCode::kInvalidInput,
-                 "particles.count: cannot change while a two-way scene runs, where it is the size of the particle "
-                 "pool; start the "
-                 "room again with the changed scene"};
+    return core::invalid(
+        "particles.count: cannot change while a two-way scene runs, where it is the size of the particle pool; start "
+        "the room again with the changed scene");
   }
   // Compare with a fresh start of the scene before the change, except for the number of particles: no fresh start may
   // give the running layout.
@@ -35,8 +30,7 @@ core::Result<Derived> checkChange(const core::Scene& scene, const SceneBasis& ba
   const auto before = derive(comparable);
   if (!before || needsRestart(*before, *fresh) || shaderDefines(basis.scene) != shaderDefines(scene) ||
       (scene.particles && scene.particles->solver != basis.scene.particles->solver)) {
-    return Error{ErrorCode::kInvalidInput,
-                 "this change needs new buffers or shaders: start the room again with the changed scene"};
+    return core::invalid("this change needs new buffers or shaders: start the room again with the changed scene");
   }
   return fresh;
 }

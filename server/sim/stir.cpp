@@ -4,19 +4,10 @@
 
 #include <shared/bindings.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<Stir>> Stir::create(gpu::Context& ctx, const gpu::Defines& defines) {
-  auto out = std::unique_ptr<Stir>(new Stir(ctx));
-  Creation create;
-  create(out->event_uniforms_,
-         gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms), gpu::BufferUse::kUpdatable));
-  create(out->program_, gpu::Program::create(ctx, "sph/stir.comp", defines));
-  if (create.error()) return *create.error();
-  return out;
-}
+Stir::Stir(Creation& create)
+    : event_uniforms_(create.uniforms<shared::EventUniforms>("event uniforms")), pass_(create.pass("sph/stir.comp")) {}
 
 EffectDomain Stir::domain(const core::Scene& scene, const Derived& derived) {
   const ParticleLayout& l = *derived.particles;
@@ -31,11 +22,9 @@ void Stir::apply(const shared::EventUniforms& events, const ParticleBuffers& par
   if (events.splash_count + events.crest_count + events.calm_count == 0) return;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
-  population.bind();
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
-  population.forParticles(program_);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  population.forParticles(pass_);
 }
 
 }  // namespace spindrift::sim

@@ -1,16 +1,9 @@
 // Effects in a scene without a wave: they move the particles themselves. See shaders/sph/stir.comp.
 #pragma once
 
-#include <memory>
-
-#include <shared/event_uniforms.h>
-
-#include <spindrift/core/result.h>
 #include <spindrift/effects/effects.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
-#include <spindrift/sim_setup/derive.h>
 
+#include "creation.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 
@@ -18,7 +11,7 @@ namespace spindrift::sim {
 
 class Stir {
  public:
-  static core::Result<std::unique_ptr<Stir>> create(gpu::Context& ctx, const gpu::Defines& defines);
+  explicit Stir(Creation& create);
 
   /// Adds the effects of one tick to positions and velocities; does nothing without an active effect.
   void apply(const shared::EventUniforms& events, const ParticleBuffers& particles, const Population& population);
@@ -27,11 +20,8 @@ class Stir {
   static EffectDomain domain(const core::Scene& scene, const Derived& derived);
 
  private:
-  explicit Stir(gpu::Context& ctx) : ctx_(ctx) {}
-
-  gpu::Context& ctx_;
   gpu::Buffer event_uniforms_;
-  gpu::Program program_;
+  Pass pass_;
 };
 
 }  // namespace spindrift::sim

@@ -2,8 +2,6 @@
 
 #include <shared/bindings.h>
 
-#include "create_all.h"
-#include "settled_positions.h"
 #include "shader_defines.h"
 #include "water_sim_parts.h"
 
@@ -105,9 +103,9 @@ void WaterSim::movePatch() {
 }
 
 void WaterSim::mixLandedWater() {
-  if (!parts_->landed_water) return;
+  if (!parts_->pool || !isNonlinear(scene_)) return;
   const auto timer = timers_.scope("coupling");
-  parts_->landed_water->mix(*parts_->wave);
+  parts_->pool->mix(*parts_->wave);
 }
 
 void WaterSim::fadeFoam() {
@@ -154,7 +152,7 @@ void WaterSim::bindSurroundings() {
   parts_->wave->elevation().bindStorage(ELEVATION);
   parts_->wave->pressureHead().bindStorage(PRESSURE_HEAD);
   if (parts_->foam) parts_->foam->landed()->bindStorage(LANDED);
-  if (parts_->landed_water) parts_->landed_water->bind();
+  parts_->pool->bindLanded();
 }
 
 void WaterSim::measure() {
@@ -177,49 +175,35 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
 
 WaterSim::~WaterSim() = default;
 
-core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene) {
-  auto derived = derive(scene);
-  if (!derived) return derived.error();
-  auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
-  if (auto built = sim->build(); !built) return built.error();
-  if (scene.particles && scene.particles->settle_s > 0 && !isTwoWay(scene)) {
-    auto settled = settledPositions(ctx, scene);
-    if (!settled) return settled.error();
-    sim->parts_->settled_positions = *std::move(settled);
-  }
-  sim->reset();
-  return sim;
-}
-
 core::Result<void> WaterSim::build() {
-  const gpu::Defines defines = shaderDefines(scene_);
-  Creation create;
-  create(parts_->uniforms,
-         gpu::Buffer::create(ctx_, "sim uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable));
-  if (derived_.wave) create(parts_->wave, Wave::create(ctx_, scene_, *derived_.wave, defines, isSampled(scene_)));
+  Creation create(ctx_, shaderDefines(scene_));
+  const auto make = [&]<typename Part>(std::unique_ptr<Part>& part, const auto&... arguments) {
+    part = std::make_unique<Part>(create, arguments...);
+  };
+  Parts& p = *parts_;
+  p.uniforms = create.uniforms<shared::SimUniforms>("sim uniforms");
+  if (derived_.wave) make(p.wave, scene_, *derived_.wave, isSampled(scene_));
   if (derived_.particles) {
-    create(parts_->particles.emplace(),
-           ParticleBuffers::create(ctx_, derived_.particles->count, storesFoamSource(scene_)));
-    create(parts_->grid, NeighborGrid::create(ctx_, *derived_.particles, defines, isTwoWay(scene_)));
+    p.particles.emplace(create, derived_.particles->count, storesFoamSource(scene_));
+    make(p.grid, *derived_.particles, isTwoWay(scene_));
     if (scene_.particles->solver == core::PressureSolver::kPositionBased)
-      create(parts_->position_based, PositionBased::create(ctx_, defines));
+      make(p.position_based);
     else
-      create(parts_->sph, Sph::create(ctx_, defines));
+      make(p.sph);
   }
-  if (hasWindSea(scene_)) create(parts_->wind_sea, WindSea::create(ctx_, scene_, *derived_.wave, defines));
-  if (hasBreakers(scene_)) create(parts_->breakers, Breakers::create(ctx_, *derived_.wave, defines));
-  if (isTwoWay(scene_)) create(parts_->pool, ParticlePool::create(ctx_, *derived_.particles, defines));
-  if (isTwoWay(scene_) && isNonlinear(scene_))
-    create(parts_->landed_water, LandedWater::create(ctx_, *derived_.wave, defines));
-  if (scene_.boats) create(parts_->boats, Boats::create(ctx_, scene_, derived_.uniforms.wave_cell_m, defines));
-  if (hasSurfaceFoam(scene_)) create(parts_->foam, SurfaceFoam::create(ctx_, scene_, *derived_.wave, defines));
-  if (!scene_.wave) create(parts_->stir, Stir::create(ctx_, defines));
-  if (followNumber(scene_) != 0) create(parts_->follower, PatchFollower::create(ctx_, scene_, defines));
-  create(parts_->frames, FramePacker::create(ctx_, scene_, derived_, defines));
-  create(parts_->diagnostics, Diagnostics::create(ctx_, scene_, derived_, defines));
+  if (hasWindSea(scene_)) make(p.wind_sea, scene_, *derived_.wave);
+  if (hasBreakers(scene_)) make(p.breakers, *derived_.wave);
+  if (isTwoWay(scene_)) make(p.pool, scene_, derived_);
+  if (scene_.boats) make(p.boats, scene_, derived_.uniforms.wave_cell_m);
+  if (hasSurfaceFoam(scene_)) make(p.foam, scene_, *derived_.wave);
+  if (!scene_.wave) make(p.stir);
+  if (followNumber(scene_) != 0) make(p.follower, scene_);
+  make(p.frames, scene_, derived_);
+  make(p.diagnostics, scene_, derived_);
   if (create.error()) return *create.error();
-  if (parts_->wave) parts_->basin_inputs.emplace(scene_, *derived_.wave);  // Wave::create() uploaded its tables
-  return parts_->makeCheckpoints(ctx_);
+  if (p.wave) p.basin_inputs.emplace(scene_, *derived_.wave);  // Wave's constructor uploaded its tables
+  p.makeCheckpoints(create);
+  return create.result();
 }
 
 WaterSim::Parts::Parts(gpu::Context& ctx) : ticks_in_flight(ctx) {}
@@ -236,40 +220,40 @@ StateBuffers WaterSim::Parts::stateBuffers() {
   add(foam);
   add(wind_sea);
   add(boats);
-  add(landed_water);
   add(grid);
   out.push_back({.buffer = &uniforms});  // the pass that moves the patch of particles changes them
   return out;
 }
 
-core::Result<void> WaterSim::Parts::makeCheckpoints(gpu::Context& ctx) {
+void WaterSim::Parts::makeCheckpoints(Creation& create) {
   std::vector<gpu::Buffer*> buffers;
   for (const StateBuffer& each : stateBuffers())
     if (each.checkpoint) buffers.push_back(each.buffer);
-  auto made = Checkpoints::create(ctx, std::move(buffers));
-  if (!made) return made.error();
-  checkpoints = *std::move(made);
-  return {};
+  auto made = std::make_unique<Checkpoints>(create, std::move(buffers));
+  if (!create.error()) checkpoints = std::move(made);
 }
 
-/// Replaces everything whose size depends on the number of particles; programs stay. After an error the particles are
-/// the old ones, and other parts may have either size: call resizeBack().
 core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
-  auto fresh = ParticleBuffers::create(ctx, derived.particles->count, storesFoamSource(scene));
-  if (!fresh) return fresh.error();
-  if (auto sized = grid->resize(*derived.particles); !sized) return sized;
-  if (auto sized = frames->resize(derived); !sized) return sized;
-  if (auto sized = diagnostics->resize(derived); !sized) return sized;
-  std::swap(*particles, *fresh);
-  auto made = makeCheckpoints(ctx);
-  if (!made) std::swap(*particles, *fresh);
-  return made;
+  Creation create(ctx);
+  ParticleBuffers fresh(create, derived.particles->count, storesFoamSource(scene));
+  resizeOthers(create, derived);
+  if (create.error()) return *create.error();
+  std::swap(*particles, fresh);
+  makeCheckpoints(create);
+  if (create.error()) std::swap(*particles, fresh);
+  return create.result();
 }
 
-core::Result<void> WaterSim::Parts::resizeBack(const Derived& derived) {
-  if (auto sized = grid->resize(*derived.particles); !sized) return sized;
-  if (auto sized = frames->resize(derived); !sized) return sized;
-  return diagnostics->resize(derived);
+core::Result<void> WaterSim::Parts::resizeBack(gpu::Context& ctx, const Derived& derived) {
+  Creation create(ctx);
+  resizeOthers(create, derived);
+  return create.result();
+}
+
+void WaterSim::Parts::resizeOthers(Creation& create, const Derived& derived) {
+  grid->resize(create, *derived.particles);
+  frames->resize(create, derived);
+  diagnostics->resize(create, derived);
 }
 
 }  // namespace spindrift::sim

@@ -2,7 +2,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/effects/scheduled_effects.h>
-#include <spindrift/sim_setup/open_side.h>
+#include <spindrift/sim_setup/ground.h>
 
 #include "water_sim_parts.h"
 
@@ -30,19 +30,17 @@ const std::vector<Stroke>& WaterSim::strokes() const {
 }
 
 core::Result<std::uint32_t> WaterSim::spawnBoat(const core::Boat& boat) {
-  if (!parts_->boats)
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       "this scene has no boats: choose one whose file has \"boats {}\""};
+  if (!parts_->boats) return core::invalid("this scene has no boats: choose one whose file has \"boats {}\"");
   return parts_->boats->spawn(boat);
 }
 
 core::Result<void> WaterSim::controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio) {
-  if (!parts_->boats) return core::Error{core::ErrorCode::kInvalidInput, "this scene has no boats"};
+  if (!parts_->boats) return core::invalid("this scene has no boats");
   return parts_->boats->control(boat_id, throttle_ratio, rudder_ratio);
 }
 
 core::Result<void> WaterSim::removeBoat(std::uint32_t boat_id) {
-  if (!parts_->boats) return core::Error{core::ErrorCode::kInvalidInput, "this scene has no boats"};
+  if (!parts_->boats) return core::invalid("this scene has no boats");
   return parts_->boats->remove(boat_id);
 }
 

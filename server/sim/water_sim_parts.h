@@ -12,15 +12,14 @@
 #include "boats.h"
 #include "breakers.h"
 #include "checkpoints.h"
+#include "creation.h"
 #include "diagnostics.h"
 #include "frame_packer.h"
-#include "landed_water.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 #include "patch_follower.h"
-#include "position_based.h"
-#include "sph.h"
+#include "solvers.h"
 #include "stir.h"
 #include "surface_foam.h"
 #include "ticks_in_flight.h"
@@ -55,7 +54,6 @@ struct WaterSim::Parts {
   std::unique_ptr<WindSea> wind_sea;  ///< in scenes with a storm whose waves come in at the sides
   std::unique_ptr<Breakers> breakers;
   std::unique_ptr<ParticlePool> pool;
-  std::unique_ptr<LandedWater> landed_water;  ///< in two-way scenes with a nonlinear bulk
   std::unique_ptr<Boats> boats;
   std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<PatchFollower> follower;
@@ -82,13 +80,16 @@ struct WaterSim::Parts {
   StateBuffers stateBuffers();
   /// Number of live particles. Waits in two-way scenes.
   [[nodiscard]] std::size_t liveCount(const Derived& derived) const;
-  core::Result<void> makeCheckpoints(gpu::Context& ctx);
-  core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
-  /// Call it after resize() failed; `derived` is that of the old size.
   /// Sets the pressure of the hulls for the next tick, and no other: what the tick before has set belongs to another
   /// gravity or grid.
   void pressAgain();
-  core::Result<void> resizeBack(const Derived& derived);
+  void makeCheckpoints(Creation& create);
+  /// Replaces everything whose size depends on the number of particles; programs stay. After an error the particles are
+  /// the old ones, and other parts may have either size: call resizeBack().
+  core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
+  /// Call it after resize() failed; `derived` is that of the old size.
+  core::Result<void> resizeBack(gpu::Context& ctx, const Derived& derived);
+  void resizeOthers(Creation& create, const Derived& derived);
 };
 
 }  // namespace spindrift::sim

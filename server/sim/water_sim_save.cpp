@@ -1,10 +1,14 @@
-// WaterSim: its whole state as plain values, and a simulation of the same scene that continues from there bit for bit.
+// WaterSim: its whole state as plain values, and a simulation that continues from there: of the same scene bit for bit,
+// or of the same water.
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <span>
 
 #include <fmt/format.h>
 #include <shared/pool.h>
+
+#include <spindrift/sim_state/resample_state.h>
 
 #include "water_sim_parts.h"
 
@@ -68,10 +72,10 @@ std::uint64_t WaterSim::stateHash() {
 
 core::Result<void> WaterSim::restore(const SavedState& saved) {
   const auto differs = [&](const std::string& what) {
-    return core::Error{core::ErrorCode::kInvalidInput,
-                       fmt::format("scene {}: the saved state is of another version of this scene or program: {}; it "
-                                   "cannot continue from there",
-                                   scene_.name, what)};
+    return core::invalid(
+        fmt::format("scene {}: the saved state is of another version of this scene or program: {}; it cannot continue "
+                    "from there",
+                    scene_.name, what));
   };
   if (saved.particles != derived_.particles) {
     if (!saved.particles || !derived_.particles || parts_->pool)
@@ -114,6 +118,24 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   continueWith(saved.host, saved.run_tick);
   if (parts_->wind_sea) parts_->wind_sea->resumeSteps(saved.host.sea);
   careful_until_tick_ = tick_ + saved.careful_ticks.value_or(0);
+  return {};
+}
+
+CarriedState WaterSim::carriedState() {
+  return {.scene = scene_, .derived = derived_, .time_s = time_s(), .state = copyState(), .host = hostState()};
+}
+
+core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
+  if (!isSameWater(carried.scene, scene_)) {
+    return core::invalid("scene " + scene_.name + ": its sides, bed or parts differ, so it cannot continue from there");
+  }
+  const ResampledState resampled = resampleState(carried, scene_, derived_);
+  setState(resampled.state);
+  if (parts_->wave) parts_->wave->setOutflow(resampled.outflow_units);
+  if (const double ratio = keptFlowRatio(carried.scene, scene_); ratio != 1.0) parts_->wave->scaleFlow(ratio);
+  continueWith(carried.host, static_cast<std::uint64_t>(std::llround(carried.time_s / derived_.tick_s)));
+  if (parts_->wind_sea && changesWaves(carried.scene, scene_)) parts_->wind_sea->continueIn(scene_, carried.time_s);
+  parts_->pressAgain();
   return {};
 }
 

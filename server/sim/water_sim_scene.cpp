@@ -2,11 +2,56 @@
 
 #include <shared/bindings.h>
 
-#include <spindrift/sim_state/starting_positions.h>
+#include <spindrift/sim_state/relay_particles.h>
 
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
+namespace {
+
+/// Returns startingPositions() after `settle_s` without events, in which once per second all speeds are set to zero: a
+/// lattice is not the solver's state of rest, and releases its surplus energy when it slides into a looser order.
+core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core::Scene& scene) {
+  constexpr double kCalmInterval_s = 1.0;
+  core::Scene quiet = scene;
+  quiet.events.clear();
+  quiet.storm.reset();
+  quiet.wave_makers.clear();
+  quiet.particles->settle_s = 0;
+  auto water = WaterSim::create(ctx, quiet);
+  if (!water) return water.error();
+  double calm_at_s = kCalmInterval_s;
+  while ((*water)->time_s() < scene.particles->settle_s) {
+    (*water)->step();
+    if ((*water)->deviceError()) return *(*water)->deviceError();
+    if ((*water)->time_s() < calm_at_s) continue;
+    calm_at_s += kCalmInterval_s;
+    StateCopy state = (*water)->copyState();
+    state.velocity.assign(state.velocity.size(), 0.0f);
+    (*water)->setState(state);
+  }
+  return (*water)->copyState().position;
+}
+
+}  // namespace
+
+// Creation
+
+core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene) {
+  auto derived = derive(scene);
+  if (!derived) return derived.error();
+  auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
+  if (auto built = sim->build(); !built) return built.error();
+  if (scene.particles && scene.particles->settle_s > 0 && !isTwoWay(scene)) {
+    auto settled = settledPositions(ctx, scene);
+    if (!settled) return settled.error();
+    sim->parts_->settled_positions = *std::move(settled);
+  }
+  sim->reset();
+  return sim;
+}
+
+// Changes
 
 core::Result<void> WaterSim::setScene(const core::Scene& scene) {
   auto prepared = prepareScene(scene, sceneBasis(scene));
@@ -55,7 +100,7 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
 core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   if (auto sized = parts_->resize(ctx_, prepared.scene, prepared.derived); !sized) {
     // The device has no memory for the new sizes. It just held the old ones; the particles have not changed.
-    if (auto back = parts_->resizeBack(derived_); !back) device_error_ = back.error();
+    if (auto back = parts_->resizeBack(ctx_, derived_); !back) device_error_ = back.error();
     return sized;
   }
   derived_ = prepared.derived;

@@ -3,114 +3,94 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <memory>
 #include <numeric>
+#include <utility>
 
 #include <shared/bindings.h>
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/fill_up.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<Wave>> Wave::create(gpu::Context& ctx, const core::Scene& scene, const WaveLayout& layout,
-                                                 const gpu::Defines& defines, bool sampled) {
-  using gpu::Program;
-  using gpu::TexelBuffer;
-  using gpu::TexelFormat;
-  auto wave = std::unique_ptr<Wave>(new Wave(ctx, layout));
-  const std::size_t cells = layout.counts().total();
+Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled)
+    : count_(layout.counts()), cell_m_(layout.cell_m), is_nonlinear_(isNonlinear(scene)) {
+  using enum gpu::TexelFormat;
+  const std::size_t cells = count_.total();
   const bool nine = scene.wave->stencil == core::Stencil::kNinePoint;
-  const bool wide_flow = nine || isNonlinear(scene);
-  wave->flow_components_ = wide_flow ? 4 : 2;
-  wave->is_varied_ = isVaried(scene);
-  wave->has_outflow_ = exchangesWater(scene);
-  Creation create;
-  create(wave->elevation_, TexelBuffer::create(ctx, "elevation", cells, TexelFormat::kR32I));
-  create(wave->flow_, TexelBuffer::create(ctx, "flow", cells, wide_flow ? TexelFormat::kRGBA32F : TexelFormat::kRG32F));
-  create(wave->transfer_,
-         TexelBuffer::create(ctx, "transfer", cells, nine ? TexelFormat::kRGBA32I : TexelFormat::kRG32I,
-                             gpu::BufferContent::kScratch));
-  create(wave->given_share_,
-         TexelBuffer::create(ctx, "given share", cells, TexelFormat::kR32F, gpu::BufferContent::kScratch));
-  create(wave->limit_args_, gpu::Buffer::create(ctx, "limit arguments", 3 * sizeof(std::uint32_t)));
-  if (wave->is_varied_) {
-    create(wave->basin_, TexelBuffer::create(ctx, "basin", cells, TexelFormat::kRGBA32F));
-    create(wave->bed_, TexelBuffer::create(ctx, "bed", cells, TexelFormat::kRGBA32F));
+  elevation_ = create.texels("elevation", cells, kR32I);
+  flow_ = create.texels("flow", cells, nine || is_nonlinear_ ? kRGBA32F : kRG32F);
+  if (is_nonlinear_) next_flow_ = create.texels("flow", cells, kRGBA32F);
+  transfer_ = create.scratch("transfer", cells, nine ? kRGBA32I : kRG32I);
+  given_share_ = create.scratch("given share", cells, kR32F);
+  limit_args_ = create.buffer("limit arguments", 3 * sizeof(std::uint32_t));
+  if (isVaried(scene)) {
+    basin_ = create.texels("basin", cells, kRGBA32F);
+    bed_ = create.texels("bed", cells, kRGBA32F);
   }
-  if (wave->has_outflow_) create(wave->outflow_, TexelBuffer::create(ctx, "outflow", cells, TexelFormat::kRG32UI));
-  wave->has_matched_layer_ = hasMatchedLayer(scene);
-  if (wave->has_matched_layer_)
-    create(wave->elevation_x_, TexelBuffer::create(ctx, "elevation from x faces", cells, TexelFormat::kR32I));
-  wave->has_head_ = hasPressureHead(scene);
-  wave->has_terrain_ = sampled && isVaried(scene);
-  if (wave->has_head_)
-    create(wave->pressure_head_, TexelBuffer::create(ctx, "pressure head", cells, TexelFormat::kR32I));
-  if (wave->has_terrain_) {
-    create(wave->terrain_, TexelBuffer::create(ctx, "terrain", cells, TexelFormat::kRGBA32F));
-    create(wave->landing_, TexelBuffer::create(ctx, "landing", cells, TexelFormat::kR32I));
+  if (exchangesWater(scene)) outflow_ = create.texels("outflow", cells, kRG32UI);
+  if (hasMatchedLayer(scene)) elevation_x_ = create.texels("elevation from x faces", cells, kR32I);
+  if (hasPressureHead(scene)) pressure_head_ = create.texels("pressure head", cells, kR32I);
+  if (sampled && isVaried(scene)) {
+    terrain_ = create.texels("terrain", cells, kRGBA32F);
+    landing_ = create.texels("landing", cells, kR32I);
   }
-  create(wave->event_uniforms_,
-         gpu::Buffer::create(ctx, "event uniforms", sizeof(shared::EventUniforms), gpu::BufferUse::kUpdatable));
-  create(wave->splash_, Program::create(ctx, "wave/splash.comp", defines));
-  create(wave->crest_, Program::create(ctx, "wave/crest.comp", defines));
-  create(wave->find_share_, Program::create(ctx, "wave/given_share.comp", defines));
-  create(wave->limit_, Program::create(ctx, "wave/limit.comp", defines));
+  event_uniforms_ = create.uniforms<shared::EventUniforms>("event uniforms");
+  splash_ = create.pass("wave/splash.comp");
+  crest_ = create.pass("wave/crest.comp");
+  find_share_ = create.pass("wave/given_share.comp");
+  limit_ = create.pass("wave/limit.comp");
   for (const bool sea : {false, true}) {
     if (sea && !hasWindSea(scene)) continue;
-    gpu::Defines of_sea = defines;
-    of_sea.emplace_back("SEA", sea ? "1" : "0");
-    if (!isNonlinear(scene)) create(wave->momentum_[sea], Program::create(ctx, "wave/momentum.comp", of_sea));
-    create(wave->continuity_[sea], Program::create(ctx, "wave/continuity.comp", of_sea));
+    const gpu::Defines of_sea{{"SEA", sea ? "1" : "0"}};
+    momentum_[sea] = create.pass(is_nonlinear_ ? "wave/shallow_momentum.comp" : "wave/momentum.comp", of_sea);
+    continuity_[sea] = create.pass("wave/continuity.comp", of_sea);
   }
   if (sampled) {
-    create(wave->surface_,
-           TexelBuffer::create(ctx, "surface", cells, TexelFormat::kRGBA32F, gpu::BufferContent::kScratch));
-    create(wave->surface_flow_,
-           TexelBuffer::create(ctx, "surface flow", cells, TexelFormat::kRG32F, gpu::BufferContent::kScratch));
-    create(wave->sample_surface_, Program::create(ctx, "coupling/sample_surface.comp", defines));
+    surface_ = create.scratch("surface", cells, kRGBA32F);
+    surface_flow_ = create.scratch("surface flow", cells, kRG32F);
+    sample_surface_ = create.pass("coupling/sample_surface.comp");
   }
-  if (isNonlinear(scene)) create(wave->shallow_flow_, ShallowFlow::create(ctx, scene, layout, defines));
-  if (hasMakers(scene)) create(wave->makers_, WaveMakers::create(ctx, scene, layout, defines));
-  if (create.error()) return *create.error();
-  if (disperses(scene)) {
-    auto dispersed = DispersedSlope::create(ctx, layout, layOutBasin(scene, layout), defines, isNonlinear(scene));
-    if (!dispersed) return dispersed.error();
-    wave->dispersed_slope_ = *std::move(dispersed);
+  if (is_nonlinear_ && disperses(scene)) {
+    rise_ = create.scratch("surface rise", cells, kRG32F);
+    slope_ = create.pass("wave/shallow_slope.comp");
   }
+  if (hasMakers(scene)) makers_ = std::make_unique<WaveMakers>(create, scene, layout);
+  if (disperses(scene))
+    dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, layOutBasin(scene, layout), is_nonlinear_);
+  if (create.error()) return;
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
-  wave->limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.count_z, 1});
-  wave->uploadBasin(scene, layout);
-  return wave;
+  limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.count_z, 1});
+  uploadBasin(scene, layout);
 }
 
 void Wave::clear() {
-  if (shallow_flow_) {
+  if (is_nonlinear_) {
     elevation_.upload(resting_elevation_);
   } else {
     elevation_.clear();
   }
   flow_.clear();
   forgetLastStep();
-  if (has_outflow_) outflow_.clear();
-  if (has_matched_layer_) elevation_x_.clear();
+  if (outflow_) outflow_.clear();
+  if (elevation_x_) elevation_x_.clear();
   clearPressure();
 }
 
 void Wave::declareState(StateBuffers& out) {
   out.push_back({.buffer = &elevation_, .checkpoint = true, .carried = true});
   out.push_back({.buffer = &flow_, .checkpoint = true, .carried = true});
-  if (has_outflow_) out.push_back({.buffer = &outflow_, .checkpoint = true});  // setOutflow() carries its sum over
-  if (has_matched_layer_) out.push_back({.buffer = &elevation_x_, .checkpoint = true, .carried = true});
+  if (outflow_) out.push_back({.buffer = &outflow_, .checkpoint = true});  // setOutflow() carries its sum over
+  if (elevation_x_) out.push_back({.buffer = &elevation_x_, .checkpoint = true, .carried = true});
   if (dispersed_slope_) dispersed_slope_->declareState(out);
-  if (has_head_) out.push_back({.buffer = &pressure_head_});
+  if (pressure_head_) out.push_back({.buffer = &pressure_head_});
   out.push_back({.buffer = &limit_args_, .lasts = false});  // the same words after each step
-  if (shallow_flow_) shallow_flow_->declareState(out);
+  if (next_flow_) out.push_back({.buffer = &next_flow_, .lasts = false});
 }
 
 void Wave::forgetLastStep() {
-  if (shallow_flow_ && dispersed_slope_) dispersed_slope_->texels().clear();
+  if (rise_) dispersed_slope_->texels().clear();
 }
 
 void Wave::bindEvents() const {
@@ -118,28 +98,28 @@ void Wave::bindEvents() const {
 }
 
 void Wave::clearPressure() {
-  if (has_head_) pressure_head_.clear();
+  if (pressure_head_) pressure_head_.clear();
 }
 
 void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
-  if (!is_varied_ && !dispersed_slope_) return;
+  if (!basin_ && !dispersed_slope_) return;
   const Basin basin = layOutBasin(scene, layout);
   if (dispersed_slope_) dispersed_slope_->upload(layout, basin);
-  if (!is_varied_) return;
+  if (!basin_) return;
   basin_.upload(basin.conductance_m);
   bed_.upload(basin.bed);
-  if (shallow_flow_) {
+  if (is_nonlinear_) {
     resting_elevation_ = restingElevation(basin);
     resting_units_ = std::accumulate(resting_elevation_.begin(), resting_elevation_.end(), std::int64_t{0});
   }
-  if (!has_terrain_) return;
+  if (!terrain_) return;
   const Terrain terrain = layOutTerrain(scene, layout, basin);
   terrain_.upload(terrain.ground);
   landing_.upload(terrain.landing);
 }
 
 void Wave::scaleFlow(double ratio) {
-  auto flow_m2ps = flow_.downloadVector<float>(count_.total() * flow_components_);
+  auto flow_m2ps = flow_.downloadVector<float>(flow_.sizeBytes() / sizeof(float));
   for (float& q : flow_m2ps) q *= static_cast<float>(ratio);
   flow_.upload(flow_m2ps);
 }
@@ -147,10 +127,10 @@ void Wave::scaleFlow(double ratio) {
 void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
   const std::size_t cells = count_.total();
   std::vector<std::int64_t> bed_units(cells, bedUnits(scene.wave->depth_m));
-  if (is_varied_)
+  if (basin_)
     std::ranges::transform(layOutBasin(scene, layout).depth_m, bed_units.begin(), [](float m) { return bedUnits(m); });
   auto elevation_units = elevation_.downloadVector<std::int32_t>(cells);
-  const FillUp filled = fillUp(bed_units, elevation_units, has_outflow_ ? Lack::kComesFromOutside : Lack::kStays);
+  const FillUp filled = fillUp(bed_units, elevation_units, outflow_ ? Lack::kComesFromOutside : Lack::kStays);
   if (!filled.is_changed) return;
   elevation_.upload(elevation_units);
   if (filled.from_outside_units > 0) {
@@ -160,7 +140,7 @@ void Wave::fillUpToBed(const core::Scene& scene, const WaveLayout& layout) {
 }
 
 void Wave::setOutflow(std::int64_t units) {
-  if (!has_outflow_) return;
+  if (!outflow_) return;
   outflow_.clear();
   uploadOutflow(units);
 }
@@ -172,13 +152,13 @@ void Wave::uploadOutflow(std::int64_t units) {
 }
 
 void Wave::bindTerrain() const {
-  if (!has_terrain_) return;
+  if (!terrain_) return;
   terrain_.bindTexel(TERRAIN);
   landing_.bindTexel(LANDING);
 }
 
 void Wave::bindBasin() const {
-  if (!is_varied_) return;
+  if (!basin_) return;
   basin_.bindTexel(BASIN);
   bed_.bindTexel(BED);
 }
@@ -192,11 +172,10 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
 
   transfer_.bindTexel(TRANSFER);
   elevation_.bindStorage(ELEVATION);
-  if (has_outflow_) outflow_.bindStorage(OUTFLOW);
-  if (has_matched_layer_) elevation_x_.bindStorage(ELEVATION_X);
+  if (outflow_) outflow_.bindStorage(OUTFLOW);
+  if (elevation_x_) elevation_x_.bindStorage(ELEVATION_X);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);  // other passes use its unit
-  continuity_[sea].dispatch(count_.x, count_.z);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  continuity_[sea].run(count_);
   if (makers_) makers_->advance(middle_s);
 }
 
@@ -204,13 +183,15 @@ void Wave::advance(const gpu::TexelBuffer* breaking, const shared::EventUniforms
 void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea) {
   const bool sea = incident_sea != nullptr;
   elevation_.bindTexel(ELEVATION);
-  if (has_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
-  if (shallow_flow_ && dispersed_slope_) {
+  if (pressure_head_) pressure_head_.bindTexel(PRESSURE_HEAD);
+  if (rise_) {
     bindBasin();
     flow_.bindTexel(FLOW);
     if (breaking) breaking->bindTexel(BREAKING);
     dispersed_slope_->texels().bindTexel(DISPERSED);
-    shallow_flow_->findRise().bindTexel(SURFACE_RISE);
+    rise_.bindStorage(SURFACE_RISE);
+    slope_.run(count_);
+    rise_.bindTexel(SURFACE_RISE);
   }
   if (dispersed_slope_) dispersed_slope_->compute();
   bindBasin();
@@ -219,14 +200,16 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
   transfer_.bindStorage(TRANSFER);
   limit_args_.bindStorage(LIMIT_ARGS);
   if (sea) incident_sea->bindTexel(INCIDENT_SEA);
-  if (shallow_flow_) {
-    shallow_flow_->advance(flow_, sea);
+  if (!is_nonlinear_) {
     flow_.bindStorage(FLOW);
+    momentum_[sea].run(count_);
     return;
   }
+  flow_.bindTexel(FLOW);
+  next_flow_.bindStorage(FLOW);
+  momentum_[sea].run(count_);
+  std::swap(flow_, next_flow_);
   flow_.bindStorage(FLOW);
-  momentum_[sea].dispatch(count_.x, count_.z);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
 }
 
 /// Adds to TRANSFER and, for crests and calmed discs, changes FLOW; advance() has bound both.
@@ -243,29 +226,25 @@ void Wave::displace(shared::EventUniforms events) {
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
   if (events.splash_count > 0) {
     if (every_cell) {
-      splash_.dispatch(count_.x, count_.z);
+      splash_.run(count_);
     } else {
-      splash_.dispatch(across, across, events.splash_count);
+      splash_.run(across, across, events.splash_count);
     }
-    ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   }
-  if (events.crest_count + events.calm_count > 0) {
-    crest_.dispatch(count_.x, count_.z);
-    ctx_.barrier(gpu::Barrier::kStorageAndTexel);
-  }
+  if (events.crest_count + events.calm_count > 0) crest_.run(count_);
 }
 
 /// Both passes run no group in a step in which no cell could become empty.
 void Wave::limit() {
-  ctx_.barrier(gpu::Barrier::kIndirect);
+  find_share_.barrier(gpu::Barrier::kIndirect);
   transfer_.bindTexel(TRANSFER);
   given_share_.bindStorage(GIVEN_SHARE);
   find_share_.dispatchIndirect(limit_args_);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  find_share_.barrier();
 
   given_share_.bindTexel(GIVEN_SHARE);
   limit_.dispatchIndirect(limit_args_);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  limit_.barrier();
 }
 
 void Wave::sampleSurface() {
@@ -274,8 +253,7 @@ void Wave::sampleSurface() {
   flow_.bindTexel(FLOW);
   surface_.bindStorage(SURFACE);
   surface_flow_.bindStorage(SURFACE_FLOW);
-  sample_surface_.dispatch(count_.x, count_.z);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  sample_surface_.run(count_);
 }
 
 void Wave::bindSurface() const {

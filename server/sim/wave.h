@@ -10,15 +10,12 @@
 
 #include <shared/event_uniforms.h>
 
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
 
+#include "creation.h"
 #include "dispersed_slope.h"
-#include "shallow_flow.h"
 #include "wave_makers.h"
 
 namespace spindrift::sim {
@@ -27,9 +24,7 @@ class Wave {
  public:
   /// `sampled`: particles or boats read the surface; creates the buffers for them, too. The basin has tables only if it
   /// is varied, and outflow is counted only if water can leave or enter.
-  static core::Result<std::unique_ptr<Wave>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                    const WaveLayout& layout, const gpu::Defines& defines,
-                                                    bool sampled);
+  Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled);
 
   /// Sets a level surface at rest, with dry ground above it in a nonlinear bulk, and the outflow to zero.
   void clear();
@@ -66,15 +61,12 @@ class Wave {
   /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water
   /// that they moved [m^2/s].
   [[nodiscard]] gpu::TexelBuffer& flow() { return flow_; }
-  [[nodiscard]] gpu::TexelBuffer* outflow() {
-    return has_outflow_ ? &outflow_ : nullptr;
-  }  ///< nx x nz [units: low 24 bits, the rest]
+  /// nx x nz [units: low 24 bits, the rest]; null in scenes without.
+  [[nodiscard]] gpu::TexelBuffer* outflow() { return outflow_ ? &outflow_ : nullptr; }
   /// null in scenes without.
   [[nodiscard]] WaveMakers* makers() { return makers_.get(); }
   /// Sum of the elevations of water at rest: ground above the still water counts in a nonlinear bulk.
   [[nodiscard]] std::int64_t restingUnits() const { return resting_units_; }
-  /// 2, or 4 with the 9-point stencil or a nonlinear bulk.
-  [[nodiscard]] std::size_t flowComponents() const { return flow_components_; }
   /// Binds SURFACE and SURFACE_FLOW for lookups. Only in scenes whose surface is sampled.
   void bindSurface() const;
   /// Binds the effects of the last wave step.
@@ -87,23 +79,20 @@ class Wave {
   [[nodiscard]] gpu::TexelBuffer& pressureHead() { return pressure_head_; }
 
  private:
-  Wave(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), count_(layout.counts()), cell_m_(layout.cell_m) {}
   void accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea);
   void displace(shared::EventUniforms events);
   void uploadOutflow(std::int64_t units);
   void limit();
 
-  gpu::Context& ctx_;
   core::CellCounts count_;
   double cell_m_;
-  std::size_t flow_components_ = 2;
-  bool is_varied_ = false;
-  bool has_outflow_ = false;
-  bool has_matched_layer_ = false;
+  bool is_nonlinear_;
   bool had_events_ = false;
-  bool has_head_ = false;
-  bool has_terrain_ = false;
+  // Buffers that the scene does not need are empty.
   gpu::TexelBuffer elevation_, flow_, basin_, bed_, outflow_;
+  gpu::TexelBuffer next_flow_;  ///< of a nonlinear bulk: a step writes it, then it takes the place of flow_
+  /// nx x nz x 2 [units per cell]: of a nonlinear bulk, the slopes that the dispersion filters.
+  gpu::TexelBuffer rise_;
   /// nx x nz [units]: the part of the elevation that came through x faces, inside a matched layer
   /// (wave/continuity.comp); only in scenes with one. 0 outside the layer.
   gpu::TexelBuffer elevation_x_;
@@ -113,14 +102,12 @@ class Wave {
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
-  std::unique_ptr<ShallowFlow> shallow_flow_;        ///< null if the bulk is linear
   std::unique_ptr<WaveMakers> makers_;               ///< null in scenes without wave-makers
   std::vector<std::int32_t> resting_elevation_;      ///< nx x nz [units]; empty if the bulk is linear
   std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;
-  gpu::Program splash_, crest_, find_share_, limit_, sample_surface_;
-  /// By whether a sea comes in; the second only in scenes with a wind sea. Momentum only in a linear bulk.
-  gpu::Program momentum_[2], continuity_[2];
+  Pass splash_, crest_, find_share_, limit_, sample_surface_, slope_;
+  Pass momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
 };
 
 }  // namespace spindrift::sim

@@ -1,30 +1,17 @@
 #include "wave_makers.h"
 
-#include <utility>
-
 #include <shared/bindings.h>
+#include <shared/maker_uniforms.h>
 
 #include <spindrift/sim_setup/scene_parts.h>
 
-#include "create_all.h"
-
 namespace spindrift::sim {
 
-core::Result<std::unique_ptr<WaveMakers>> WaveMakers::create(gpu::Context& ctx, const core::Scene& scene,
-                                                             const WaveLayout& layout, const gpu::Defines& defines) {
-  auto out = std::unique_ptr<WaveMakers>(new WaveMakers(ctx));
-  out->count_ = layout.counts();
-  Creation create;
-  create(out->program_, gpu::Program::create(ctx, "wave/maker.comp", defines));
-  for (const core::WaveMaker& maker : scene.wave_makers) {
-    Maker& made = out->makers_.emplace_back();
-    made.side = maker.side;
-    create(made.uniforms,
-           gpu::Buffer::create(ctx, "wave maker", sizeof(shared::MakerUniforms), gpu::BufferUse::kUpdatable));
-  }
-  if (create.error()) return *create.error();
-  out->update(scene, layout);
-  return out;
+WaveMakers::WaveMakers(Creation& create, const core::Scene& scene, const WaveLayout& layout)
+    : count_(layout.counts()), pass_(create.pass("wave/maker.comp")) {
+  for (const core::WaveMaker& maker : scene.wave_makers)
+    makers_.push_back({maker.side, {}, create.uniforms<shared::MakerUniforms>("wave maker")});
+  update(scene, layout);
 }
 
 void WaveMakers::update(const core::Scene& scene, const WaveLayout& layout) {
@@ -49,8 +36,7 @@ void WaveMakers::advance(double middle_s) {
                                                      .unused = {}});
     maker.uniforms.bindUniform(MAKER_UNIFORMS);
     const bool is_x = maker.side == core::Side::kMinusX || maker.side == core::Side::kPlusX;
-    program_.dispatch(is_x ? count_.z : count_.x);
-    ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // makers of two sides share a corner
+    pass_.run(is_x ? count_.z : count_.x);  // one after the other: makers of two sides share a corner
   }
 }
 

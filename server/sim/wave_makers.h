@@ -2,24 +2,19 @@
 // says how much). Their time is the scene's, so a reset begins them again and a replay repeats them.
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include <shared/maker_uniforms.h>
-
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim_setup/incident_waves.h>
+
+#include "creation.h"
 
 namespace spindrift::sim {
 
 class WaveMakers {
  public:
-  /// Errors: those of the buffers and the program. Precondition: hasMakers(scene).
-  static core::Result<std::unique_ptr<WaveMakers>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                          const WaveLayout& layout, const gpu::Defines& defines);
+  /// Precondition: hasMakers(scene).
+  WaveMakers(Creation& create, const core::Scene& scene, const WaveLayout& layout);
 
   /// Takes on changed parameters (depth, gravity, step).
   void update(const core::Scene& scene, const WaveLayout& layout);
@@ -28,8 +23,6 @@ class WaveMakers {
   void advance(double middle_s);
 
  private:
-  explicit WaveMakers(gpu::Context& ctx) : ctx_(ctx) {}
-
   struct Maker {
     core::Side side;
     IncidentWaves waves;
@@ -41,11 +34,10 @@ class WaveMakers {
     bool operator==(const Inputs&) const = default;
   };
 
-  gpu::Context& ctx_;
   core::CellCounts count_;
   std::vector<Maker> makers_;
   Inputs inputs_{};
-  gpu::Program program_;
+  Pass pass_;
 };
 
 }  // namespace spindrift::sim

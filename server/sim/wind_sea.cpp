@@ -9,10 +9,8 @@
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
 
-#include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/pulse.h>
-
-#include "create_all.h"
+#include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
 namespace {
@@ -42,20 +40,20 @@ Complex factorAt(double k_radpm, double decay_pm, double share, double place_m, 
 /// Blocks with cells of a layer: first column, first row, the layers' sides, 0.
 std::vector<std::array<std::uint32_t, 4>> layerBlocks(const core::WaveScene& wave, const WaveLayout& layout) {
   std::vector<std::array<std::uint32_t, 4>> out;
-  const auto depth_in = [&](core::WaveBoundary side, std::uint32_t cells_before) {
-    return side == core::WaveBoundary::kAbsorb && (cells_before + 0.5) * layout.cell_m < wave.sponge_width_m;
-  };
+  const auto water_sides = sidesOf(wave);
   // The last block of a row may reach beyond the water.
   const auto behind = [](std::uint32_t count, std::uint32_t first) {
     return count > first + SEA_BLOCK ? count - first - SEA_BLOCK : 0;
   };
   for (std::uint32_t z = 0; z < layout.count_z; z += SEA_BLOCK) {
     for (std::uint32_t x = 0; x < layout.count_x; x += SEA_BLOCK) {
+      const std::array cells_before{x, behind(layout.count_x, x), z, behind(layout.count_z, z)};
       std::uint32_t sides = 0;
-      if (depth_in(wave.boundary_minus_x, x)) sides |= MINUS_X_BIT;
-      if (depth_in(wave.boundary_plus_x, behind(layout.count_x, x))) sides |= PLUS_X_BIT;
-      if (depth_in(wave.boundary_minus_z, z)) sides |= MINUS_Z_BIT;
-      if (depth_in(wave.boundary_plus_z, behind(layout.count_z, z))) sides |= PLUS_Z_BIT;
+      for (std::size_t k = 0; k < water_sides.size(); ++k) {
+        if (water_sides[k].boundary == core::WaveBoundary::kAbsorb &&
+            (cells_before[k] + 0.5) * layout.cell_m < wave.sponge_width_m)
+          sides |= water_sides[k].bit;
+      }
       if (sides != 0) out.push_back({x, z, sides, 0});
     }
   }
@@ -64,26 +62,18 @@ std::vector<std::array<std::uint32_t, 4>> layerBlocks(const core::WaveScene& wav
 
 }  // namespace
 
-core::Result<std::unique_ptr<WindSea>> WindSea::create(gpu::Context& ctx, const core::Scene& scene,
-                                                       const WaveLayout& layout, const gpu::Defines& defines) {
-  using gpu::TexelBuffer;
-  using gpu::TexelFormat;
-  auto out = std::unique_ptr<WindSea>(new WindSea(ctx, layout));
+WindSea::WindSea(Creation& create, const core::Scene& scene, const WaveLayout& layout)
+    : layout_(layout),
+      columns_(create.texels("sea columns", std::size_t{layout.count_x} * MAX_SEA_WAVES, gpu::TexelFormat::kRG32F)),
+      rows_(create.texels("sea rows", std::size_t{(layout.count_z + SEA_STRIP - 1) / SEA_STRIP} * MAX_SEA_WAVES,
+                          gpu::TexelFormat::kRG32F)),
+      incident_(create.texels("incident sea", layout.counts().total(), gpu::TexelFormat::kRGBA32F)),
+      uniforms_(create.uniforms<shared::SeaUniforms>("sea uniforms")),
+      compute_(create.pass("wave/incident_sea.comp")) {
   const auto blocks = layerBlocks(*scene.wave, layout);
-  out->block_count_ = static_cast<std::uint32_t>(blocks.size());
-  Creation create;
-  create(out->blocks_, TexelBuffer::create(ctx, "sea blocks", blocks.size(), TexelFormat::kRGBA32UI));
-  create(out->columns_,
-         TexelBuffer::create(ctx, "sea columns", std::size_t{layout.count_x} * MAX_SEA_WAVES, TexelFormat::kRG32F));
-  const std::size_t strip_count = (layout.count_z + SEA_STRIP - 1) / SEA_STRIP;
-  create(out->rows_, TexelBuffer::create(ctx, "sea rows", strip_count * MAX_SEA_WAVES, TexelFormat::kRG32F));
-  create(out->incident_, TexelBuffer::create(ctx, "incident sea", layout.counts().total(), TexelFormat::kRGBA32F));
-  create(out->uniforms_,
-         gpu::Buffer::create(ctx, "sea uniforms", sizeof(shared::SeaUniforms), gpu::BufferUse::kUpdatable));
-  create(out->compute_, gpu::Program::create(ctx, "wave/incident_sea.comp", defines));
-  if (create.error()) return *create.error();
-  out->blocks_.upload(blocks);
-  return out;
+  block_count_ = static_cast<std::uint32_t>(blocks.size());
+  blocks_ = create.texels("sea blocks", blocks.size(), gpu::TexelFormat::kRGBA32UI);
+  if (!create.error()) blocks_.upload(blocks);
 }
 
 void WindSea::clear() {
@@ -142,8 +132,7 @@ const gpu::TexelBuffer* WindSea::advance(double begin_s, double dt_s) {
   columns_.bindTexel(SEA_COLUMNS);
   rows_.bindTexel(SEA_ROWS);
   incident_.bindStorage(INCIDENT_SEA);
-  compute_.dispatch(SEA_BLOCK, (block_count_ + uniforms.block_stride - 1) / uniforms.block_stride);
-  ctx_.barrier(gpu::Barrier::kStorageAndTexel);
+  compute_.run(SEA_BLOCK, (block_count_ + uniforms.block_stride - 1) / uniforms.block_stride);
   return &incident_;
 }
 
@@ -154,7 +143,8 @@ void WindSea::uploadTables() {
     for (const PlaneWave& wave : sea->waves) {
       const double k = std::hypot(wave.kx_radpm, wave.kz_radpm);
       const auto factor = [&](double k_radpm, std::uint32_t cell, double side_m) {
-        return texelOf(factorAt(k_radpm, wave.decay_pm, k_radpm / k, (cell + 0.5) * cell_m_ - side_m / 2, side_m));
+        return texelOf(
+            factorAt(k_radpm, wave.decay_pm, k_radpm / k, (cell + 0.5) * layout_.cell_m - side_m / 2, side_m));
       };
       for (std::uint32_t x = 0; x < layout_.count_x; ++x) columns.push_back(factor(wave.kx_radpm, x, layout_.length_m));
       for (std::uint32_t z = 0; z < layout_.count_z; z += SEA_STRIP)
@@ -187,14 +177,15 @@ shared::SeaUniforms WindSea::uniformsAt(double begin_s, double dt_s, double fade
       const Complex strength = std::polar(share * wave.amplitude_m * correction, wave.phase_rad - turn);
       const Complex elevation = strength * std::polar(double{ELEVATION_UNITS_PER_M}, -half);
       // From continuity, eta_t = -div q, with the differences of the grid.
-      const double sx = 2 / cell_m_ * std::sin(0.5 * wave.kx_radpm * cell_m_);
-      const double sz = 2 / cell_m_ * std::sin(0.5 * wave.kz_radpm * cell_m_);
+      const double sx = 2 / layout_.cell_m * std::sin(0.5 * wave.kx_radpm * layout_.cell_m);
+      const double sz = 2 / layout_.cell_m * std::sin(0.5 * wave.kz_radpm * layout_.cell_m);
       const Complex flow = strength * (2 / dt_s * std::sin(half) / (sx * sx + sz * sz));
-      const Complex flow_x = flow * std::polar(sx, 0.5 * wave.kx_radpm * cell_m_);
-      const Complex flow_z = flow * std::polar(sz, 0.5 * wave.kz_radpm * cell_m_);
+      const Complex flow_x = flow * std::polar(sx, 0.5 * wave.kx_radpm * layout_.cell_m);
+      const Complex flow_z = flow * std::polar(sz, 0.5 * wave.kz_radpm * layout_.cell_m);
       const double k = std::hypot(wave.kx_radpm, wave.kz_radpm);
       const auto step = [&](double k_axis, double cells) {
-        return std::polar(std::exp(-wave.decay_pm * k_axis / k * cells * cell_m_), k_axis * cells * cell_m_);
+        return std::polar(std::exp(-wave.decay_pm * k_axis / k * cells * layout_.cell_m),
+                          k_axis * cells * layout_.cell_m);
       };
       const Complex next = step(wave.kz_radpm, 1.0);
       const Complex before = step(wave.kx_radpm, -1.0);

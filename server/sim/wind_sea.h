@@ -3,28 +3,20 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <optional>
-#include <vector>
 
-#include <shared/sea_uniforms.h>
-
-#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
-#include <spindrift/gpu/buffer.h>
-#include <spindrift/gpu/program.h>
 #include <spindrift/sim/state_buffer.h>
-#include <spindrift/sim_setup/sea_state.h>
 #include <spindrift/sim_state/carried_state.h>
+
+#include "creation.h"
 
 namespace spindrift::sim {
 
 class WindSea {
  public:
-  /// Errors: those of the buffers and the program. Precondition: hasWindSea(scene), and the resolution is a multiple of
-  /// SEA_BLOCK, as in every scene file.
-  static core::Result<std::unique_ptr<WindSea>> create(gpu::Context& ctx, const core::Scene& scene,
-                                                       const WaveLayout& layout, const gpu::Defines& defines);
+  /// Precondition: hasWindSea(scene), and the resolution is a multiple of SEA_BLOCK, as in every scene file.
+  WindSea(Creation& create, const core::Scene& scene, const WaveLayout& layout);
 
   /// Calm water; the sea of the last fadeTo() then fades in.
   void clear();
@@ -48,13 +40,10 @@ class WindSea {
   const gpu::TexelBuffer* advance(double begin_s, double dt_s);
 
  private:
-  WindSea(gpu::Context& ctx, const WaveLayout& layout) : ctx_(ctx), layout_(layout), cell_m_(layout.cell_m) {}
   void uploadTables();
   shared::SeaUniforms uniformsAt(double begin_s, double dt_s, double faded_ratio) const;
 
-  gpu::Context& ctx_;
   WaveLayout layout_;
-  double cell_m_;
   SeaState shown_;   ///< the sea, and while fading the one before
   SeaState next_;    ///< while fading
   SeaState wanted_;  ///< of the last fadeTo()
@@ -64,7 +53,7 @@ class WindSea {
   gpu::TexelBuffer blocks_, columns_, rows_;
   gpu::TexelBuffer incident_;  ///< nx x nz; 0 outside the layers
   gpu::Buffer uniforms_;
-  gpu::Program compute_;
+  Pass compute_;
 };
 
 }  // namespace spindrift::sim

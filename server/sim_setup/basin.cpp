@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include <shared/effects.h>
+#include <shared/side_bits.h>
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/fill_up.h>
@@ -42,47 +42,24 @@ struct AxisLoss {
   double z_per_s = 0.0;
 };
 
-/// Half the length and half the width of the water.
-struct Halves {
-  double x_m = 0.0;
-  double z_m = 0.0;
-};
-
-/// Distance from a position to a side. [m]
-double distanceTo(core::Side side, const Halves& half, double x_m, double z_m) {
-  switch (side) {
-    case core::Side::kMinusX:
-      return x_m + half.x_m;
-    case core::Side::kPlusZ:
-      return half.z_m - z_m;
-    case core::Side::kMinusZ:
-      return z_m + half.z_m;
-    default:
-      return half.x_m - x_m;
-  }
-}
-
-double distance(const core::Rock& rock, double x_m, double z_m) {
-  return std::hypot(x_m - rock.x_m, z_m - rock.z_m) - rock.radius_m;
-}
-
-double distance(const core::Breakwater& wall, double x_m, double z_m) {
-  const double heading = wall.heading_deg * std::numbers::pi / 180.0;
-  const double dx = x_m - wall.x_m;
-  const double dz = z_m - wall.z_m;
-  const double along = std::abs(dx * std::cos(heading) + dz * std::sin(heading)) - wall.length_m / 2;
-  const double across = std::abs(dz * std::cos(heading) - dx * std::sin(heading)) - wall.width_m / 2;
-  return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
-}
-
 /// Depth of the face between two cells: the harmonic mean, as for two half cells in series. 0 when either is dry.
 double faceDepth(double a_m, double b_m) {
   return a_m > 0 && b_m > 0 ? 2 * a_m * b_m / (a_m + b_m) : 0.0;
 }
 
-/// How far inside the layer of a side a position is: 0 at its edge, 1 at the side, negative outside.
-double insideLayer(const core::WaveScene& w, const Halves& half, core::Side side, double x_m, double z_m) {
-  return 1 - distanceTo(side, half, x_m, z_m) / w.sponge_width_m;
+/// Loss rates of the layers at a position, from those at the sides and a power. [1/s]
+AxisLoss layerLoss(const core::WaveScene& w, const WaveLayout& layout, double most_per_s, double power, double x_m,
+                   double z_m) {
+  AxisLoss out;
+  for (const WaterSide& each : sidesOf(w)) {
+    if (each.boundary != WaveBoundary::kAbsorb) continue;
+    // 0 at the edge of the layer, 1 at the side.
+    const double inside = 1 - distanceTo(each.side, layout.length_m, layout.width_m, x_m, z_m) / w.sponge_width_m;
+    if (!(inside > 0)) continue;
+    double& loss_per_s = each.bit == MINUS_X_BIT || each.bit == PLUS_X_BIT ? out.x_per_s : out.z_per_s;
+    loss_per_s = std::max(loss_per_s, most_per_s * std::pow(inside, power));
+  }
+  return out;
 }
 
 /// Largest loss rate of a matched layer. [1/s]
@@ -96,32 +73,11 @@ double matchedLossMax(const core::Scene& scene, const WaveLayout& layout) {
   return (kMatchedPower + 1) * speed_mps * std::log(1 / kMatchedReturn) / (2 * width_m);
 }
 
-AxisLoss matchedLoss(const core::WaveScene& w, const Halves& half, double sigma_max_per_s, double along_share,
-                     double x_m, double z_m) {
-  const auto sigma = [&](core::Side side, WaveBoundary boundary) {
-    const double inside = boundary == WaveBoundary::kAbsorb ? insideLayer(w, half, side, x_m, z_m) : 0.0;
-    return inside > 0 ? sigma_max_per_s * std::pow(inside, kMatchedPower) : 0.0;
-  };
-  const double x_per_s =
-      std::max(sigma(core::Side::kMinusX, w.boundary_minus_x), sigma(core::Side::kPlusX, w.boundary_plus_x));
-  const double z_per_s =
-      std::max(sigma(core::Side::kMinusZ, w.boundary_minus_z), sigma(core::Side::kPlusZ, w.boundary_plus_z));
-  return {std::max(x_per_s, along_share * z_per_s), std::max(z_per_s, along_share * x_per_s)};
-}
-
 double heightOf(const core::Obstacle& obstacle) {
   return std::visit([](const auto& o) { return o.height_m; }, obstacle);
 }
 
 }  // namespace
-
-double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
-  double nearest_m = std::numeric_limits<double>::infinity();
-  for (const core::Obstacle& obstacle : scene.obstacles) {
-    nearest_m = std::min(nearest_m, std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle));
-  }
-  return nearest_m;
-}
 
 std::vector<std::int32_t> restingElevation(const Basin& basin) {
   std::vector<std::int32_t> out(basin.bed.size());
@@ -165,9 +121,6 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto nx = static_cast<int>(layout.count_x);
   const auto nz = static_cast<int>(layout.count_z);
   const std::size_t cells = layout.counts().total();
-  const Halves half{layout.length_m / 2, layout.width_m / 2};
-  const auto placeX = [&](int i) { return (i + 0.5) * layout.cell_m - half.x_m; };
-  const auto placeZ = [&](int i) { return (i + 0.5) * layout.cell_m - half.z_m; };
   const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz)); };
 
   Basin out;
@@ -175,12 +128,7 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   out.depth_m.resize(cells);
   out.conductance_m.resize(cells);
   out.bed.resize(cells);
-  const double sponge_m = w.sponge_width_m;
-  const double sigma_max = (kSpongePower + 1) * layout.speed_mps * std::log(1 / kSpongeReturn) / (2 * sponge_m);
-  const std::pair<core::Side, WaveBoundary> sides[] = {{core::Side::kMinusX, w.boundary_minus_x},
-                                                       {core::Side::kPlusX, w.boundary_plus_x},
-                                                       {core::Side::kMinusZ, w.boundary_minus_z},
-                                                       {core::Side::kPlusZ, w.boundary_plus_z}};
+  const double sigma_max = (kSpongePower + 1) * layout.speed_mps * std::log(1 / kSpongeReturn) / (2 * w.sponge_width_m);
   const bool is_matched = hasMatchedLayer(scene);
   const bool is_nonlinear = isNonlinear(scene);
   const double matched_max = matchedLossMax(scene, layout);
@@ -188,39 +136,37 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
-      double depth_m =
-          is_nonlinear ? groundDepthWithObstacles(scene, placeX(x), placeZ(z)) : bedDepth(scene, placeX(x), placeZ(z));
-      if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, placeX(x), placeZ(z)) < 0) depth_m = 0.0;
+      const double x_m = (x + 0.5) * layout.cell_m - layout.length_m / 2;
+      const double z_m = (z + 0.5) * layout.cell_m - layout.width_m / 2;
+      double depth_m = is_nonlinear ? groundDepthWithObstacles(scene, x_m, z_m) : bedDepth(scene, x_m, z_m);
+      float ground_m = static_cast<float>(depth_m);
+      if (depth_m < kDryShare * w.depth_m || obstacleDistance(scene, x_m, z_m) < 0) depth_m = 0.0;
       out.depth_m[i] = static_cast<float>(depth_m);
-      double sigma = 0.0;
-      for (const auto& [side, boundary] : sides) {
-        if (boundary != WaveBoundary::kAbsorb) continue;
-        const double inside = 1 - distanceTo(side, half, placeX(x), placeZ(z)) / sponge_m;
-        if (inside > 0) sigma = std::max(sigma, sigma_max * std::pow(inside, kSpongePower));
-      }
+      if (!is_nonlinear) ground_m = out.depth_m[i];
       // Beach that runs dry: damp the flow within the time that a long wave needs to cross the shallow part.
+      const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
       double fade = 0.0;
-      for (const core::Beach& beach : scene.beaches) {
-        if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
-        const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
-        if (shallow > 0 && !is_nonlinear)
+      if (shallow > 0 && !is_nonlinear) {
+        for (const core::Beach& beach : scene.beaches) {
+          if (beach.shore_depth_m > kDryShare * w.depth_m) continue;
           fade = std::max(fade, 4 * layout.speed_mps / beach.width_m * shallow * shallow);
-      }
-      const float ground_m =
-          is_nonlinear ? static_cast<float>(groundDepthWithObstacles(scene, placeX(x), placeZ(z))) : out.depth_m[i];
-      if (scene.bed && !is_nonlinear && depth_m < kFadeShare * w.depth_m) {
-        // The same where the bed of the scene rises to land, with the width of a beach of its slope.
-        if (const auto slope = shoreSlope(scene, placeX(x), placeZ(z))) {
-          const double shallow = 1 - depth_m / (kFadeShare * w.depth_m);
-          fade = std::max(fade, 4 * layout.speed_mps * *slope / w.depth_m * shallow * shallow);
         }
       }
+      if (scene.bed && !is_nonlinear && depth_m < kFadeShare * w.depth_m) {
+        // The same where the bed of the scene rises to land, with the width of a beach of its slope.
+        if (const auto slope = shoreSlope(scene, x_m, z_m))
+          fade = std::max(fade, 4 * layout.speed_mps * *slope / w.depth_m * shallow * shallow);
+      }
       if (is_matched) {
-        const AxisLoss loss = matchedLoss(w, half, matched_max, along_share, placeX(x), placeZ(z));
-        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss.x_per_s), ground_m,
-                      static_cast<float>(loss.z_per_s)};
+        const AxisLoss across = layerLoss(w, layout, matched_max, kMatchedPower, x_m, z_m);
+        const double loss_x_per_s = std::max(across.x_per_s, along_share * across.z_per_s);
+        const double loss_z_per_s = std::max(across.z_per_s, along_share * across.x_per_s);
+        out.bed[i] = {static_cast<float>(fade), static_cast<float>(loss_x_per_s), ground_m,
+                      static_cast<float>(loss_z_per_s)};
         continue;
       }
+      const AxisLoss loss = layerLoss(w, layout, sigma_max, kSpongePower, x_m, z_m);
+      const double sigma = std::max(loss.x_per_s, loss.z_per_s);
       out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), ground_m, 0.0f};
     }
   }
@@ -275,27 +221,26 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
   /// Replaces "no obstacle": beyond the range of every lookup, and finite, because infinity would become NaN in
   /// interpolation.
   const double far_m = 4 * layout.longerSide_m();
-  const auto placeX = [&](int i) { return (i + 0.5) * layout.cell_m - layout.length_m / 2; };
-  const auto placeZ = [&](int i) { return (i + 0.5) * layout.cell_m - layout.width_m / 2; };
   const auto distanceAt = [&](double x, double z) { return std::min(obstacleDistance(scene, x, z), far_m); };
   Terrain out;
   out.ground.reserve(basin.depth_m.size());
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
-      const double d = distanceAt(placeX(x), placeZ(z));
-      const double dx = (distanceAt(placeX(x) + step_m, placeZ(z)) - distanceAt(placeX(x) - step_m, placeZ(z)));
-      const double dz = (distanceAt(placeX(x), placeZ(z) + step_m) - distanceAt(placeX(x), placeZ(z) - step_m));
+      const double x_m = (x + 0.5) * layout.cell_m - layout.length_m / 2;
+      const double z_m = (z + 0.5) * layout.cell_m - layout.width_m / 2;
+      const double d = distanceAt(x_m, z_m);
+      const double dx = distanceAt(x_m + step_m, z_m) - distanceAt(x_m - step_m, z_m);
+      const double dz = distanceAt(x_m, z_m + step_m) - distanceAt(x_m, z_m - step_m);
       const double size = std::max(std::hypot(dx, dz), 1e-12);
+      const auto i = static_cast<std::size_t>(x + nx * z);
       // Land is as high as it is; ground that is dry only because it is too shallow is at the rest level.
-      const double land_m = std::min(groundDepth(scene, placeX(x), placeZ(z)), 0.0);
-      double depth_m = land_m < 0 ? land_m : basin.depth_m[static_cast<std::size_t>(x + nx * z)];
+      const double land_m = std::min(groundDepth(scene, x_m, z_m), 0.0);
+      double depth_m = land_m < 0 ? land_m : basin.depth_m[i];
       if (isNonlinear(scene)) {
-        depth_m = basin.bed[static_cast<std::size_t>(x + nx * z)][2];
+        depth_m = basin.bed[i][2];
       } else if (d < 0) {
-        for (const core::Obstacle& obstacle : scene.obstacles) {
-          const double here = std::visit([&](const auto& o) { return distance(o, placeX(x), placeZ(z)); }, obstacle);
-          if (here < 0) depth_m = std::min(depth_m, -heightOf(obstacle));
-        }
+        for (const core::Obstacle& obstacle : scene.obstacles)
+          if (obstacleDistance(obstacle, x_m, z_m) < 0) depth_m = std::min(depth_m, -heightOf(obstacle));
       }
       out.ground.push_back({static_cast<float>(d), static_cast<float>(dx / size), static_cast<float>(dz / size),
                             static_cast<float>(depth_m)});

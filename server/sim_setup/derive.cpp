@@ -12,7 +12,6 @@
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
-#include <spindrift/sim_setup/spray.h>
 
 #include "wave_layout.h"
 
@@ -20,7 +19,6 @@ namespace spindrift::sim {
 namespace {
 
 using core::Boundary;
-using core::Error;
 
 /// Share of a support radius that sound plus water may cross in a step. The usual value is 0.4 of half of it (Monaghan
 /// 1992), with a large margin: a splashed box stays stable to 1.0 with every kernel set (`spindrift-study --suite

@@ -7,7 +7,6 @@
 #include <spindrift/core/half.h>
 #include <spindrift/sim_setup/dispersion.h>
 
-#include "dispersion_flows.h"
 #include "dispersion_grid.h"
 
 namespace spindrift::sim {

@@ -1,9 +1,9 @@
-#include "dispersion_flows.h"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
 #include <utility>
+
+#include "dispersion_grid.h"
 
 namespace spindrift::sim {
 namespace {

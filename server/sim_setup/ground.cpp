@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,9 +11,6 @@
 
 namespace spindrift::sim {
 namespace {
-
-using core::Error;
-using core::ErrorCode;
 
 /// Share of the depth by which shapes with rounded numbers may miss it: a slope of 0.049875 over 12.03 m and one of
 /// -0.099502 over 6.03 m end 0.8 um below the floor. Such ground counts as wave.depth_m.
@@ -33,18 +31,16 @@ Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double
   return {dx * std::cos(heading) + dz * std::sin(heading), dz * std::cos(heading) - dx * std::sin(heading)};
 }
 
-/// Distance of a position from a side. [m]
-double distanceTo(core::Side side, const core::WaveCells& water, double x_m, double z_m) {
-  switch (side) {
-    case core::Side::kMinusX:
-      return x_m + water.length_m / 2;
-    case core::Side::kPlusZ:
-      return water.width_m / 2 - z_m;
-    case core::Side::kMinusZ:
-      return z_m + water.width_m / 2;
-    default:
-      return water.length_m / 2 - x_m;
-  }
+/// Distance in the plane from an obstacle, negative inside. [m]
+double distance(const core::Rock& rock, double x_m, double z_m) {
+  return std::hypot(x_m - rock.x_m, z_m - rock.z_m) - rock.radius_m;
+}
+
+double distance(const core::Breakwater& wall, double x_m, double z_m) {
+  const Place place = placeFrom(wall.x_m, wall.z_m, wall.heading_deg, x_m, z_m);
+  const double along = std::abs(place.along_m) - wall.length_m / 2;
+  const double across = std::abs(place.across_m) - wall.width_m / 2;
+  return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
 }
 
 double floorDepth(const core::Scene& scene) {
@@ -149,7 +145,8 @@ double shapedDepth(const core::Scene& scene, double x_m, double z_m) {
   if (scene.beaches.empty() && !scene.bed) return depth_m;
   const core::WaveCells water = core::waveCellsOf(*scene.wave);
   for (const core::Beach& beach : scene.beaches) {
-    const double share = std::clamp(distanceTo(beach.side, water, x_m, z_m) / beach.width_m, 0.0, 1.0);
+    const double share =
+        std::clamp(distanceTo(beach.side, water.length_m, water.width_m, x_m, z_m) / beach.width_m, 0.0, 1.0);
     depth_m = std::min(depth_m, std::lerp(beach.shore_depth_m, floor_m, share));
   }
   if (!scene.bed) return depth_m;
@@ -159,6 +156,30 @@ double shapedDepth(const core::Scene& scene, double x_m, double z_m) {
 }
 
 }  // namespace
+
+double distanceTo(core::Side side, double length_m, double width_m, double x_m, double z_m) {
+  switch (side) {
+    case core::Side::kMinusX:
+      return x_m + length_m / 2;
+    case core::Side::kPlusZ:
+      return width_m / 2 - z_m;
+    case core::Side::kMinusZ:
+      return z_m + width_m / 2;
+    default:
+      return length_m / 2 - x_m;
+  }
+}
+
+double obstacleDistance(const core::Obstacle& obstacle, double x_m, double z_m) {
+  return std::visit([&](const auto& o) { return distance(o, x_m, z_m); }, obstacle);
+}
+
+double obstacleDistance(const core::Scene& scene, double x_m, double z_m) {
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const core::Obstacle& obstacle : scene.obstacles)
+    nearest_m = std::min(nearest_m, obstacleDistance(obstacle, x_m, z_m));
+  return nearest_m;
+}
 
 double groundDepth(const core::Scene& scene, double x_m, double z_m) {
   const double depth_m = shapedDepth(scene, x_m, z_m);
@@ -196,11 +217,9 @@ core::Result<void> checkGround(const core::Scene& scene) {
   if (const auto& grid = scene.bed->grid) {
     const std::size_t wanted = std::size_t{grid->columns_count} * grid->rows_count;
     if (grid->columns_count < 2 || grid->rows_count < 2 || !grid->depths_m || grid->depths_m->size() != wanted)
-      return Error{
-          ErrorCode::kInvalidInput,
-          fmt::format("bed.grid: {} x {} points with {} depths are not a grid: give rows or a png with at least "
-                      "2 x 2 points",
-                      grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0)};
+      return core::invalid(fmt::format(
+          "bed.grid: {} x {} points with {} depths are not a grid: give rows or a png with at least 2 x 2 points",
+          grid->columns_count, grid->rows_count, grid->depths_m ? grid->depths_m->size() : 0));
   }
   const double limit_m = scene.wave->depth_m * (1 + kDepthTolerance);
   if (deepestPossible(scene) <= limit_m) return {};
@@ -219,11 +238,66 @@ core::Result<void> checkGround(const core::Scene& scene) {
     }
   }
   if (deepest_m <= limit_m) return {};
-  return Error{ErrorCode::kInvalidInput,
-               fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
-                           "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
-                           "bed.floor_depth_m for the depth of the level floor)",
-                           deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m)};
+  return core::invalid(
+      fmt::format("bed: {:.4g} m at x {:.4g} m, z {:.4g} m is deeper than wave.depth_m of {:.4g} m, the bound "
+                  "by which steps are chosen: choose wave.depth_m of at least {:.4g} m (and "
+                  "bed.floor_depth_m for the depth of the level floor)",
+                  deepest_m, deepest_x_m, deepest_z_m, scene.wave->depth_m, deepest_m));
+}
+
+namespace {
+
+/// The water along a side is judged by so many positions, from the side to this share of the way across, where crests
+/// start.
+constexpr int kPlacesAlong = 32;
+constexpr int kPlacesAcross = 8;
+constexpr double kJudgedShare = 0.25;
+/// Sides whose depths differ by less than this share of the water's depth are equally deep.
+constexpr double kEqualShare = 0.05;
+
+struct SideWater {
+  core::Side side = core::Side::kPlusX;
+  core::WaveBoundary boundary = core::WaveBoundary::kPeriodic;
+  /// From the centre toward the side.
+  double x = 0.0;
+  double z = 0.0;
+};
+
+double meanDepth(const core::Scene& scene, const SideWater& at) {
+  const core::WaveCells water = core::waveCellsOf(*scene.wave);
+  double sum_m = 0.0;
+  for (int across = 0; across < kPlacesAcross; ++across) {
+    // In half lengths from the centre: 1 at the side.
+    const double outward = 1.0 - 2.0 * kJudgedShare * (across + 0.5) / kPlacesAcross;
+    for (int along = 0; along < kPlacesAlong; ++along) {
+      const double sideward = 2.0 * (along + 0.5) / kPlacesAlong - 1.0;
+      const double x_m = 0.5 * water.length_m * (at.x != 0.0 ? at.x * outward : sideward);
+      const double z_m = 0.5 * water.width_m * (at.z != 0.0 ? at.z * outward : sideward);
+      sum_m += std::max(groundDepthWithObstacles(scene, x_m, z_m), 0.0);
+    }
+  }
+  return sum_m / (kPlacesAlong * kPlacesAcross);
+}
+
+}  // namespace
+
+core::Side openSide(const core::Scene& scene) {
+  if (!scene.wave) return core::Side::kPlusX;
+  const core::WaveScene& wave = *scene.wave;
+  const std::array<SideWater, 4> sides{{{core::Side::kPlusX, wave.boundary_plus_x, 1, 0},
+                                        {core::Side::kMinusX, wave.boundary_minus_x, -1, 0},
+                                        {core::Side::kPlusZ, wave.boundary_plus_z, 0, 1},
+                                        {core::Side::kMinusZ, wave.boundary_minus_z, 0, -1}}};
+  std::array<double, sides.size()> depths_m{};
+  std::ranges::transform(sides, depths_m.begin(), [&](const SideWater& at) { return meanDepth(scene, at); });
+  const double least_m = std::ranges::max(depths_m) - kEqualShare * wave.depth_m;
+  const SideWater* chosen = nullptr;
+  for (std::size_t k = 0; k < sides.size(); ++k) {
+    const bool is_open = sides[k].boundary == core::WaveBoundary::kAbsorb;
+    if (depths_m[k] < least_m || (chosen && (!is_open || chosen->boundary == core::WaveBoundary::kAbsorb))) continue;
+    chosen = &sides[k];
+  }
+  return chosen->side;
 }
 
 }  // namespace spindrift::sim

@@ -35,6 +35,13 @@ double sumLayers(double s, double H, int low, int high, F f) {
   return sum;
 }
 
+/// The same over all layers within H.
+template <typename F>
+double sumLattice(double s, double H, F f) {
+  const int reach = layersWithin(s, H);
+  return sumLayers(s, H, -reach, reach, f);
+}
+
 /// Squared horizontal distances from the centre to the points of a square lattice with 2 reach + 1 points per side.
 std::vector<double> lateralSquares(double s, int reach) {
   std::vector<double> out;
@@ -123,19 +130,16 @@ double pressureSlope(KernelSet set, double r, double H) {
 }
 
 double latticeNeighbours(double s, double H) {
-  const int reach = layersWithin(s, H);
-  return sumLayers(s, H, -reach, reach, [&](double r) { return r <= H * (1 + 1e-9) ? 1.0 : 0.0; }) - 1.0;
+  return sumLattice(s, H, [&](double r) { return r <= H * (1 + 1e-9) ? 1.0 : 0.0; }) - 1.0;
 }
 
 double calibratedMass(KernelSet set, double s, double H, double rho_0) {
-  const int reach = layersWithin(s, H);
-  return rho_0 / sumLayers(s, H, -reach, reach, [&](double r) { return densityKernel(set, r, H); });
+  return rho_0 / sumLattice(s, H, [&](double r) { return densityKernel(set, r, H); });
 }
 
 double calibratedVirtualMass(KernelSet set, double s, double H, double rho_0, double mass_kg, int points) {
-  const int reach = layersWithin(s, H);
   const double missing =
-      rho_0 - mass_kg * sumLayers(s, H, 0, reach, [&](double r) { return densityKernel(set, r, H); });
+      rho_0 - mass_kg * sumLayers(s, H, 0, layersWithin(s, H), [&](double r) { return densityKernel(set, r, H); });
   const double depth = 0.5 + kVirtualDepthRatio;
   double lattice = 0.0;
   for (const double d2 : lateralSquares(s, points / 2))
@@ -170,14 +174,12 @@ double calibratedFloorDrag(double s, double H, double rho_0, double mass_kg, con
 }
 
 double latticeConstraintSlope2(KernelSet set, double s, double H, double rho_0, double mass_kg) {
-  const int reach = layersWithin(s, H);
-  return sumLayers(s, H, -reach, reach,
-                   [&](double r) { return r > 0 ? std::pow(mass_kg * pressureSlope(set, r, H) / rho_0, 2) : 0.0; });
+  return sumLattice(s, H,
+                    [&](double r) { return r > 0 ? std::pow(mass_kg * pressureSlope(set, r, H) / rho_0, 2) : 0.0; });
 }
 
 double latticeStressRatio(KernelSet set, double s, double H, double rho_0, double mass_kg) {
-  const int reach = layersWithin(s, H);
-  return sumLayers(s, H, -reach, reach, [&](double r) { return mass_kg / rho_0 * r * pressureSlope(set, r, H) / 3; });
+  return sumLattice(s, H, [&](double r) { return mass_kg / rho_0 * r * pressureSlope(set, r, H) / 3; });
 }
 
 double settledStressRatio(KernelSet set) {

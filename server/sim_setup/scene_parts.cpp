@@ -9,6 +9,13 @@ namespace spindrift::sim {
 
 using core::WaveBoundary;
 
+std::array<WaterSide, 4> sidesOf(const core::WaveScene& wave) {
+  return {{{core::Side::kMinusX, wave.boundary_minus_x, MINUS_X_BIT},
+           {core::Side::kPlusX, wave.boundary_plus_x, PLUS_X_BIT},
+           {core::Side::kMinusZ, wave.boundary_minus_z, MINUS_Z_BIT},
+           {core::Side::kPlusZ, wave.boundary_plus_z, PLUS_Z_BIT}}};
+}
+
 bool isPeriodicX(const core::WaveScene& wave) {
   return wave.boundary_minus_x == WaveBoundary::kPeriodic;
 }
@@ -25,11 +32,8 @@ bool disperses(const core::Scene& scene) {
 }
 
 bool isOpen(const core::Scene& scene) {
-  const core::WaveScene& w = *scene.wave;
-  for (const WaveBoundary side : {w.boundary_minus_x, w.boundary_plus_x, w.boundary_minus_z, w.boundary_plus_z}) {
-    if (side == WaveBoundary::kAbsorb) return true;
-  }
-  return false;
+  return std::ranges::any_of(sidesOf(*scene.wave),
+                             [](const WaterSide& each) { return each.boundary == WaveBoundary::kAbsorb; });
 }
 
 bool hasMakers(const core::Scene& scene) {

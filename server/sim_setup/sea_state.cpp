@@ -32,10 +32,10 @@ struct Sides {
   std::uint32_t closed = 0;
 
   explicit Sides(const core::WaveScene& wave) {
-    add(wave.boundary_minus_x, MINUS_X_BIT);
-    add(wave.boundary_plus_x, PLUS_X_BIT);
-    add(wave.boundary_minus_z, MINUS_Z_BIT);
-    add(wave.boundary_plus_z, PLUS_Z_BIT);
+    for (const WaterSide& each : sidesOf(wave)) {
+      if (each.boundary == core::WaveBoundary::kAbsorb) absorbing |= each.bit;
+      if (each.boundary == core::WaveBoundary::kReflect) closed |= each.bit;
+    }
   }
 
   /// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from.
@@ -46,12 +46,6 @@ struct Sides {
     if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
     if ((from & absorbing) == 0) return 0;
     return (from & closed) == 0 ? absorbing : from & absorbing;
-  }
-
- private:
-  void add(core::WaveBoundary boundary, std::uint32_t bit) {
-    if (boundary == core::WaveBoundary::kAbsorb) absorbing |= bit;
-    if (boundary == core::WaveBoundary::kReflect) closed |= bit;
   }
 };
 

@@ -8,7 +8,7 @@
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
-#include <spindrift/sim_setup/open_side.h>
+#include <spindrift/sim_setup/ground.h>
 #include <spindrift/water/recorded_hash.h>
 #include <spindrift/water/room_water.h>
 #include <spindrift/water/water_state.h>

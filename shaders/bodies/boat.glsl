@@ -41,7 +41,7 @@ float hullShape(vec2 half_m, vec2 at_m) {
 }
 
 /// Pressure of the hull on the water, as a height of water, where hullShape() is 1. [m] hullPeak * hullShape integrates to
-/// the volume of a box of the hull's length, beam and draught; 0.9064 = Gamma(5/4). C++: sim_setup/hull_pressure.h.
+/// the volume of a box of the hull's length, beam and draught; 0.9064 = Gamma(5/4). C++: tests/study/hull_pressure.cpp.
 float hullPeak(BoatState b, vec2 half_m) {
   const float volume_share = 0.25 * b.hull_m.x * b.hull_m.y / (half_m.x * half_m.y) / (0.9064 * 0.9064);
   return b.hull_m.w * volume_share * min(b.age_s / BOAT_SETTLING_S, 1.0) * (1.0 - b.aloft);

@@ -1,5 +1,5 @@
 // Determines which cells hold enough water to emit particles: no cell may give more than it holds, however many cells
-// emit at once. All particles of a tick together take at most sim.spray_taken_m from a cell (sim_setup/spray.h). The emitting
+// emit at once. All particles of a tick together take at most sim.spray_taken_m from a cell (sim_setup/particle_layout.h). The emitting
 // cell also gives the water that other cells in its splat lack.
 #ifndef SPINDRIFT_SPRAY_SOURCE
 #define SPINDRIFT_SPRAY_SOURCE

@@ -5,7 +5,7 @@
 
 #include <shared/boats.h>
 
-#include <spindrift/sim_setup/hull_pressure.h>
+#include <spindrift/study/hull_pressure.h>
 
 #include "ticks.h"
 
@@ -25,7 +25,7 @@ HullState hullOf(const sim::StateCopy& state, double side_m) {
 
 std::vector<double> hullHead(const HullState& hull, std::size_t n, double side_m) {
   const double cell_m = side_m / static_cast<double>(n);
-  const sim::HullPressure settled = sim::hullPressure(
+  const HullPressure settled = hullPressure(
       {.length_m = hull.length_m, .beam_m = hull.beam_m, .height_m = hull.draught_m, .density_ratio = 1.0}, cell_m);
   const double share = std::min(hull.age_s / double{BOAT_SETTLING_S}, 1.0) * (1.0 - hull.aloft);
   const double c = std::cos(hull.heading_rad);

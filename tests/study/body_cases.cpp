@@ -69,7 +69,7 @@ core::Result<void> addResistance(gpu::Context& ctx, double depth_m, core::Disper
   const core::Boat boat{.length_m = 2.4, .beam_m = 0.9, .height_m = 0.6, .density_ratio = 0.25};
   const core::Scene scene = towingBasin(128, depth_m, dispersion);
   const core::WaveScene& wave = *scene.wave;
-  const sim::HullPressure hull = sim::hullPressure(boat, wave.side_m / wave.resolution_count);
+  const HullPressure hull = hullPressure(boat, wave.side_m / wave.resolution_count);
   const LinearWater water{scene.gravity_mps2, depth_m, dispersion == core::Dispersion::kAiry};
   const double hull_mps = std::sqrt(water.gravity_mps2 * boat.length_m);
   for (const double number : froude_numbers) {

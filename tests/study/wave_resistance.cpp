@@ -32,7 +32,7 @@ double LinearWater::omega2(double k_radpm) const {
   return gravity_mps2 * k_radpm * (disperses ? std::tanh(k_radpm * depth_m) : k_radpm * depth_m);
 }
 
-double openWaterResistance(const sim::HullPressure& hull, const LinearWater& water, double speed_mps) {
+double openWaterResistance(const HullPressure& hull, const LinearWater& water, double speed_mps) {
   const double longest = kLongestPhase / std::min(hull.half_length_m, hull.half_beam_m);
   if (!water.disperses) {
     // All waves that stand still have the direction cos = c/U; the delta function leaves the integral over k.
@@ -63,7 +63,7 @@ double openWaterResistance(const sim::HullPressure& hull, const LinearWater& wat
   return sum / (pi * hull.volume_m3);
 }
 
-double basinResistance(const sim::HullPressure& hull, const LinearWater& water, double speed_mps, double side_m,
+double basinResistance(const HullPressure& hull, const LinearWater& water, double speed_mps, double side_m,
                        double damping_per_s) {
   const double step = 2 * pi / side_m;
   const auto count = [&](double half_m) { return static_cast<int>(kLongestPhase / half_m / step); };

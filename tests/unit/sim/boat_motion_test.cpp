@@ -9,7 +9,7 @@
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/dispersion.h>
-#include <spindrift/sim_setup/hull_pressure.h>
+#include <spindrift/study/hull_pressure.h>
 
 #include "dispersion_reference.h"
 #include "sim_fixture.h"
@@ -85,7 +85,7 @@ class BoatMotion : public OnDevice {
   static double headAt(const core::Boat& boat, const BoatState& b, double x_m, double z_m) {
     const double dx_m = std::remainder(x_m - b.x_m, kSide_m);
     const double dz_m = std::remainder(z_m - b.z_m, kSide_m);
-    return hullPressure(boat, kCell_m)
+    return study::hullPressure(boat, kCell_m)
         .head_m(dx_m * std::cos(b.heading) + dz_m * std::sin(b.heading),
                 dz_m * std::cos(b.heading) - dx_m * std::sin(b.heading));
   }
@@ -190,7 +190,7 @@ TEST_F(BoatMotion, TheDentOfAHullAtRestIsItsPressure) {
   const double level_m = state.elevation_m[5 + kCells * 5];
   for (std::size_t place = 0; place < 2; ++place) {
     const core::Boat& boat = scene.boats->boats[place];
-    const HullPressure hull = hullPressure(boat, kCell_m);
+    const study::HullPressure hull = study::hullPressure(boat, kCell_m);
     const BoatState b = boatOf(state, place);
     double worst_m = 0.0;
     double volume_m3 = 0.0;
@@ -215,7 +215,7 @@ TEST_F(BoatMotion, WavesGainTheEnergyThatTheirResistanceTakesFromTheBoat) {
     WaterSim& sim = make(scene);
     const double dt_s = sim.derived().tick_s;
     ASSERT_EQ(sim.derived().wave->substeps_count, 1u);
-    const double volume_m3 = hullPressure(boat, kCell_m).volume_m3;
+    const double volume_m3 = study::hullPressure(boat, kCell_m).volume_m3;
     // The flow is q = -F grad(impulse), impulse = g dt sum (eta + head). So its energy, q F^-1 q / 2, is -q
     // grad(impulse) / 2 whatever the dispersion F is, with the flows half a step before and after, whose product the
     // leapfrog conserves.

@@ -33,9 +33,10 @@ class DispersedSlopeOnDevice : public OnDevice {
     for (auto& [name, value] : defines) {
       if (name == "HEAD") value = has_head ? "1" : "0";
     }
-    auto made = DispersedSlope::create(*ctx_, first_layout, layOutBasin(first, first_layout), defines, false);
-    EXPECT_TRUE(made) << made.error().message;
-    if (first_depth_m) (*made)->upload(layout, basin);
+    Creation create(*ctx_, defines);
+    DispersedSlope slope(create, first_layout, layOutBasin(first, first_layout), false);
+    EXPECT_FALSE(create.error()) << create.error()->message;
+    if (first_depth_m) slope.upload(layout, basin);
     auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);
     uniforms->uploadValue(derive(scene)->uniforms);
     uniforms->bindUniform(SIM_UNIFORMS);
@@ -56,8 +57,8 @@ class DispersedSlopeOnDevice : public OnDevice {
     head->upload(pressed);
     elevation->bindTexel(ELEVATION);
     if (has_head) head->bindTexel(PRESSURE_HEAD);
-    (*made)->compute();
-    const auto got = (*made)->texels().downloadVector<float>(2 * cells);
+    slope.compute();
+    const auto got = slope.texels().downloadVector<float>(2 * cells);
     const auto wanted = DispersionReference(layOutDispersion(layout, basin)).apply(level);
     double square = 0.0;
     double largest = 0.0;

@@ -31,15 +31,14 @@ class Grid : public OnDevice {
     }
     p.position.upload(positions);
     p.velocity.upload(positions);  // lets a test check that both move together
-    auto grid = NeighborGrid::create(
-        *ctx_, *derived_.particles,
-        {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}}, false);
-    ASSERT_TRUE(grid) << grid.error().message;
-    (*grid)->build(p, Population(derived_.particles->count, derived_.particles->cell_count, nullptr));
+    Creation create(*ctx_, {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}});
+    NeighborGrid grid(create, *derived_.particles, false);
+    ASSERT_FALSE(create.error()) << create.error()->message;
+    grid.build(p, Population(derived_.particles->count, derived_.particles->cell_count, nullptr));
     ctx_->barrier(gpu::Barrier::kBufferUpdate);
     sorted_ = p.sorted_position.downloadVector<float>(4 * n);
     sorted_velocity_ = p.sorted_velocity.downloadVector<float>(4 * n);
-    start_ = (*grid)->cellStart().downloadVector<std::uint32_t>(derived_.particles->cell_count + 1);
+    start_ = grid.cellStart().downloadVector<std::uint32_t>(derived_.particles->cell_count + 1);
   }
 
   std::uint32_t cellOf(const float* x) const {

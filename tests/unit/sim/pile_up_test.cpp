@@ -7,10 +7,9 @@
 #include <shared/grid.h>
 
 #include "neighbor_grid.h"
-#include "position_based.h"
 #include "shader_defines.h"
 #include "sim_fixture.h"
-#include "sph.h"
+#include "solvers.h"
 
 namespace spindrift::sim {
 namespace {
@@ -48,25 +47,26 @@ class PileUp : public OnDevice {
     auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms));
     uniforms->uploadValue(derived->uniforms);
     uniforms->bindUniform(SIM_UNIFORMS);
-    auto particles = ParticleBuffers::create(*ctx_, derived->particles->count, false);
-    auto grid = NeighborGrid::create(*ctx_, *derived->particles, defines, false);
+    Creation create(*ctx_, defines);
+    ParticleBuffers particles(create, derived->particles->count, false);
+    NeighborGrid grid(create, *derived->particles, false);
     std::vector<float> position;
     for (std::uint32_t i = 0; i < derived->particles->count; ++i)
       position.insert(position.end(), {0.3f, 0.2f, 0.3f, static_cast<float>(i)});
-    particles->position.upload(position);
+    particles.position.upload(position);
     const Population all(derived->particles->count, derived->particles->cell_count, nullptr);
-    (*grid)->build(*particles, all);
+    grid.build(particles, all);
     if (solver == core::PressureSolver::kPositionBased) {
-      auto passes = PositionBased::create(*ctx_, defines);
-      (*passes)->project(*particles, all, 1);
-      (*passes)->finish(*particles, all);
+      PositionBased passes(create);
+      passes.project(particles, all, 1);
+      passes.finish(particles, all);
     } else {
-      auto passes = Sph::create(*ctx_, defines);
-      (*passes)->density(*particles, all);
-      (*passes)->forces(*particles, all);
+      Sph passes(create);
+      passes.density(particles, all);
+      passes.forces(particles, all);
     }
     ctx_->barrier(gpu::Barrier::kBufferUpdate);
-    const auto words = (*grid)->crowded().downloadVector<std::uint32_t>(2);
+    const auto words = grid.crowded().downloadVector<std::uint32_t>(2);
     return {words[0], words[1], derived->particles->count};
   }
 };

@@ -68,8 +68,9 @@ TEST_F(WindSeaOnDevice, AgreesWithTheSumOfItsWavesInDoublePrecision) {
   const WaveLayout& layout = *derived.wave;
   const SeaState sea = seaState(scene, layout);
   ASSERT_FALSE(sea.waves.empty());
-  auto made = WindSea::create(*ctx_, scene, layout, shaderDefines(scene));
-  ASSERT_TRUE(made) << made.error().message;
+  Creation create(*ctx_, shaderDefines(scene));
+  WindSea incoming(create, scene, layout);
+  ASSERT_FALSE(create.error()) << create.error()->message;
   auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);
   uniforms->uploadValue(derived.uniforms);
   uniforms->bindUniform(SIM_UNIFORMS);
@@ -80,13 +81,13 @@ TEST_F(WindSeaOnDevice, AgreesWithTheSumOfItsWavesInDoublePrecision) {
   bed->upload(basin.bed);
   conductance->bindTexel(BASIN);
   bed->bindTexel(BED);
-  (*made)->fadeTo(sea);
+  incoming.fadeTo(sea);
   const int n = static_cast<int>(layout.count_x);
   const double dt_s = layout.dt_s;
   const std::size_t values = static_cast<std::size_t>(n) * n * 4;
   const auto steps = static_cast<int>(std::ceil(10.0 / dt_s));
   const gpu::TexelBuffer* incident = nullptr;
-  for (int k = 0; k < steps; ++k) incident = (*made)->advance(k * dt_s, dt_s);
+  for (int k = 0; k < steps; ++k) incident = incoming.advance(k * dt_s, dt_s);
   ASSERT_NE(incident, nullptr);
   const auto got = incident->downloadVector<float>(values);
   const double now_s = (steps - 1) * dt_s;

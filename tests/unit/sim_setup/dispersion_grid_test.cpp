@@ -6,8 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "dispersion_flows.h"
-
 namespace spindrift::sim {
 namespace {
 

@@ -1,7 +1,7 @@
 // The side that waves come from where none is named.
 #include <gtest/gtest.h>
 
-#include <spindrift/sim_setup/open_side.h>
+#include <spindrift/sim_setup/ground.h>
 
 namespace spindrift::sim {
 namespace {

@@ -1,7 +1,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/sim_setup/spray.h>
+#include <spindrift/sim_setup/particle_layout.h>
 
 namespace spindrift::sim {
 namespace {

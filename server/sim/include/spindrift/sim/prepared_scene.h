@@ -7,8 +7,8 @@
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_state/carried_state.h>
 #include <spindrift/sim_state/relay_particles.h>
-#include <spindrift/sim_state/state_copy.h>
 
 namespace spindrift::sim {
 

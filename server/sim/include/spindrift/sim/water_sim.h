@@ -17,7 +17,6 @@
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/gpu/pass_timer.h>
-#include <spindrift/sim/boat_record.h>
 #include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
@@ -25,7 +24,6 @@
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_state/carried_state.h>
 #include <spindrift/sim_state/saved_state.h>
-#include <spindrift/sim_state/state_copy.h>
 
 namespace spindrift::sim {
 

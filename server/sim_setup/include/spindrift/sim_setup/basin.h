@@ -32,9 +32,6 @@ struct Basin {
 /// Returns the elevation [units] of the water of a nonlinear bulk at rest: 0, and the ground where that is higher.
 std::vector<std::int32_t> restingElevation(const Basin& basin);
 
-/// Returns the signed distance in the plane to the nearest obstacle: negative inside; +infinity without obstacles. [m]
-double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
-
 Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout);
 
 /// The ground for particles and boats, nx x nz, for shaders/common/terrain_texels.glsl.
@@ -47,4 +44,5 @@ struct Terrain {
 };
 
 Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const Basin& basin);
+
 }  // namespace spindrift::sim

@@ -9,6 +9,14 @@
 
 namespace spindrift::sim {
 
+/// Returns the distance from a position to a side of water that is centred on the origin. [m]
+double distanceTo(core::Side side, double length_m, double width_m, double x_m, double z_m);
+
+/// Returns the signed distance in the plane to an obstacle, or to the nearest one of a scene: negative inside;
+/// +infinity without obstacles. [m]
+double obstacleDistance(const core::Obstacle& obstacle, double x_m, double z_m);
+double obstacleDistance(const core::Scene& scene, double x_m, double z_m);
+
 /// Returns the still depth of the ground at a position, without obstacles: floor, beaches, grid, then the shapes in
 /// order. At most wave.depth_m: what checkGround() allows beyond it is the rounding of numbers in a file. Precondition:
 /// the scene has a wave.
@@ -34,5 +42,10 @@ std::optional<double> shoreSlope(const core::Scene& scene, double x_m, double z_
 /// Checks the bed against the water: points of the grid, and no ground deeper than wave.depth_m at the centre of any
 /// cell. Error: kInvalidInput. Does nothing in scenes without a bed.
 core::Result<void> checkGround(const core::Scene& scene);
+
+/// Returns the side that waves come from where none is named: that with the deepest water, land and obstacles counted
+/// as no depth; of sides that are about as deep, the first one that is open to the sea, otherwise the first one: +x,
+/// -x, +z, -z. kPlusX in scenes without a wave.
+core::Side openSide(const core::Scene& scene);
 
 }  // namespace spindrift::sim

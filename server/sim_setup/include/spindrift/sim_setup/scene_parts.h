@@ -1,11 +1,21 @@
 // The parts that a scene has.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include <spindrift/core/scene.h>
 
 namespace spindrift::sim {
+
+/// A side of the water, and what waves do there.
+struct WaterSide {
+  core::Side side = core::Side::kMinusX;
+  core::WaveBoundary boundary = core::WaveBoundary::kPeriodic;
+  std::uint32_t bit = 0;  ///< shared/side_bits.h
+};
+/// Returns the sides in the order -x, +x, -z, +z.
+std::array<WaterSide, 4> sidesOf(const core::WaveScene& wave);
 
 /// Returns whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with
 /// walls under the 5-point stencil.

@@ -1,13 +1,18 @@
-// Lays out another number of particles in moving water: a new lattice that takes over the motion of the old particles.
+// Lays out particles at the start, and another number of them in moving water: a new lattice that takes over the motion
+// of the old particles.
 #pragma once
 
 #include <vector>
 
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
-#include <spindrift/sim_state/state_copy.h>
+#include <spindrift/sim_state/carried_state.h>
 
 namespace spindrift::sim {
+
+/// Returns the starting positions, a lattice at rest density with a little seeded jitter: 4 floats per particle,
+/// position [m] and id, layer by layer from below. The same on every machine for a given seed.
+std::vector<float> startingPositions(const core::Scene& scene, const ParticleLayout& layout);
 
 /// Positions and velocities, 4 floats per particle (x, y, z, id; x, y, z, foam), as in device memory.
 struct RelaidParticles {

@@ -8,7 +8,6 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_state/carried_state.h>
-#include <spindrift/sim_state/state_copy.h>
 
 namespace spindrift::sim {
 

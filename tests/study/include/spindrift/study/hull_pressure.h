@@ -1,9 +1,9 @@
-// The pressure of a boat's hull on the water, as shaders/bodies/boat.glsl computes it, for tests and studies.
+// The pressure of a boat's hull on the water, as shaders/bodies/boat.glsl computes it.
 #pragma once
 
 #include <spindrift/core/scene.h>
 
-namespace spindrift::sim {
+namespace spindrift::study {
 
 /// head(a, b) = peak exp(-(a/half_length)^4 - (b/half_beam)^4), a along the hull and b across from its centre, cut off
 /// at HULL_REACH half lengths and half beams (shaders/shared/boats.h). It integrates to the volume that the boat
@@ -22,4 +22,4 @@ struct HullPressure {
 /// three.
 HullPressure hullPressure(const core::Boat& boat, double cell_m);
 
-}  // namespace spindrift::sim
+}  // namespace spindrift::study

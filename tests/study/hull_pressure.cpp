@@ -3,9 +3,9 @@
 
 #include <shared/boats.h>
 
-#include <spindrift/sim_setup/hull_pressure.h>
+#include <spindrift/study/hull_pressure.h>
 
-namespace spindrift::sim {
+namespace spindrift::study {
 namespace {
 
 /// Half of the integral of exp(-q^4): Gamma(5/4).
@@ -47,4 +47,4 @@ double HullPressure::spectrum_m3(double k_along_radpm, double k_across_radpm) co
          transform(k_across_radpm * half_beam_m);
 }
 
-}  // namespace spindrift::sim
+}  // namespace spindrift::study
