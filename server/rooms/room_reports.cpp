@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/rooms/room_reports.h>
+#include <spindrift/water/water_state.h>
 
 namespace spindrift::rooms {
 namespace {

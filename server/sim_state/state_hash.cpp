@@ -13,12 +13,20 @@ namespace {
 
 /// 64-bit FNV-1a over 32-bit words. Visits every field of a plain struct, so that none can be forgotten.
 class Hash {
+  /// Fields of core::BreakingWave before width_m.
+  static constexpr std::size_t kUnpaddledFields = 6;
+
  public:
   template <typename T>
   void operator()(const T& value) {
     if constexpr (std::is_same_v<T, Effects>) {
       (*this)(value.active());
       if (const auto& strokes = value.strokes().active(); !strokes.empty()) (*this)(strokes);
+    } else if constexpr (std::is_same_v<T, core::BreakingWave>) {
+      // Waves without a paddle have the hash that they had before there were paddles.
+      boost::pfr::for_each_field(value, [this, &value](const auto& field, std::size_t k) {
+        if (value.width_m > 0.0 || k < kUnpaddledFields) (*this)(field);
+      });
     } else if constexpr (std::is_same_v<T, double>) {
       add(std::bit_cast<std::uint64_t>(value));
     } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {

@@ -1,4 +1,5 @@
-// Fingers in the water, in Chromium: a drag draws and everybody sees whose it is; the right button and two fingers turn the view.
+// Tools in the water, in Chromium: a drag draws and everybody sees whose it is; the right button and two fingers turn the view; paddle,
+// splash and rain do what they say.
 import assert from "node:assert/strict";
 import { existsSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
@@ -60,8 +61,8 @@ describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 },
   it("tells a first visitor, once, what a drag does", async () => {
     const hint = desk.getByTestId("hint");
     assert.ok(await hint.isVisible());
-    assert.match(await hint.textContent(), /Drag on the water to draw in it; the right button turns the view/);
-    assert.match(await phone.getByTestId("hint").textContent(), /two fingers turn the view/);
+    assert.match(await hint.textContent(), /Drag to draw in the water; tap for a splash. The right button turns the view/);
+    assert.match(await phone.getByTestId("hint").textContent(), /Two fingers turn the view/);
   });
 
   it("draws with the mouse, at once on one's own screen, and shows the other whose finger it is", async () => {
@@ -116,6 +117,54 @@ describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 },
     assert.equal(turned.dents, 0);
     assert.equal(await desk.evaluate(() => localStorage.getItem("spindrift.drag")), "turn");
     await desk.getByTestId("drag").selectOption("draw");
+  });
+
+  it("says what the paddle does, outlines its wave while it is dragged, and sends it", async () => {
+    const { lastAck } = await waitForStill(desk);
+    await desk.getByTestId("tool-paddle").click();
+    assert.match(await desk.getByTestId("hint").textContent(), /Drag to send a wave that way/);
+    assert.equal(await desk.getByTestId("tool-paddle").getAttribute("aria-pressed"), "true");
+    await drag(desk, [[-1, 0], [0, 0], [1, 0]]);
+    const outline = desk.locator(".tool-preview path");
+    await desk.waitForFunction(() => (document.querySelector(".tool-preview path").getAttribute("d") ?? "").split("M").length === 4, undefined, { timeout: WAIT_MS });
+    await desk.mouse.up();
+    await waitFor(desk, "the wave to be taken", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
+    assert.match(await desk.getByTestId("toast").textContent(), /Paddle: applied/);
+    await waitFor(phone, "the wave in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.03);
+    await desk.waitForFunction(() => document.querySelector(".tool-preview path").getAttribute("d") === "", undefined, { timeout: WAIT_MS });
+    assert.ok(await outline.isHidden());
+  });
+
+  it("makes a splash larger the longer it is held", async () => {
+    const deepest = async (heldMs) => {
+      await waitForStill(desk);
+      await drag(desk, [[0, 0]]);
+      await sleep(heldMs);
+      await desk.mouse.up();
+      let lowestM = 0;
+      for (const endMs = Date.now() + 1500; Date.now() < endMs; await sleep(20)) {
+        const { minElevationM } = await desk.evaluate(() => window.spindrift.stats());
+        lowestM = Math.min(lowestM, minElevationM);
+      }
+      return lowestM;
+    };
+    await desk.keyboard.press("2");
+    assert.equal(await desk.getByTestId("tool-splash").getAttribute("aria-pressed"), "true");
+    const tapped = await deepest(50);
+    assert.ok(tapped < -0.05, `a tap pressed ${tapped} m`);
+    const held = await deepest(2000);
+    assert.ok(held < 1.3 * tapped, `held ${held} m, tapped ${tapped} m`);
+  });
+
+  it("lets it rain for a while where one taps, in everybody's water", async () => {
+    await waitForStill(phone);
+    await phone.getByTestId("tool-rain").tap();
+    const [xPx, yPx] = await pixelOf(phone, 0.5, 0);
+    await phone.touchscreen.tap(xPx, yPx);
+    await desk.locator(".finger-tags div").waitFor({ timeout: WAIT_MS });
+    await waitFor(desk, "drops", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.01);
+    await desk.locator(".finger-tags div").waitFor({ state: "detached", timeout: WAIT_MS });
+    await phone.getByTestId("tool-finger").tap();
   });
 
   it("takes each finger of a touch for itself, and two that come down together for the view", async () => {

@@ -1,8 +1,8 @@
 // Sets of levels, and what the demand by levels means for the data of a frame.
 #include <gtest/gtest.h>
 
-#include <spindrift/core/level.h>
 #include <spindrift/core/demand_table.h>
+#include <spindrift/core/level.h>
 
 namespace spindrift::core {
 namespace {

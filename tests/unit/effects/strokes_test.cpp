@@ -270,7 +270,9 @@ TEST(Strokes, ToolsAtOnePositionDoNotWeakenEachOther) {
   const auto pressed_m = [](bool with_rain) {
     Strokes strokes;
     EXPECT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {1.0, 0, 0, 1}}, true)));
-    if (with_rain) EXPECT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {1.0, 0, 0, 1}}, true, 2, 7, StrokeTool::kRain)));
+    if (with_rain) {
+      EXPECT_TRUE(strokes.add(part({{0.0, 0, 0, 1}, {1.0, 0, 0, 1}}, true, 2, 7, StrokeTool::kRain)));
+    }
     for (int k = 0; k < 50; ++k) (void)stepOf(strokes);
     return strokes.active().front().level_ratio;
   };

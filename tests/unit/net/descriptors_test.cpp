@@ -1,7 +1,7 @@
-#include "connection_set.h"
-
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+
+#include "connection_set.h"
 
 namespace spindrift::net {
 namespace {

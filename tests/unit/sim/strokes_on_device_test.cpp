@@ -192,7 +192,7 @@ TEST_P(StrokesOnDevice, PaddleSendsItsWaveInItsDirection) {
     behind_m = std::max(behind_m, at(state, -3.2, 0.5));
     beside_m = std::max(beside_m, at(state, -1.0, -3.0));
   }
-  EXPECT_GT(ahead_m, 0.05) << "of 0.1 m";
+  EXPECT_GT(ahead_m, 0.03) << "of 0.1 m; dispersion spreads it";
   EXPECT_LT(behind_m, 0.5 * ahead_m);
   EXPECT_LT(beside_m, 0.5 * ahead_m);
 }

@@ -57,7 +57,7 @@ export class StrokeSender {
     this.timer ??= this.world.setTimer(() => this.flush(), this.intervalMs);
   }
 
-  /** Sends a stroke that stays at a place for a while. */
+  /** Sends a stroke that stays where it is for a while. */
   stay({ xM, zM }: { xM: number; zM: number }, size: StrokeSize, forS: number, pressureRatio: number): void {
     const points = [0, forS].map((timeS) => ({ timeS, xM, zM, pressureRatio }));
     this.send({ strokeId: this.nextId++, points, ends: true, ...size });
