@@ -120,6 +120,7 @@ export class PointerHands {
     const isTap = this.taps.released(sampleOf(event));
     const hand = this.hands.get(event.pointerId);
     this.letGo(event);
+    if (event.pointerType === "mouse") this.hover = event;
     if (hand) return this.use(hand, isTap, event.timeStamp - hand.down.timeStamp);
     const place = isTap ? this.placeUnder(event) : undefined;
     if (place) this.tap(place, this.app.tools.tool, this.app.tools.scale);

@@ -71,7 +71,7 @@ struct DeviceInfo {
 /// unchanged.
 std::vector<DeviceInfo> listDevices();
 
-/// What `spindrift info` prints of the devices.
+/// The devices as `spindrift info` prints them.
 struct GpuInfo {
   std::string egl_client_version;    ///< libEGL's client version without a display; empty when not available
   std::vector<DeviceInfo> devices;   ///< listDevices()
