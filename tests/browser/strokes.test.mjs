@@ -126,13 +126,12 @@ describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 },
     assert.equal(await desk.getByTestId("tool-paddle").getAttribute("aria-pressed"), "true");
     await drag(desk, [[-1, 0], [0, 0], [1, 0]]);
     const outline = desk.locator(".tool-preview path");
-    await desk.waitForFunction(() => (document.querySelector(".tool-preview path").getAttribute("d") ?? "").split("M").length === 4, undefined, { timeout: WAIT_MS });
+    await desk.waitForFunction(() => document.querySelector(".tool-preview path")?.getAttribute("d").split("M").length === 4, undefined, { timeout: WAIT_MS });
     await desk.mouse.up();
     await waitFor(desk, "the wave to be taken", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
     assert.match(await desk.getByTestId("toast").textContent(), /Paddle: applied/);
     await waitFor(phone, "the wave in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.03);
-    await desk.waitForFunction(() => document.querySelector(".tool-preview path").getAttribute("d") === "", undefined, { timeout: WAIT_MS });
-    assert.ok(await outline.isHidden());
+    await outline.waitFor({ state: "detached", timeout: WAIT_MS });
   });
 
   it("makes a splash larger the longer it is held", async () => {
@@ -162,6 +161,7 @@ describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 },
     const [xPx, yPx] = await pixelOf(phone, 0.5, 0);
     await phone.touchscreen.tap(xPx, yPx);
     await desk.locator(".finger-tags div").waitFor({ timeout: WAIT_MS });
+    await desk.locator(".tool-preview path").waitFor({ state: "attached", timeout: WAIT_MS });
     await waitFor(desk, "drops", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.01);
     await desk.locator(".finger-tags div").waitFor({ state: "detached", timeout: WAIT_MS });
     await phone.getByTestId("tool-finger").tap();

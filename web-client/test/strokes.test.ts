@@ -139,9 +139,9 @@ describe("LocalRipple", () => {
 
 describe("strokes of the server", () => {
   const bytes = (xM: number): ArrayBuffer => {
-    const message = create(ServerMessageSchema, { message: { case: "strokes", value: { timeS: 2, fingers: [{ personId: 3, strokeId: 4, xM, zM: 1, radiusM: 0.5 }] } } });
+    const message = create(ServerMessageSchema, { message: { case: "strokes", value: { timeS: 2, fingers: [{ personId: 3, strokeId: 4, xM, zM: 1, radiusM: 0.5, tool: StrokeTool.RAIN }] } } });
     return toBinary(ServerMessageSchema, message).slice().buffer;
   };
-  it("are read", () => expect(parse(bytes(1.5))).toEqual({ kind: "strokes", fingers: [{ personId: 3, strokeId: 4, xM: 1.5, zM: 1 }] }));
+  it("are read", () => expect(parse(bytes(1.5))).toEqual({ kind: "strokes", fingers: [{ personId: 3, strokeId: 4, xM: 1.5, zM: 1, radiusM: 0.5, tool: StrokeTool.RAIN }] }));
   it("are malformed with a number that is not finite", () => expect(parse(bytes(Number.NaN)).kind).toBe("malformed"));
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import type { EffectLimits } from "../src/ui/effect_limits";
-import { linesOf } from "../src/ui/tool_preview";
+import { linesOf, streaksOf } from "../src/ui/tool_preview";
 import { heldRatio, kTools, paddleWave, splashOf, strokeSize } from "../src/ui/tools";
 
 const kWater = { waterExtents: { sideM: 20, longM: 40, depthM: 2 } };
@@ -45,12 +45,16 @@ describe("tools", () => {
   });
 
   it("are outlined on the water: a closed circle; a paddle across the drag, with an arrow", () => {
-    const [circle] = linesOf({ kind: "disc", at: { xM: 3, zM: -1 }, radiusM: 2 });
+    const [circle] = linesOf({ kind: "disc", at: { xM: 3, zM: -1 }, radiusM: 2, color: "" });
     expect(circle!.at(-1)!.xM).toBeCloseTo(circle![0]!.xM, 9);
     for (const { xM, zM } of circle!) expect(Math.hypot(xM - 3, zM + 1)).toBeCloseTo(2, 9);
-    const [paddle, arrow] = linesOf({ kind: "paddle", from: { xM: 0, zM: 0 }, to: { xM: 2, zM: 0 }, widthM: 3 });
+    const [paddle, arrow] = linesOf({ kind: "paddle", from: { xM: 0, zM: 0 }, to: { xM: 2, zM: 0 }, widthM: 3, color: "" });
     expect(paddle).toEqual([{ xM: 2, zM: 1.5 * -1 }, { xM: 2, zM: 1.5 }]);
     expect(arrow).toEqual([{ xM: 0, zM: 0 }, { xM: 2, zM: 0 }]);
-    expect(linesOf({ kind: "paddle", from: { xM: 1, zM: 1 }, to: { xM: 1, zM: 1 }, widthM: 3 })).toEqual([]);
+    expect(linesOf({ kind: "paddle", from: { xM: 1, zM: 1 }, to: { xM: 1, zM: 1 }, widthM: 3, color: "" })).toEqual([]);
+    for (const [low, high] of streaksOf({ at: { xM: 3, zM: -1 }, radiusM: 2 }, Math.random)) {
+      expect(Math.hypot(low!.xM - 3, low!.zM + 1)).toBeLessThanOrEqual(2);
+      expect(high).toEqual({ ...low, aboveM: low!.aboveM! + 0.5 });
+    }
   });
 });

@@ -246,7 +246,8 @@ export class App {
   private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
     this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
-    this.preview.update(this.mayDraw ? this.outline() : undefined, scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
+    const own = this.mayDraw ? this.outline() : undefined;
+    this.preview.update([...(own ? [own] : []), ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 

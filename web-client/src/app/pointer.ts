@@ -13,6 +13,7 @@ import { nowS } from "./picture_clock";
 
 /** Two fingers that come down within this time are a gesture of the camera. */
 const kTogetherMs = 150;
+const kOutlineColor = "#ffffff";
 
 /** A pointer that began on the water. */
 interface Hand {
@@ -197,11 +198,11 @@ export class PointerHands {
     if (!at || !app.entered || tool.name === "finger") return undefined;
     if (tool.name === "paddle") {
       const widthM = paddleWidthM(app.entered.waterExtents.sideM, scale.sizeRatio);
-      return hand && { kind: "paddle", from: hand.from, to: at, widthM };
+      return hand && { kind: "paddle", from: hand.from, to: at, widthM, color: kOutlineColor };
     }
     const heldS = hand ? (performance.now() - hand.down.timeStamp - kTapMs / 2) / 1000 : 0;
     const radiusM = strokeSize(tool, app.entered, scale)?.radiusM ?? app.effects.splashRadiusM * scale.sizeRatio * heldRatio(heldS);
-    return { kind: "disc", at, radiusM };
+    return { kind: "disc", at, radiusM, color: kOutlineColor };
   }
 
   private placeUnder(event: PointerEvent): WaterPlace | undefined {

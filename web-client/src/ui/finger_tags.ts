@@ -5,9 +5,11 @@ import { Matrix4, type PerspectiveCamera } from "three";
 
 import type { PersonInfo } from "../codec/people";
 import type { FingerInfo } from "../codec/strokes";
+import { StrokeTool } from "../gen/spindrift/v1/wire_pb";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
 import { tagPlace } from "./tag_place";
+import type { Outline } from "./tool_preview";
 
 /** A name is shown from then on, so that short strokes do not flicker. */
 const kNameAfterS = 1;
@@ -42,6 +44,17 @@ export class FingerTags {
     this.fingers = [];
   }
 
+  /** The discs on which everybody's tools act now. */
+  discs(): Outline[] {
+    return this.fingers
+      .filter(({ tool }) => tool === StrokeTool.RAIN || tool === StrokeTool.CALM)
+      .map(({ tool, personId, xM, zM, radiusM }) => ({ kind: tool === StrokeTool.RAIN ? "rain" : "disc", at: { xM, zM }, radiusM, color: this.colorOf(personId) }));
+  }
+
+  private colorOf(personId: number): string {
+    return this.people.get(personId)?.color ?? "#ffffff";
+  }
+
   /** Called for each picture. `own`: where one's own fingers are now; `ownId`: whose the list's are left out. */
   update(camera: PerspectiveCamera, own: ReadonlyMap<number, { xM: number; zM: number }>, ownId: number, heightAtM: (xM: number, zM: number) => number, covered: readonly PixelRect[], nowS: number): void {
     this.seen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
@@ -51,10 +64,9 @@ export class FingerTags {
       if (!place) return;
       drawn.add(key);
       const ring = this.ringOf(key, nowS);
-      const person = this.people.get(personId);
-      ring.element.style.setProperty("--owner", person?.color ?? "#ffffff");
+      ring.element.style.setProperty("--owner", this.colorOf(personId));
       ring.element.style.transform = `translate(${place.xPx.toFixed(1)}px, ${place.yPx.toFixed(1)}px)`;
-      setText(ring.name, named && nowS - ring.sinceS >= kNameAfterS ? (person?.name ?? "") : "");
+      setText(ring.name, named && nowS - ring.sinceS >= kNameAfterS ? (this.people.get(personId)?.name ?? "") : "");
     };
     for (const [pointerId, { xM, zM }] of own) show(`own ${pointerId}`, ownId, xM, zM, false);
     for (const { personId, strokeId, xM, zM } of this.fingers) if (personId !== ownId || ownId === 0) show(`${personId} ${strokeId}`, personId, xM, zM, true);
