@@ -167,6 +167,44 @@ describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 },
     await phone.getByTestId("tool-finger").tap();
   });
 
+  it("works without a pointer: Enter in the middle of the picture, a gamepad where its cursor is", async () => {
+    const acked = async (what, act) => {
+      const { lastAck } = await waitForStill(desk);
+      await act();
+      await waitFor(desk, what, (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
+      return desk.getByTestId("toast").textContent();
+    };
+    await desk.getByTestId("tool-finger").click();
+    await desk.locator("#view").focus();
+    const middle = await acked("the splash of a key", () => desk.keyboard.press("Enter"));
+    assert.match(middle, /Splash at/);
+    await desk.keyboard.press("3");
+    assert.match(await acked("the paddle of a key", () => desk.keyboard.press("Enter")), /Paddle: applied/);
+
+    await desk.evaluate(() => {
+      const pad = { mapping: "standard", axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false })) };
+      navigator.getGamepads = () => [pad];
+      window.pad = pad;
+    });
+    const hold = (button, pressed) => desk.evaluate(([k, down]) => (window.pad.buttons[k].pressed = down), [button, pressed]);
+    const press = async (button) => {
+      await hold(button, true);
+      await sleep(300);
+      await hold(button, false);
+      await sleep(200);
+    };
+    await press(4);
+    await press(4);
+    assert.equal(await desk.getByTestId("tool-finger").getAttribute("aria-pressed"), "true");
+    await desk.evaluate(() => (window.pad.axes[0] = 0.5));
+    await sleep(500);
+    await desk.evaluate(() => (window.pad.axes[0] = 0));
+    const moved = await acked("the splash of the gamepad", () => press(0));
+    assert.match(moved, /Splash at/);
+    assert.notEqual(moved.match(/at ([-\d.]+)/)[1], middle.match(/at ([-\d.]+)/)[1], "the cursor moved");
+    await desk.evaluate(() => (navigator.getGamepads = () => []));
+  });
+
   it("takes each finger of a touch for itself, and two that come down together for the view", async () => {
     const { view } = await waitForStill(phone);
     const touch = await phone.context().newCDPSession(phone);

@@ -31,6 +31,7 @@ import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
+import type { GamepadTools } from "./virtual_pointer";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
@@ -82,6 +83,8 @@ export class App {
   private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
   entered: GreetingInfo | undefined;
+  /** Set by input.ts. */
+  gamepad: GamepadTools | undefined;
   /** What the tool at the pointer acts on; set by pointer.ts. */
   outline: () => Outline | undefined = () => undefined;
 
@@ -90,7 +93,10 @@ export class App {
     const quality = { first: firstTier(isSoftwareRenderer, isHandheld), choice: chooseQuality(location.search), texelType };
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
-      update: (atS) => this.boats.update(atS),
+      update: (atS) => {
+        this.gamepad?.update(atS);
+        return this.boats.update(atS);
+      },
       drawn: (atS) => {
         this.showTags(atS);
         this.looks.update(atS);

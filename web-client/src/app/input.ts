@@ -2,10 +2,13 @@
 import { byId, isTyping } from "../ui/dom";
 import type { App } from "./app";
 import { PointerHands } from "./pointer";
+import { connectKeyboardTools, GamepadTools } from "./virtual_pointer";
 
 export function connectInput(app: App): void {
   connectButtons(app);
   connectHelmKeys(app);
+  connectKeyboardTools(app.display.canvas, () => app.tools.tool.name === "paddle");
+  app.gamepad = new GamepadTools(app);
   connectWindow(app, new PointerHands(app));
 }
 

@@ -87,7 +87,8 @@ export class PointerHands {
       return;
     }
     app.display.views.takesPointers = false;
-    app.display.canvas.setPointerCapture(event.pointerId);
+    // Those of keys and gamepads exist for this page only.
+    if (event.isTrusted) app.display.canvas.setPointerCapture(event.pointerId);
     const { tool } = app.tools;
     const scale = { ...app.tools.scale };
     const size = strokeSize(tool, app.entered!, scale);

@@ -60,6 +60,13 @@ export class ToolBar {
     else if (!this.isGreeted) this.greet();
   }
 
+  /** Chooses a tool so many places further in the row, among those that may be used. */
+  step(count: number): void {
+    const names = kTools.map(({ name }) => name).filter((name) => !this.buttons.get(name)!.hidden);
+    const at = names.indexOf(this.current.name);
+    if (!this.bar.hidden) this.choose(names[(at + count + names.length) % names.length]!, true);
+  }
+
   /** The tool was used: no hint is needed any more. */
   wasUsed(): void {
     this.hint.hidden = true;

@@ -1,0 +1,118 @@
+// The tools without a pointer: Enter or the space bar on the water, and a gamepad. Both act as a pointer of their own would.
+//
+// Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
+// would; LB and RB choose the tool. In the boat's view the stick and the cross are the helm.
+import type { App } from "./app";
+
+/** Far from the ids that browsers give. */
+const kKeyboardId = -2;
+const kGamepadId = -3;
+/** A paddle that is used by a key sends its wave away from the viewer: along this share of the picture's height. */
+const kPushShare = 0.12;
+/** Below this a stick counts as released. */
+const kDeadZone = 0.15;
+/** Speed of the cursor with the stick at its end, in heights of the picture per second. */
+const kCursorPerS = 0.6;
+const kLongestStepS = 0.1;
+
+const kButtons = { use: 0, previousTool: 4, nextTool: 5, up: 12, down: 13, left: 14, right: 15 };
+/** Keys of the helm (ui/helm.ts). */
+const kHelm = { up: "ArrowUp", down: "ArrowDown", left: "ArrowLeft", right: "ArrowRight" } as const;
+
+/** Sends the events of a pointer at a position of the window. */
+class VirtualPointer {
+  isDown = false;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly pointerId: number,
+  ) {}
+
+  press(xPx: number, yPx: number): void {
+    if (this.isDown) return;
+    this.isDown = true;
+    this.send("pointerdown", xPx, yPx);
+  }
+
+  move(xPx: number, yPx: number): void {
+    this.send("pointermove", xPx, yPx);
+  }
+
+  release(xPx: number, yPx: number): void {
+    if (!this.isDown) return;
+    this.isDown = false;
+    this.send("pointerup", xPx, yPx);
+  }
+
+  private send(type: string, clientX: number, clientY: number): void {
+    const buttons = this.isDown ? 1 : 0;
+    this.canvas.dispatchEvent(new PointerEvent(type, { pointerId: this.pointerId, pointerType: "mouse", button: 0, buttons, clientX, clientY, bubbles: true }));
+  }
+}
+
+/** `pushes`: the tool needs a drag. */
+export function connectKeyboardTools(canvas: HTMLCanvasElement, pushes: () => boolean): void {
+  const pointer = new VirtualPointer(canvas, kKeyboardId);
+  const middle = (): [number, number] => [window.innerWidth / 2, window.innerHeight / 2];
+  const isUse = ({ code, ctrlKey, altKey, metaKey }: KeyboardEvent): boolean => (code === "Enter" || code === "Space") && !ctrlKey && !altKey && !metaKey;
+  canvas.addEventListener("keydown", (event) => {
+    if (!isUse(event)) return;
+    event.preventDefault();
+    pointer.press(...middle());
+  });
+  const release = (): void => {
+    const [xPx, yPx] = middle();
+    const toPx = pushes() ? yPx - kPushShare * window.innerHeight : yPx;
+    if (pointer.isDown && toPx !== yPx) pointer.move(xPx, toPx);
+    pointer.release(xPx, toPx);
+  };
+  canvas.addEventListener("keyup", (event) => isUse(event) && release());
+  canvas.addEventListener("blur", release);
+}
+
+export class GamepadTools {
+  private readonly pointer: VirtualPointer;
+  private xPx = window.innerWidth / 2;
+  private yPx = window.innerHeight / 2;
+  private held = new Set<number>();
+  private helm = new Set<keyof typeof kHelm>();
+  private atS = NaN;
+
+  constructor(private readonly app: App) {
+    this.pointer = new VirtualPointer(app.display.canvas, kGamepadId);
+  }
+
+  /** Called for each picture. */
+  update(nowS: number): void {
+    const pad = navigator.getGamepads().find((each) => each?.mapping === "standard");
+    const stepS = Math.min(Math.max(nowS - this.atS, 0), kLongestStepS) || 0;
+    this.atS = nowS;
+    if (!pad) return this.pointer.release(this.xPx, this.yPx);
+    const pressed = new Set(pad.buttons.flatMap((button, k) => (button.pressed ? [k] : [])));
+    const isNew = (button: number): boolean => pressed.has(button) && !this.held.has(button);
+    const [x = 0, y = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));
+    const { app } = this;
+    if (isNew(kButtons.previousTool)) app.tools.step(-1);
+    if (isNew(kButtons.nextTool)) app.tools.step(1);
+    const isHelm = app.display.views.view === "boat";
+    this.steer(isHelm ? { up: y < 0 || pressed.has(kButtons.up), down: y > 0 || pressed.has(kButtons.down), left: x < 0 || pressed.has(kButtons.left), right: x > 0 || pressed.has(kButtons.right) } : {});
+    if (!isHelm && (x !== 0 || y !== 0)) {
+      const stepPx = kCursorPerS * stepS * window.innerHeight;
+      this.xPx = Math.min(Math.max(this.xPx + x * stepPx, 0), window.innerWidth - 1);
+      this.yPx = Math.min(Math.max(this.yPx + y * stepPx, 0), window.innerHeight - 1);
+      this.pointer.move(this.xPx, this.yPx);
+    }
+    if (pressed.has(kButtons.use)) this.pointer.press(this.xPx, this.yPx);
+    else this.pointer.release(this.xPx, this.yPx);
+    this.held = pressed;
+  }
+
+  private steer(wanted: Partial<Record<keyof typeof kHelm, boolean>>): void {
+    for (const key of Object.keys(kHelm) as (keyof typeof kHelm)[]) {
+      if (wanted[key] === true === this.helm.has(key)) continue;
+      this.app.boats.key(kHelm[key], wanted[key] === true);
+      if (wanted[key]) this.helm.add(key);
+      else this.helm.delete(key);
+    }
+  }
+}
