@@ -129,7 +129,6 @@ void rain(const Stroke& stroke, double level, const StrokeWater& water, shared::
 }
 
 void calm(const Stroke& stroke, double level, const StrokeWater& water, shared::EventUniforms& out) {
-  if (out.calm_count == MAX_CALMS) return;
   out.calms[out.calm_count++] = {static_cast<float>(stroke.x_m), static_cast<float>(stroke.z_m),
                                  static_cast<float>(stroke.radius_m),
                                  static_cast<float>(level * (1.0 - std::exp(-kCalmPerS * water.dt_s)))};
@@ -175,7 +174,10 @@ core::Result<void> Strokes::add(const StrokePart& part) {
 
 void Strokes::advance(const StrokeWater& water, shared::EventUniforms& out) {
   auto next = active_.begin();
-  for (; next != active_.end() && out.splash_count + kStepSplashMaxCount <= MAX_PRESSES; ++next) {
+  const auto hasRoom = [&] {
+    return out.splash_count + kStepSplashMaxCount <= MAX_PRESSES && out.calm_count < MAX_CALMS;
+  };
+  for (; next != active_.end() && hasRoom(); ++next) {
     Stroke& stroke = *next;
     const StrokePoint at = play(stroke, water.dt_s);
     stroke.still_s += water.dt_s;
@@ -193,7 +195,7 @@ void Strokes::advance(const StrokeWater& water, shared::EventUniforms& out) {
     stroke.z_m = at.z_m;
     stroke.level_ratio = level;
     if (stroke.tool == StrokeTool::kRain) rain(stroke, level, water, out);
-    if (stroke.tool == StrokeTool::kCalm) calm(stroke, level, water, out);
+    if (stroke.tool == StrokeTool::kCalm && level > 0.0) calm(stroke, level, water, out);
   }
   std::rotate(active_.begin(), next, active_.end());  // the others come first in the next step
   std::erase_if(active_, [](const Stroke& stroke) {

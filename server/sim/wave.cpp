@@ -57,7 +57,7 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
     slope_ = create.pass("wave/shallow_slope.comp");
   }
   if (hasMakers(scene)) makers_ = std::make_unique<WaveMakers>(create, scene, layout);
-  if (disperses(scene))
+  if (disperses(scene) && !create.error())
     dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, layOutBasin(scene, layout), is_nonlinear_);
   if (create.error()) return;
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -255,13 +256,20 @@ TEST(Strokes, RainFallsWithinItsDiscAtItsRateAndRepeats) {
 TEST(Strokes, CalmSlowsTheFlowUnderItAndMovesNoWater) {
   Strokes strokes;
   for (std::uint32_t person = 0; person < 20; ++person)
-    ASSERT_TRUE(strokes.add(part(line(0.0, 1.0), false, 1, person, StrokeTool::kCalm)));
+    ASSERT_TRUE(strokes.add(
+        part({{0.0, 0, double(person), 1}, {2.0, 1, double(person), 1}}, false, 1, person, StrokeTool::kCalm)));
   shared::EventUniforms out{};
   for (int k = 0; k < 50; ++k) {
     out = stepOf(strokes);
     ASSERT_EQ(out.splash_count, 0U);
     ASSERT_EQ(out.calm_count, static_cast<std::uint32_t>(MAX_CALMS));
   }
+  std::vector<int> turns(20);
+  for (int k = 0; k < 40; ++k) {
+    out = stepOf(strokes);
+    for (std::uint32_t c = 0; c < out.calm_count; ++c) ++turns[static_cast<std::size_t>(out.calms[c].z_m + 0.5F)];
+  }
+  EXPECT_GE(std::ranges::min(turns), 20) << "20 discs take turns";
   EXPECT_GT(out.calms[0].drag_ratio, 0.0F);
   EXPECT_LE(out.calms[0].drag_ratio, 0.1F) << "10 per second, a step of 10 ms";
 }
