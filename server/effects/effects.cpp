@@ -91,7 +91,8 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
   u.back_m = static_cast<float>(back_m);
   const bool group = wave.side == core::Side::kDirection;
   const bool paddled = group && wave.width_m > 0.0;
-  const double group_m = paddled ? wave.width_m / 2 : kGroupLateralShare * std::min(domain.side_x_m, domain.side_z_m);
+  const double group_m = paddled ? std::max(wave.width_m / 2, domain.cell_m)
+                                 : kGroupLateralShare * std::min(domain.side_x_m, domain.side_z_m);
   u.lateral_m = group ? static_cast<float>(group_m) : 0.0f;
   // A group also needs room for the trough behind it.
   const double inset_m = kCrestInset * (group ? 1.5 * (front_m + back_m) : back_m);
@@ -99,7 +100,7 @@ shared::EventUniform uniformOf(const core::BreakingWave& wave, double gain, doub
   const double side_m = group       ? std::min(domain.side_x_m, domain.side_z_m)
                         : dx != 0.0 ? domain.side_x_m
                                     : domain.side_z_m;
-  u.half_side_m = static_cast<float>(0.5 * side_m);
+  u.half_side_m = paddled ? 0.0f : static_cast<float>(0.5 * side_m);
   const double start_m = paddled ? 0.0 : -side_m / 2 + std::min(inset_m, 0.4 * side_m);
   if (paddled) {
     u.x_m = static_cast<float>(wave.x_m);
@@ -158,7 +159,7 @@ shared::EventUniforms Effects::advance(double time_s, const EffectDomain& domain
   }
   std::erase_if(active_, [&](const Active& a) { return time_s >= a.start_s + duration(a.effect); });
   out.press_begin = out.splash_count;
-  strokes_.advance({domain.dt_s, domain.cell_m, domain.speed_mps * domain.speed_mps / kStandardGravity_mps2}, out);
+  strokes_.advance({domain.dt_s, domain.cell_m}, out);
   const std::span splashes(out.splashes, out.splash_count);
   std::ranges::sort(splashes.first(out.press_begin), {}, &shared::EventUniform::z_m);
   std::ranges::sort(splashes.subspan(out.press_begin), {}, &shared::EventUniform::z_m);

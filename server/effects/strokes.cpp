@@ -20,8 +20,8 @@ constexpr double kPress_s = 0.12;
 /// A stroke moves less water where the surface is farther than this many times its depth from its rest, and none from
 /// twice that on.
 constexpr double kHighestDepths = 2.0;
-/// The same for drops, in depths of the water: rain falls on waves, too.
-constexpr double kRainHighestDepths = 0.25;
+/// The same for drops, in their radii: rain falls on waves, too.
+constexpr double kRainHighestRadii = 2.0;
 
 /// Drops per second under a cloud at full pressure, and their largest depth as a share of their radius.
 constexpr double kRainPerS = 90.0;
@@ -110,7 +110,9 @@ void moveDent(Stroke& stroke, const StrokePoint& at, double level, shared::Event
 
 /// Lets the drops of a step fall, evenly over the cloud's disc. `level`: share of the full rain.
 void rain(const Stroke& stroke, double level, const StrokeWater& water, shared::EventUniforms& out) {
+  // The play clock stands while points are missing; still_s grows in each step.
   core::SplitMix64 random(std::bit_cast<std::uint64_t>(stroke.play_s) ^
+                          std::rotl(std::bit_cast<std::uint64_t>(stroke.still_s), 32) ^
                           (std::uint64_t{stroke.person_id} << 32 | stroke.stroke_id) * 0x2545f4914f6cdd1dull);
   const double expected = std::min(level * kRainPerS * water.dt_s, double{kStepSplashMaxCount});
   auto count = static_cast<std::uint32_t>(expected);
@@ -123,7 +125,7 @@ void rain(const Stroke& stroke, double level, const StrokeWater& water, shared::
            .z_m = stroke.z_m + away_m * std::sin(angle),
            .radius_m = radius_m,
            .depth_m = std::min(stroke.depth_m, kDropDepthRadii * radius_m),
-           .highest_m = kRainHighestDepths * water.depth_m},
+           .highest_m = kRainHighestRadii * radius_m},
           0.5 + 0.5 * random.unit(), out);
   }
 }
@@ -137,9 +139,10 @@ void calm(const Stroke& stroke, double level, const StrokeWater& water, shared::
 }  // namespace
 
 core::Result<void> Strokes::add(const StrokePart& part) {
-  const auto isOfPerson = [&](const Stroke& stroke) { return stroke.person_id == part.person_id && !stroke.is_lifted; };
-  auto stroke = std::ranges::find_if(
-      active_, [&](const Stroke& each) { return isOfPerson(each) && each.stroke_id == part.stroke_id; });
+  const auto isOfPerson = [&](const Stroke& stroke) { return stroke.person_id == part.person_id; };
+  auto stroke = std::ranges::find_if(active_, [&](const Stroke& each) {
+    return isOfPerson(each) && !each.is_lifted && each.stroke_id == part.stroke_id;
+  });
   if (stroke == active_.end()) {
     if (part.points.empty()) return {};  // the end of a stroke that has ended by itself
     const auto own_count = static_cast<std::size_t>(std::ranges::count_if(active_, isOfPerson));

@@ -56,9 +56,10 @@ void Audit::command(const rooms::Command& command, access::AuditEvent event) {
   event.person_id = sender.person_id;
   event.session_id = sender.session_id;
   event.peer = sender.details->peer;
-  // A flood of operators' commands ends here as BUSY.
-  const bool anybody_can = !is_operator || event.reason == nameOf(v1::REJECT_REASON_BUSY);
-  if (anybody_can)
+  // A flood of operators' commands ends here as BUSY. A stroke is 30 messages per second.
+  const bool is_frequent =
+      !is_operator || command.message.has_stroke() || event.reason == nameOf(v1::REJECT_REASON_BUSY);
+  if (is_frequent)
     writeRarely(std::move(event));
   else
     write(event);

@@ -13,8 +13,15 @@ namespace {
 
 /// 64-bit FNV-1a over 32-bit words. Visits every field of a plain struct, so that none can be forgotten.
 class Hash {
-  /// Fields of core::BreakingWave before width_m.
-  static constexpr std::size_t kUnpaddledFields = 6;
+  /// Fields that count only where they are used, so that states without them keep the hash that they had before.
+  template <typename T>
+  static bool omits(const T&, std::size_t) {
+    return false;
+  }
+  static bool omits(const core::BreakingWave& wave, std::size_t field) { return wave.width_m <= 0.0 && field >= 6; }
+  static bool omits(const Stroke& stroke, std::size_t field) {
+    return stroke.tool == StrokeTool::kFinger && field == 2;
+  }
 
  public:
   template <typename T>
@@ -22,11 +29,6 @@ class Hash {
     if constexpr (std::is_same_v<T, Effects>) {
       (*this)(value.active());
       if (const auto& strokes = value.strokes().active(); !strokes.empty()) (*this)(strokes);
-    } else if constexpr (std::is_same_v<T, core::BreakingWave>) {
-      // Waves without a paddle have the hash that they had before there were paddles.
-      boost::pfr::for_each_field(value, [this, &value](const auto& field, std::size_t k) {
-        if (value.width_m > 0.0 || k < kUnpaddledFields) (*this)(field);
-      });
     } else if constexpr (std::is_same_v<T, double>) {
       add(std::bit_cast<std::uint64_t>(value));
     } else if constexpr (std::is_integral_v<T> || std::is_enum_v<T>) {
@@ -41,7 +43,9 @@ class Hash {
       (*this)(value.index());
       std::visit([this](const auto& held) { (*this)(held); }, value);
     } else {
-      boost::pfr::for_each_field(value, [this](const auto& field) { (*this)(field); });
+      boost::pfr::for_each_field(value, [&](const auto& field, std::size_t k) {
+        if (!omits(value, k)) (*this)(field);
+      });
     }
   }
   void operator()(std::uint32_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ull; }

@@ -13,8 +13,8 @@
 // one step, and others in the next: a block of uniforms holds 16 KiB.
 #define MAX_MOVING_STROKES 64
 #define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_MOVING_STROKES)
-// Calmed discs of a step: those of MAX_CALMS strokes; others take turns.
-#define MAX_CALMS 16
+// Calmed discs of a step: those of MAX_CALMS strokes; others take turns. As many as fit into the 16 KiB.
+#define MAX_CALMS 62
 // A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
 #define SPLASH_REACH 3.5f
 
@@ -35,7 +35,7 @@ struct EventUniform {
   float half_step_m;   // crest: distance travelled in half a step
   float speed_mps;     // crest: of the wave. splash: of the crown that it produces now; 0 for rain drops and strokes
   float depth_m;       // splash: full depth
-  float half_side_m;   // crest across the whole domain: half of the domain's side along its direction
+  float half_side_m;   // crest across the whole domain: half of the domain's side along its direction. 0: of a paddle
   float highest_m;     // stroke: it moves less water where the surface is farther than this from its rest; 0: no bound
   float unused;
 };

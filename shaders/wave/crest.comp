@@ -21,6 +21,12 @@ float keptFlow(vec2 p) {
   return 1.0 - drag_ratio;
 }
 
+/// Position in the frame of a crest: nearest to where a paddle starts it, across periodic sides.
+vec2 seenFrom(EventUniform e, vec2 p) {
+  const vec2 start = vec2(e.x_m, e.z_m);
+  return e.half_side_m == 0.0 ? start + acrossSides(p - start) : p;
+}
+
 void main() {
   for (uint k = gl_LocalInvocationIndex; k < crest_count; k += WAVE_GROUP_X * WAVE_GROUP_Y) {
     EventUniform e = crests[k];
@@ -43,15 +49,15 @@ void main() {
   for (uint k = 0u; k < crest_count; ++k) {
     EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    const vec2 displaced_m2 = passing(-vec2(e.direction_x * crestDisplacement(e, p + vec2(0.5 * cell_m, 0.0), ends[k].xy),
-                                            e.direction_z * crestDisplacement(e, p + vec2(0.0, 0.5 * cell_m), ends[k].xy)),
+    const vec2 displaced_m2 = passing(-vec2(e.direction_x * crestDisplacement(e, seenFrom(e, p + vec2(0.5 * cell_m, 0.0)), ends[k].xy),
+                                            e.direction_z * crestDisplacement(e, seenFrom(e, p + vec2(0.0, 0.5 * cell_m)), ends[k].xy)),
                                       shares);
     moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
     e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float at_x = crestElevation(e, p + vec2(0.5 * cell_m, 0.0), ends[k].zw);
-    const float at_z = crestElevation(e, p + vec2(0.0, 0.5 * cell_m), ends[k].zw);
-    const float at_corner = crestElevation(e, p + vec2(0.5 * cell_m), ends[k].zw);
+    const float at_x = crestElevation(e, seenFrom(e, p + vec2(0.5 * cell_m, 0.0)), ends[k].zw);
+    const float at_z = crestElevation(e, seenFrom(e, p + vec2(0.0, 0.5 * cell_m)), ends[k].zw);
+    const float at_corner = crestElevation(e, seenFrom(e, p + vec2(0.5 * cell_m)), ends[k].zw);
     flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
   }
   const float kept = keptFlow(p);

@@ -11,7 +11,7 @@ namespace spindrift::sim {
 namespace {
 
 constexpr double kStep_s = 0.01;
-constexpr StrokeWater kWater{.dt_s = kStep_s, .cell_m = 0.1, .depth_m = 1.0};
+constexpr StrokeWater kWater{.dt_s = kStep_s, .cell_m = 0.1};
 
 StrokePart part(std::vector<StrokePoint> points, bool ends = false, std::uint32_t stroke_id = 1,
                 std::uint32_t person_id = 7, StrokeTool tool = StrokeTool::kFinger) {
@@ -255,7 +255,7 @@ TEST(Strokes, RainFallsWithinItsDiscAtItsRateAndRepeats) {
 
 TEST(Strokes, CalmSlowsTheFlowUnderItAndMovesNoWater) {
   Strokes strokes;
-  for (std::uint32_t person = 0; person < 20; ++person)
+  for (std::uint32_t person = 0; person < 80; ++person)
     ASSERT_TRUE(strokes.add(
         part({{0.0, 0, double(person), 1}, {2.0, 1, double(person), 1}}, false, 1, person, StrokeTool::kCalm)));
   shared::EventUniforms out{};
@@ -264,12 +264,12 @@ TEST(Strokes, CalmSlowsTheFlowUnderItAndMovesNoWater) {
     ASSERT_EQ(out.splash_count, 0U);
     ASSERT_EQ(out.calm_count, static_cast<std::uint32_t>(MAX_CALMS));
   }
-  std::vector<int> turns(20);
+  std::vector<int> turns(80);
   for (int k = 0; k < 40; ++k) {
     out = stepOf(strokes);
     for (std::uint32_t c = 0; c < out.calm_count; ++c) ++turns[static_cast<std::size_t>(out.calms[c].z_m + 0.5F)];
   }
-  EXPECT_GE(std::ranges::min(turns), 20) << "20 discs take turns";
+  EXPECT_GE(std::ranges::min(turns), 20) << "80 discs take turns";
   EXPECT_GT(out.calms[0].drag_ratio, 0.0F);
   EXPECT_LE(out.calms[0].drag_ratio, 0.1F) << "10 per second, a step of 10 ms";
 }
@@ -285,6 +285,27 @@ TEST(Strokes, ToolsAtOnePositionDoNotWeakenEachOther) {
     return strokes.active().front().level_ratio;
   };
   EXPECT_EQ(pressed_m(true), pressed_m(false));
+}
+
+TEST(Strokes, RainUnderAFingerThatRestsFallsOnTheWholeDisc) {
+  Strokes strokes;
+  ASSERT_TRUE(strokes.add(part({{0.0, 2, 3, 1}}, false, 1, 7, StrokeTool::kRain)));
+  std::vector<shared::EventUniform> drops;
+  for (int k = 0; k < 150; ++k) {
+    const auto out = stepOf(strokes);
+    drops.insert(drops.end(), out.splashes, out.splashes + out.splash_count);
+  }
+  ASSERT_GT(drops.size(), 80u);
+  std::ranges::sort(drops, {}, &shared::EventUniform::x_m);
+  for (std::size_t k = 1; k < drops.size(); ++k) ASSERT_NE(drops[k].x_m, drops[k - 1].x_m) << "two at one position";
+}
+
+TEST(Strokes, WholeStrokesCountTowardTheLimitOfAPerson) {
+  Strokes strokes;
+  for (std::uint32_t k = 0; k < Strokes::kPersonMaxCount; ++k)
+    ASSERT_TRUE(strokes.add(part(line(0.0, 8.0), true, k, 7, StrokeTool::kRain)));
+  EXPECT_FALSE(strokes.add(part(line(0.0, 1.0), true, 99)));
+  EXPECT_TRUE(strokes.add(part(line(0.0, 1.0), true, 99, 8)));
 }
 
 }  // namespace

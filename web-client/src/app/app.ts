@@ -83,9 +83,10 @@ export class App {
   private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
   entered: GreetingInfo | undefined;
-  /** Set by input.ts. */
+  /** Called before a room is entered; set by input.ts, as the next two. */
+  entering: () => void = () => {};
   gamepad: GamepadTools | undefined;
-  /** What the tool at the pointer acts on; set by pointer.ts. */
+  /** What the tool at the pointer acts on. */
   outline: () => Outline | undefined = () => undefined;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
@@ -212,6 +213,7 @@ export class App {
   }
 
   private enter(greeting: GreetingInfo): void {
+    if (this.entered?.room !== greeting.room || this.entered.sceneName !== greeting.sceneName) this.entering();
     this.display.enter(greeting);
     this.effects.enter(greeting);
     this.parameters.enter(greeting.parameters);

@@ -5,11 +5,13 @@ import { PointerHands } from "./pointer";
 import { connectKeyboardTools, GamepadTools } from "./virtual_pointer";
 
 export function connectInput(app: App): void {
+  const hands = new PointerHands(app);
+  app.entering = () => hands.liftAll();
   connectButtons(app);
   connectHelmKeys(app);
-  connectKeyboardTools(app.display.canvas, () => app.tools.tool.name === "paddle");
+  connectKeyboardTools(app);
   app.gamepad = new GamepadTools(app);
-  connectWindow(app, new PointerHands(app));
+  connectWindow(app, hands);
 }
 
 function connectButtons({ client, commands, effects }: App): void {

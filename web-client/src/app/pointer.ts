@@ -73,12 +73,15 @@ export class PointerHands {
 
   private pressed(event: PointerEvent): void {
     if (this.isHandingOver) return;
+    // The camera knows the browser's pointers only.
+    if (!event.isTrusted) this.app.display.views.takesPointers = false;
     this.hover = undefined;
     if (event.button === 0) this.taps.pressed(sampleOf(event));
     const { app, hands } = this;
     const isTouch = event.pointerType === "touch";
-    const button = app.drawing.drawsFirst ? 0 : 2;
-    if (!app.mayDraw || event.button !== button || (isTouch && !app.drawing.drawsFirst)) return;
+    // Keys and gamepads have no other use.
+    const isFirst = app.drawing.drawsFirst || !event.isTrusted;
+    if (!app.mayDraw || event.button !== (isFirst ? 0 : 2) || (isTouch && !isFirst)) return;
     const partner = isTouch ? [...hands.values()].find(({ down, draws }) => !draws && event.timeStamp - down.timeStamp < kTogetherMs && down.pointerType === "touch") : undefined;
     if (partner) return this.handOver(partner.down, event);
     const place = this.placeUnder(event);
@@ -131,6 +134,7 @@ export class PointerHands {
   /** A press with a tool has ended. */
   private use({ tool, scale, from, at }: Hand, isTap: boolean, heldMs: number): void {
     const { app } = this;
+    if (!app.mayDraw) return;
     if (tool.name === "splash") {
       this.splash(at, { ...scale, sizeRatio: scale.sizeRatio * heldRatio((heldMs - kTapMs / 2) / 1000) });
     } else if (tool.name === "paddle") {
@@ -144,6 +148,8 @@ export class PointerHands {
   }
 
   private tap(place: WaterPlace, tool: Tool, scale: ToolScale): void {
+    // The server tells a viewer why not.
+    if (!this.app.mayDraw) return this.splash(place, undefined);
     const forS = kTapStrokeS[tool.name];
     const size = strokeSize(tool, this.app.entered!, scale);
     if (tool.name === "paddle") this.app.tools.explain();

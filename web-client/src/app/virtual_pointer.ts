@@ -50,8 +50,7 @@ class VirtualPointer {
   }
 }
 
-/** `pushes`: the tool needs a drag. */
-export function connectKeyboardTools(canvas: HTMLCanvasElement, pushes: () => boolean): void {
+export function connectKeyboardTools({ display: { canvas }, tools }: App): void {
   const pointer = new VirtualPointer(canvas, kKeyboardId);
   const middle = (): [number, number] => [window.innerWidth / 2, window.innerHeight / 2];
   const isUse = ({ code, ctrlKey, altKey, metaKey }: KeyboardEvent): boolean => (code === "Enter" || code === "Space") && !ctrlKey && !altKey && !metaKey;
@@ -62,12 +61,21 @@ export function connectKeyboardTools(canvas: HTMLCanvasElement, pushes: () => bo
   });
   const release = (): void => {
     const [xPx, yPx] = middle();
-    const toPx = pushes() ? yPx - kPushShare * window.innerHeight : yPx;
+    const toPx = tools.tool.name === "paddle" ? yPx - kPushShare * window.innerHeight : yPx;
     if (pointer.isDown && toPx !== yPx) pointer.move(xPx, toPx);
     pointer.release(xPx, toPx);
   };
   canvas.addEventListener("keyup", (event) => isUse(event) && release());
   canvas.addEventListener("blur", release);
+}
+
+/** None where the browser or the embedding page does not allow them, as some do without HTTPS. */
+function gamepads(): readonly (Gamepad | null)[] {
+  try {
+    return navigator.getGamepads?.() ?? [];
+  } catch {
+    return [];
+  }
 }
 
 export class GamepadTools {
@@ -84,7 +92,7 @@ export class GamepadTools {
 
   /** Called for each picture. */
   update(nowS: number): void {
-    const pad = navigator.getGamepads().find((each) => each?.mapping === "standard");
+    const pad = gamepads().find((each) => each?.mapping === "standard");
     const stepS = Math.min(Math.max(nowS - this.atS, 0), kLongestStepS) || 0;
     this.atS = nowS;
     if (!pad) return this.pointer.release(this.xPx, this.yPx);

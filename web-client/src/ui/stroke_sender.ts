@@ -29,6 +29,8 @@ const kSpacingMs = 4;
 const kPointsMax = 64;
 
 interface Finger {
+  /** Sent with every message: the server begins a stroke anew that it has lost, as after a reset. */
+  size: StrokeSize;
   strokeId: number;
   beganMs: number;
   sentMs: number;
@@ -50,10 +52,10 @@ export class StrokeSender {
   begin(pointerId: number, points: readonly FingerPoint[], size: StrokeSize): void {
     const first = points[0];
     if (!first) return;
-    const finger: Finger = { strokeId: this.nextId++, beganMs: first.timeMs, sentMs: this.world.nowMs(), last: first, unsent: [first] };
+    const finger: Finger = { size, strokeId: this.nextId++, beganMs: first.timeMs, sentMs: this.world.nowMs(), last: first, unsent: [first] };
     this.fingers.set(pointerId, finger);
     for (const point of points.slice(1)) add(finger, point);
-    this.post(finger, size);
+    this.post(finger, {});
     this.timer ??= this.world.setTimer(() => this.flush(), this.intervalMs);
   }
 
@@ -97,6 +99,7 @@ export class StrokeSender {
     finger.sentMs = this.world.nowMs();
     this.send({
       strokeId: finger.strokeId,
+      ...finger.size,
       points: points.map(({ timeMs, ...rest }) => ({ timeS: (timeMs - finger.beganMs) / 1000, ...rest })),
       ...more,
     });

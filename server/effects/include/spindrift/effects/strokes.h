@@ -58,7 +58,6 @@ struct Stroke {
 struct StrokeWater {
   double dt_s = 0.0;  ///< length of a step
   double cell_m = 0.0;
-  double depth_m = 0.0;
 };
 
 /// The path is drawn a little after its points have come, so that a trace does not depend on the rhythm in which the
