@@ -31,7 +31,6 @@ import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
-import type { GamepadTools } from "./virtual_pointer";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
@@ -85,7 +84,7 @@ export class App {
   entered: GreetingInfo | undefined;
   /** Called before a room is entered; set by input.ts, as the next two. */
   entering: () => void = () => {};
-  gamepad: GamepadTools | undefined;
+  poll: (atS: number) => void = () => {};
   /** What the tool at the pointer acts on. */
   outline: () => Outline | undefined = () => undefined;
 
@@ -95,7 +94,7 @@ export class App {
     this.display = new Display(renderer, quality, {
       release: (frame) => this.client.release(frame),
       update: (atS) => {
-        this.gamepad?.update(atS);
+        this.poll(atS);
         return this.boats.update(atS);
       },
       drawn: (atS) => {

@@ -10,7 +10,8 @@ export function connectInput(app: App): void {
   connectButtons(app);
   connectHelmKeys(app);
   connectKeyboardTools(app);
-  app.gamepad = new GamepadTools(app);
+  const gamepad = new GamepadTools(app);
+  app.poll = (atS) => gamepad.update(atS);
   connectWindow(app, hands);
 }
 
