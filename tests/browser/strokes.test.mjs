@@ -23,7 +23,7 @@ async function waitFor(page, what, accept) {
   }
 }
 
-describe("fingers in the water", { skip, timeout: 8 * WAIT_MS, concurrency: 1 }, () => {
+describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, () => {
   let server;
   let browser;
   /** Two people, each in a browser window of their own; the second has a phone. */
