@@ -150,7 +150,7 @@ core::Result<void> Strokes::add(const StrokePart& part) {
       const bool is_own = own_count >= kPersonMaxCount;
       return core::Error{
           core::ErrorCode::kUnavailable,
-          fmt::format("the limit of {} strokes {} is reached: try again when a finger has been lifted",
+          fmt::format("the limit of {} strokes {} is reached: try again when one has ended",
                       is_own ? kPersonMaxCount : kMaxCount, is_own ? "of one person" : "at the same time")};
     }
     const StrokePoint& first = part.points.front();

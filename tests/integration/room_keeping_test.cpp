@@ -1,4 +1,5 @@
-// Rooms that are kept on disk: what a crash leaves of them, and what a damaged or full disk does.
+// Rooms that are kept on disk: what a crash leaves of them, and what a damaged or full disk does. Longer than 400
+// lines, because all tests share one fixture.
 #include <spindrift/history/state_store.h>
 
 #include "full_disk.h"

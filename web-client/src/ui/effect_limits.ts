@@ -88,7 +88,7 @@ export function speedRange(): EffectRange {
   return range(SetSpeedSchema.field.speed, Infinity);
 }
 
-/** Clamps a slider's value to the range of a new room. */
-export function clampTo(value: number, { min, max }: SliderRange): number {
+/** Clamps a value to a range, such as that of a new room's slider. */
+export function clampTo(value: number, { min, max }: Pick<SliderRange, "min" | "max">): number {
   return Math.min(Math.max(value, min), max);
 }

@@ -1,12 +1,12 @@
 // The tools: what a tap, a drag or a long press on the water does with each, and the commands that it sends. Sizes follow from the water.
-import { getOption } from "@bufbuild/protobuf";
+import { getOption, type DescField } from "@bufbuild/protobuf";
 
 import type { GreetingInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
 import { BreakingWaveSchema, Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import { StrokeSchema, StrokeTool } from "../gen/spindrift/v1/wire_pb";
 import type { CommandAction } from "../net/messages";
-import type { EffectLimits } from "./effect_limits";
+import { clampTo, type EffectLimits } from "./effect_limits";
 
 export type ToolName = "finger" | "splash" | "paddle" | "rain" | "calm";
 
@@ -25,7 +25,7 @@ export const kTools: readonly Tool[] = [
   { name: "finger", label: "Finger", does: "Drag to draw in the water; tap for a splash.", stroke: StrokeTool.FINGER },
   { name: "splash", label: "Splash", does: "Tap for a splash; hold for a larger one." },
   { name: "paddle", label: "Paddle", does: "Drag to send a wave that way; a longer drag makes it higher." },
-  { name: "rain", label: "Rain", does: "Drag to rain along the way; tap for a cloud of 8 seconds.", stroke: StrokeTool.RAIN },
+  { name: "rain", label: "Rain", does: "Drag to move the rain; tap for a cloud of 8 seconds.", stroke: StrokeTool.RAIN },
   { name: "calm", label: "Calm", does: "Drag to smooth the water; tap to calm a place for 4 seconds.", stroke: StrokeTool.CALM, isOperators: true },
 ];
 
@@ -69,8 +69,8 @@ export function strokeSize(tool: Tool, { waterExtents: { sideM, depthM } }: Wate
   if (tool.stroke === undefined) return undefined;
   const { radiusM: radius, depthM: depth } = StrokeSchema.field;
   const isFinger = tool.stroke === StrokeTool.FINGER;
-  const radiusM = within(getOption(radius, parameter), sizeRatio * (isFinger ? kSides.finger : kSides.disc) * sideM);
-  return { tool: tool.stroke, radiusM, depthM: within(getOption(depth, parameter), Math.min(kFingerDepth.radii * radiusM, kFingerDepth.depths * depthM)) };
+  const radiusM = within(radius, sizeRatio * (isFinger ? kSides.finger : kSides.disc) * sideM);
+  return { tool: tool.stroke, radiusM, depthM: within(depth, Math.min(kFingerDepth.radii * radiusM, kFingerDepth.depths * depthM)) };
 }
 
 /** Factor of a splash's size that was held this long. */
@@ -80,8 +80,8 @@ export function heldRatio(heldS: number): number {
 
 /** A splash of `radiusM` and `depthM`, as the sliders say, scaled; within the limits of the water. */
 export function splashOf(place: WaterPlace, size: { splashRadiusM: number; splashDepthM: number }, limits: EffectLimits, { sizeRatio, strengthRatio }: ToolScale): CommandAction {
-  const radiusM = within(limits.splashRadiusM, sizeRatio * size.splashRadiusM);
-  const depthM = within(limits.splashDepthM, strengthRatio * sizeRatio * size.splashDepthM);
+  const radiusM = clampTo(sizeRatio * size.splashRadiusM, limits.splashRadiusM);
+  const depthM = clampTo(strengthRatio * sizeRatio * size.splashDepthM, limits.splashDepthM);
   return { case: "splash", value: { ...place, radiusM, depthM } };
 }
 
@@ -90,7 +90,7 @@ export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { s
   const dragM = Math.hypot(to.xM - from.xM, to.zM - from.zM);
   if (dragM < kShortestDrag * sideM) return undefined;
   const { amplitudeM: amplitude, lengthM: length, widthM: width } = BreakingWaveSchema.field;
-  const lengthM = within(getOption(length, parameter), kSides.paddleLength * sideM);
+  const lengthM = within(length, kSides.paddleLength * sideM);
   const highestM = Math.min(kPaddleHeight.lengths * lengthM, kPaddleHeight.depths * depthM);
   return {
     case: "breakingWave",
@@ -99,8 +99,8 @@ export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { s
       shape: WaveShape.SWELL,
       directionDeg: (Math.atan2(to.zM - from.zM, to.xM - from.xM) * 180) / Math.PI,
       lengthM,
-      amplitudeM: within(getOption(amplitude, parameter), highestM * strengthRatio * Math.min(dragM / (kSides.paddleDrag * sideM), 1)),
-      widthM: within(getOption(width, parameter), paddleWidthM(sideM, sizeRatio)),
+      amplitudeM: within(amplitude, highestM * strengthRatio * Math.min(dragM / (kSides.paddleDrag * sideM), 1)),
+      widthM: within(width, paddleWidthM(sideM, sizeRatio)),
       ...to,
     },
   };
@@ -110,6 +110,7 @@ export function paddleWidthM(sideM: number, sizeRatio: number): number {
   return kSides.paddleWidth * sizeRatio * sideM;
 }
 
-function within({ min, max }: { min: number; max: number }, value: number): number {
-  return Math.min(Math.max(value, min), max);
+/** Clamps a value to the range of a message's field. */
+function within(field: DescField, value: number): number {
+  return clampTo(value, getOption(field, parameter));
 }
