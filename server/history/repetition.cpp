@@ -11,19 +11,18 @@ namespace spindrift::history {
 using namespace std::chrono_literals;
 
 core::Result<void> Repetition::restore(const v1::KeptState& state) {
-  if (auto done = parts_.water.restore(state); !done) return done;
+  if (auto done = water_.restore(state); !done) return done;
   room_ = {.speed = state.speed(), .is_paused = state.paused(), .chosen_fidelity = state.chosen_fidelity()};
-  steps_until_ = parts_.water.tick() + state.pending_tick_count();
+  steps_until_ = water_.tick() + state.pending_tick_count();
   return {};
 }
 
 core::Result<bool> Repetition::advance(const v1::Record& record, Wait wait) {
-  water::RoomWater& water = parts_.water;
   const bool changes_water =
       record.has_scene() || record.has_continued_scene();  // written after it, which takes a tick
-  if (water.tick() + (changes_water ? 1 : 0) < record.tick()) {
-    water.step();
-    if (const auto& error = water.sim().deviceError()) return *error;
+  if (water_.tick() + (changes_water ? 1 : 0) < record.tick()) {
+    water_.step();
+    if (const auto& error = water_.sim().deviceError()) return *error;
     return false;
   }
   if (changes_water) return changeWater(record, wait);
@@ -33,31 +32,30 @@ core::Result<bool> Repetition::advance(const v1::Record& record, Wait wait) {
 
 RepeatedRoom Repetition::room() const {
   RepeatedRoom out = room_;
-  const std::uint64_t tick = parts_.water.tick();
+  const std::uint64_t tick = water_.tick();
   if (room_.is_paused && steps_until_ > tick) out.pending_tick_count = static_cast<std::uint32_t>(steps_until_ - tick);
   return out;
 }
 
 core::Result<bool> Repetition::changeWater(const v1::Record& record, Wait wait) {
-  water::RoomWater& water = parts_.water;
   if (!next_water_.valid()) {
     v1::Scene scene = record.has_scene() ? record.scene() : record.continued_scene();
     scene::fillDefaults(scene);
     room_.chosen_fidelity = scene.fidelity();
-    next_water_ = parts_.builder.build(std::move(scene));
+    next_water_ = builder_.build(std::move(scene));
   }
   if (wait == Wait::kNo && next_water_.wait_for(0s) != std::future_status::ready) return false;
   auto next = next_water_.get();
   if (!next) return next.error();
   if (record.has_scene()) {
-    parts_.builder.dispose(water.replaceWater(*std::move(next)));
+    builder_.dispose(water_.replaceWater(*std::move(next)));
     steps_until_ = 0;
   } else {
-    if (auto done = water.continueIn(*next); !done) return done.error();
-    parts_.builder.dispose(*std::move(next));
-    if (steps_until_ >= water.tick()) ++steps_until_;  // the change took a tick, which Step commands do not count
+    if (auto done = water_.continueIn(*next); !done) return done.error();
+    builder_.dispose(*std::move(next));
+    if (steps_until_ >= water_.tick()) ++steps_until_;  // the change took a tick, which Step commands do not count
   }
-  water.bind();
+  water_.bind();
   return true;
 }
 
@@ -74,7 +72,7 @@ void Repetition::repeat(const v1::Command& message) {
       room_.speed = command->set_speed().speed();
       break;
     case v1::Command::kStep:
-      steps_until_ = std::max(steps_until_, parts_.water.tick()) + command->step().tick_count();
+      steps_until_ = std::max(steps_until_, water_.tick()) + command->step().tick_count();
       break;
     case v1::Command::kChangeScene:  // to the level that the room had: only the choice counts
       room_.chosen_fidelity = command->change_scene().fidelity();
@@ -82,14 +80,14 @@ void Repetition::repeat(const v1::Command& message) {
     default:
       if (command->has_reset()) steps_until_ = 0;
       // What the water refused then, it refuses again.
-      if (water::RoomWater::takes(*command) && !parts_.water.apply(*command)) ++command_count_;
+      if (water::RoomWater::takes(*command) && !water_.apply(*command)) ++command_count_;
   }
 }
 
-core::Result<RestoredRoom> RestoredRoom::begin(KeptRoom kept, const Repetition::Parts& parts) {
-  RestoredRoom out(std::move(kept), parts);
-  if (auto done = out.repetition_.restore(*out.kept_.state); !done) return done.error();
-  return out;
+core::Result<RestoredRoom> RestoredRoom::begin(KeptRoom kept, water::RoomWater& water, water::WaterBuilder& builder) {
+  Repetition repetition(water, builder);
+  if (auto done = repetition.restore(*kept.state); !done) return done.error();
+  return RestoredRoom(std::move(kept), std::move(repetition));
 }
 
 core::Result<bool> RestoredRoom::continueUntil(TimePoint deadline) {

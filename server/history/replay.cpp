@@ -16,7 +16,7 @@ core::Result<ReplayOutcome> replayLog(const gpu::DeviceChoice& device, CommandLo
   if (!built) return built.error();
   water::RoomWater water(*std::move(built));
   water::WaterBuilder builder(device);
-  Repetition repetition({water, builder});
+  Repetition repetition(water, builder);
 
   ReplayOutcome out;
   out.device_difference = deviceDifference(log.header(), water.device());

@@ -73,7 +73,8 @@ core::Role roleFor(const v1::Command& command) {
   return command.stroke().tool() == v1::STROKE_TOOL_CALM ? core::Role::kOperator : traitsOf(command).role;
 }
 
-CommandDesk::CommandDesk(const Parts& parts) : parts_(parts), heavy_budget_(kHeavyShare, kHeavyBurst) {}
+CommandDesk::CommandDesk(RoomData& room, RoomActions& actions, WaterChange& change)
+    : room_(room), actions_(actions), change_(change), heavy_budget_(kHeavyShare, kHeavyBurst) {}
 
 CommandDesk::Outcome CommandDesk::admit(Command command, const RoomSnapshot& room) {
   const core::Sender& sender = command.sender;
@@ -106,7 +107,7 @@ void CommandDesk::carryOut(TimePoint now) {
   if (values_ && !values_->relaid && heavy_budget_.isOpen(now)) spend([this] { tryNewest(resume()); });
   for (int k = 0; k < kRoundMaxCount; ++k) {
     const bool may_be_heavy = !values_ && heavy_budget_.isOpen(now);
-    auto batch = queue_.next({.heavy = may_be_heavy, .scene_change = parts_.change.mayBuild()});
+    auto batch = queue_.next({.heavy = may_be_heavy, .scene_change = change_.mayBuild()});
     if (!batch) break;
     if (traitsOf(batch->front().message).is_heavy)
       spend([&] { apply(*std::move(batch)); });
@@ -121,23 +122,23 @@ void CommandDesk::carryOut(TimePoint now) {
 void CommandDesk::apply(Batch batch) {
   const Kind& kind = kindOf(batch.front().message);
   if (kind.begin) return (this->*kind.begin)(std::move(batch));
-  parts_.water.fillIn(batch.front().message);
+  room_.water->fillIn(batch.front().message);
   Outcome outcome = checkAgain(batch.front());
   if (!outcome) {
-    outcome = kind.in_room ? (parts_.actions.*kind.in_room)(batch.front()) : parts_.actions.applyToWater(batch.front());
+    outcome = kind.in_room ? (actions_.*kind.in_room)(batch.front()) : actions_.applyToWater(batch.front());
   }
-  answer(std::move(batch), outcome, parts_.actions.takeNewBoatId());
+  answer(std::move(batch), outcome, actions_.takeNewBoatId());
 }
 
 CommandDesk::Outcome CommandDesk::checkAgain(const Command& command) const {
-  if (command.scene_version == parts_.water.sceneVersion()) return {};
-  return wire::checkAgainstScene(command.message, parts_.water.scene());
+  if (command.scene_version == room_.water->sceneVersion()) return {};
+  return wire::checkAgainstScene(command.message, room_.water->scene());
 }
 
 // Scenes
 
 void CommandDesk::beginScene(Batch batch) {
-  if (const auto outcome = parts_.change.beginScene(batch.front())) return answer(std::move(batch), *outcome);
+  if (const auto outcome = change_.beginScene(batch.front())) return answer(std::move(batch), *outcome);
   queue_.hold(batch);
   scene_batch_ = std::move(batch);
 }
@@ -156,14 +157,14 @@ void CommandDesk::tryNewest(Values values) {
     Command command = std::move(values.untried.back());
     values.untried.pop_back();
     Outcome outcome = refuseValue(command);
-    if (!outcome && parts_.change.beginRelayout(command.message.set_parameter())) {
+    if (!outcome && change_.beginRelayout(command.message.set_parameter())) {
       values.relaid = std::move(command);
       values.begin = Clock::now();
       return putOff(std::move(values));
     }
-    if (!outcome) outcome = parts_.actions.applyToWater(command);
+    if (!outcome) outcome = actions_.applyToWater(command);
     const bool is_taken = !outcome;
-    if (is_taken) parts_.actions.parameterChanged(command.message.set_parameter());
+    if (is_taken) actions_.parameterChanged(command.message.set_parameter());
     values.tried.push_back({std::move(command), std::move(outcome)});
     if (is_taken) return conclude(std::move(values));
   }
@@ -189,15 +190,15 @@ void CommandDesk::conclude(Values values) {
 }
 
 void CommandDesk::finishRelayout() {
-  const auto outcome = parts_.change.takeLayout();
+  const auto outcome = change_.takeLayout();
   if (!outcome) return;
   Values values = resume();
   Command command = *std::exchange(values.relaid, std::nullopt);
   heavy_budget_.spend(Clock::now() - values.begin);
   const bool is_taken = !*outcome;
   if (is_taken) {
-    parts_.diary.carriedOutLate(parts_.water.tick(), command.message);
-    parts_.actions.parameterChanged(command.message.set_parameter());
+    room_.diary.carriedOutLate(command.message);
+    actions_.parameterChanged(command.message.set_parameter());
   }
   values.tried.push_back({std::move(command), *outcome});
   if (is_taken) return conclude(std::move(values));
@@ -207,9 +208,9 @@ void CommandDesk::finishRelayout() {
 CommandDesk::Outcome CommandDesk::refuseValue(const Command& command) const {
   if (auto rejected = checkAgain(command)) return rejected;
   const v1::SetParameter& change = command.message.set_parameter();
-  const auto wanted = parts_.water.workWith(change);
+  const auto wanted = room_.water->workWith(change);
   if (!wanted) return {};
-  return parts_.change.refuseSlow(command.sender, change.path(), parts_.cost.predict_ms(*wanted), water::kTickMax_ms);
+  return change_.refuseSlow(command.sender, change.path(), room_.tick_cost.predict_ms(*wanted), water::kTickMax_ms);
 }
 
 // Answers
@@ -221,7 +222,7 @@ void CommandDesk::answer(Batch batch, const Outcome& outcome, std::uint32_t boat
 void CommandDesk::rejectAll(const wire::CommandRejection& rejection) {
   if (values_) {
     Values values = resume();
-    parts_.change.abandonLayout();
+    change_.abandonLayout();
     if (values.relaid) values.tried.push_back({*std::exchange(values.relaid, std::nullopt), rejection});
     answer(std::exchange(values.untried, {}), rejection);
     conclude(std::move(values));
@@ -229,18 +230,18 @@ void CommandDesk::rejectAll(const wire::CommandRejection& rejection) {
   answer(queue_.drain(), rejection);
 }
 
-void CommandDesk::close(RoomOutlets& outlets) {
+void CommandDesk::close() {
   const auto closed = wire::rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   answer(std::exchange(scene_batch_, {}), closed);
   rejectAll(closed);
-  sendAnswers(outlets);
+  sendAnswers();
 }
 
-void CommandDesk::sendAnswers(RoomOutlets& outlets) {
+void CommandDesk::sendAnswers() {
   std::vector<Answer> answers = std::exchange(answers_, {});
   // A rejection promises nothing, and does not wait for the disk.
   const bool promises = std::ranges::any_of(answers, [](const Answer& one) { return !one.rejected; });
-  const auto kept = promises ? parts_.diary.flush() : core::Result<void>();
+  const auto kept = promises ? room_.diary.flush() : core::Result<void>();
   for (Answer& one : answers) {
     if (!one.rejected && !kept) {
       one.rejected =
@@ -249,9 +250,9 @@ void CommandDesk::sendAnswers(RoomOutlets& outlets) {
     }
     if (one.rejected) {
       one.rejected->command_id = one.command.id();
-      outlets.commandRejected(one.command, *one.rejected);
+      room_.outlets.commandRejected(one.command, *one.rejected);
     } else {
-      outlets.commandApplied(one.command, parts_.water.tick(), one.boat_id);
+      room_.outlets.commandApplied(one.command, room_.water->tick(), one.boat_id);
     }
   }
 }

@@ -25,21 +25,16 @@ constexpr auto kVitalsInterval = 250ms;
 
 Room::Room(std::string name, const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets,
            std::unique_ptr<water::RoomWater> room_water, history::Diary diary, v1::RoomAccess access)
-    : name_(std::move(name)),
-      access_(std::move(access)),
-      outlets_(outlets),
-      water_(std::move(room_water)),
-      diary_(std::move(diary)),
-      roster_(rules.grace, [this] { wake(); }),
-      time_(water_->sim().derived().tick_s),
-      chosen_fidelity_(water_->scene().fidelity()),
-      reports_({*this, *water_, time_, roster_, outlets}),
-      frames_({*this, *water_, time_, tick_meter_, *demand_, outlets}),
-      change_({name_, rules, builder, *water_, diary_, time_, tick_cost_, load_, chosen_fidelity_}),
-      actions_({*water_, diary_, time_, roster_, frames_.schedule(), tick_cost_, reports_.news()}),
-      desk_({*water_, actions_, change_, tick_cost_, diary_}),
-      keeping_({name_, access_, *water_, time_, roster_, chosen_fidelity_, diary_, builder, rules.disk_patience}) {
-  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+    : data_{.self = *this,
+            .name = std::move(name),
+            .access = std::move(access),
+            .rules = rules,
+            .builder = builder,
+            .outlets = outlets,
+            .water = std::move(room_water),
+            .diary = std::move(diary),
+            .roster = Roster(rules.grace, [this] { wake(); })} {
+  data_.tick_cost.restart(data_.water->warmTick_ms(), data_.water->work());
   publishVitals({});
 }
 
@@ -59,7 +54,7 @@ core::Result<std::shared_ptr<Room>> Room::begin(std::string name, std::unique_pt
 core::Result<bool> Room::restoreUntil(TimePoint deadline) {
   const auto done = keeping_.restoreUntil(deadline);
   if (!done || !*done) return done;
-  tick_cost_.restart(water_->warmTick_ms(), water_->work());
+  data_.tick_cost.restart(data_.water->warmTick_ms(), data_.water->work());
   reports_.begin();
   publishVitals({});
   return true;
@@ -67,19 +62,19 @@ core::Result<bool> Room::restoreUntil(TimePoint deadline) {
 
 core::Result<void> Room::saveUntil(TimePoint deadline) {
   if (change_.isLost()) return {};
-  water_->bind();
+  data_.water->bind();
   return keeping_.saveUntil(deadline);
 }
 
 std::string Room::summary(TimePoint now) const {
   return fmt::format("room {}: {} ticks, real-time factor {:.2f}, {} frames dropped, watchdog stepped in {} times",
-                     name_, tick(), time_.meanRealTimeFactor(now), frames_.droppedCount(),
-                     water_->sim().recoveredCount());
+                     data_.name, tick(), data_.time.meanRealTimeFactor(now), frames_.droppedCount(),
+                     data_.water->sim().recoveredCount());
 }
 
 void Room::releaseDevice() {
-  water_.reset();
-  if (diary_.keeper()) diary_.keeper()->finish();
+  data_.water.reset();
+  if (data_.diary.keeper()) data_.diary.keeper()->finish();
 }
 
 // Any thread
@@ -91,15 +86,15 @@ std::optional<wire::CommandRejection> Room::admit(Command command) {
 }
 
 bool Room::askForSnapshot() {
-  if (!diary_.keeper()) return false;
-  diary_.keeper()->ask();
+  if (!data_.diary.keeper()) return false;
+  data_.diary.keeper()->ask();
   wake();
   return true;
 }
 
 std::optional<history::StateKeeper::Status> Room::keptStatus() const {
-  if (!diary_.keeper()) return std::nullopt;
-  return diary_.keeper()->status();
+  if (!data_.diary.keeper()) return std::nullopt;
+  return data_.diary.keeper()->status();
 }
 
 void Room::wake() {
@@ -109,17 +104,17 @@ void Room::wake() {
 // One round
 
 Room::TimePoint Room::due() const {
-  const bool stands_still = change_.stopsTime() || !time_.runs();
-  TimePoint next = stands_still ? ran_ + kStandingInterval : time_.due();
+  const bool stands_still = change_.stopsTime() || !data_.time.runs();
+  TimePoint next = stands_still ? ran_ + kStandingInterval : data_.time.due();
   const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
   if (const auto change = change_.due(ran_)) no_later_than(*change);
-  if (!change_.isLost() && water_->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
+  if (!change_.isLost() && data_.water->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
   if (!stands_still) return next;
-  if (is_woken_ || (time_.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
+  if (is_woken_ || (data_.time.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
   if (desk_.hasWork()) no_later_than(ran_ + kWaitingCommandInterval);
   if (const auto people = reports_.due()) no_later_than(*people);
-  if (!change_.stopsTime() && time_.isPaused() && demand_->sessionCount() > 0)
-    no_later_than(frames_.schedule().idleDue());
+  if (!change_.stopsTime() && data_.time.isPaused() && data_.demand->sessionCount() > 0)
+    no_later_than(data_.schedule.idleDue());
   return next;
 }
 
@@ -127,24 +122,24 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   is_woken_ = false;
   ++round_count_;
   ran_ = now;
-  load_ = load;
-  water_->bind();
-  water_->reloadChangedShaders();
+  data_.load = load;
+  data_.water->bind();
+  data_.water->reloadChangedShaders();
   if (const auto built = change_.takeBuilt(now)) waterChanged(*built, now);
   if (change_.watchDevice(now)) return standStill();
-  time_.beginRound(now);
+  data_.time.beginRound(now);
   frames_.handOver();
-  const bool may_sleep = water_->scene().unwatched() == v1::UNWATCHED_SLEEP;
-  if (time_.watchOver(!may_sleep || demand_->sessionCount() > 0, now)) publishVitals(now);
+  const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP;
+  if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
   desk_.finishRelayout();
-  if (!time_.runs() || now >= time_.due()) desk_.carryOut(now);
+  if (!data_.time.runs() || now >= data_.time.due()) desk_.carryOut(now);
   announce();
   if (change_.stopsTime()) {
     // The state stands still until the particles are laid out.
-  } else if (time_.isPaused()) {
+  } else if (data_.time.isPaused()) {
     advancePaused(now);
-  } else if (time_.runs() && now >= time_.due()) {
+  } else if (data_.time.runs() && now >= data_.time.due()) {
     step(now);
   }
   if (reports_.tellRecovery(now)) actions_.boatsChanged();
@@ -154,38 +149,38 @@ void Room::run(TimePoint now, const ServerLoad& load) {
 }
 
 void Room::step(TimePoint now) {
-  const TimePoint scheduled = time_.due();
+  const TimePoint scheduled = data_.time.due();
   const TimePoint end = timedStep();
-  time_.ticked(now, end);
+  data_.time.ticked(now, end);
   restartIfOver();
   frames_.afterTick(scheduled, end);
   reports_.tellStrokes(end);
-  time_.warnIfSlow(name_, end);
+  data_.time.warnIfSlow(data_.name, end);
   change_.adapt(end);
 }
 
 void Room::advancePaused(TimePoint now) {
-  if (time_.stepsToCome() > 0) {
+  if (data_.time.stepsToCome() > 0) {
     now = timedStep();
-    if (time_.stepped()) frames_.schedule().setIdleDue(now);  // what was asked for is there to see at once
+    if (data_.time.stepped()) data_.schedule.setIdleDue(now);  // what was asked for is there to see at once
   }
   frames_.whilePaused(now);
 }
 
 Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
-  water_->step();
+  data_.water->step();
   const auto end = std::chrono::steady_clock::now();
   const double step_ms = std::chrono::duration<double, std::milli>(end - begin).count();
-  tick_cost_.note(step_ms);
-  tick_meter_.note(step_ms);
-  diary_.ticked(tick(), water_->sim());
+  data_.tick_cost.note(step_ms);
+  data_.tick_meter.note(step_ms);
+  data_.diary.ticked();
   return end;
 }
 
 void Room::restartIfOver() {
-  const double after_s = water_->scene().restart_after_s();
-  if (after_s <= 0 || water_->sim().time_s() < after_s) return;
+  const double after_s = data_.water->scene().restart_after_s();
+  if (after_s <= 0 || data_.water->sim().time_s() < after_s) return;
   Command again;
   again.message.mutable_reset();
   (void)actions_.reset(again);  // refused while the disk is full: tried again at the next tick
@@ -195,14 +190,14 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
   using Water = WaterChange::Built::Water;
   if (built.water != Water::kSame) {
     frames_.restart();
-    tick_meter_.restart();
+    data_.tick_meter.restart();
     // The boats of a new scene have no owner yet, whatever their ids.
-    roster_.keepOnly(built.water == Water::kContinues ? water_->boatIds() : std::set<std::uint32_t>{});
+    data_.roster.keepOnly(built.water == Water::kContinues ? data_.water->boatIds() : std::set<std::uint32_t>{});
     publishVitals(now);
     reports_.sceneChanged();
   }
-  reports_.news().recovered = built.recovered;
-  reports_.news().fidelity = built.fidelity;
+  data_.news.recovered = built.recovered;
+  data_.news.fidelity = built.fidelity;
   if (built.answers_command) desk_.sceneChanged(built.outcome);
 }
 
@@ -217,28 +212,28 @@ void Room::standStill() {
 }
 
 void Room::settlePeople(TimePoint now) {
-  const Roster::Turn turn = roster_.settle(now);
+  const Roster::Turn turn = data_.roster.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) actions_.stopBoat(boat_id);
   reports_.tellPeople(turn.is_news, now);
 }
 
 void Room::announce() {
   reports_.tell();
-  diary_.people(tick(), roster_.version(), [this] { return roster_.kept(); });
-  desk_.sendAnswers(outlets_);
+  data_.diary.people(data_.roster.version(), [this] { return data_.roster.kept(); });
+  desk_.sendAnswers();
 }
 
 void Room::publishVitals(TimePoint now) {
   next_vitals_ = now + kVitalsInterval;
   vitals_.publish({.tick = tick(),
-                   .time_s = water_->sim().time_s(),
-                   .asleep = time_.isAsleep(),
+                   .time_s = data_.water->sim().time_s(),
+                   .asleep = data_.time.isAsleep(),
                    .lost = change_.isLost(),
                    .waiting_command_count = static_cast<std::uint32_t>(desk_.waitingCount()),
                    .dropped_frame_count = frames_.droppedCount(),
-                   .tick_times = tick_meter_.times(),
+                   .tick_times = data_.tick_meter.times(),
                    .diagnostics = frames_.diagnostics(),
-                   .fidelity_levels = water_->levelCosts().predict(tick_cost_)});
+                   .fidelity_levels = data_.water->levelCosts().predict(data_.tick_cost)});
 }
 
 }  // namespace spindrift::rooms

@@ -19,18 +19,18 @@ wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::u
 
 RoomActions::Outcome RoomActions::applyToWater(const Command& command) {
   if (auto refused = writeAhead(command)) return refused;
-  return parts_.water.apply(command.message);
+  return room_.water->apply(command.message);
 }
 
 void RoomActions::parameterChanged(const v1::SetParameter& change) {
-  parts_.cost.workChanged(parts_.water.work());
-  parts_.frames.restart();  // the frame rate may have changed; by the old rate the next frame could be a second away
-  parts_.news.parameters[change.path()] = change.value();
+  room_.tick_cost.workChanged(room_.water->work());
+  room_.schedule.restart();  // the frame rate may have changed; by the old rate the next frame could be a second away
+  room_.news.parameters[change.path()] = change.value();
 }
 
 void RoomActions::boatsChanged() {
-  parts_.roster.keepOnly(parts_.water.boatIds());
-  parts_.news.boats = true;
+  room_.roster.keepOnly(room_.water->boatIds());
+  room_.news.boats = true;
 }
 
 void RoomActions::stopBoat(std::uint32_t boat_id) {
@@ -41,10 +41,10 @@ void RoomActions::stopBoat(std::uint32_t boat_id) {
 
 RoomActions::Outcome RoomActions::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
-  parts_.frames.restart();
-  parts_.frames.setIdleDue({});
-  parts_.time.setSteps(0);
-  parts_.news.reset = true;
+  room_.schedule.restart();
+  room_.schedule.setIdleDue({});
+  room_.time.setSteps(0);
+  room_.news.reset = true;
   boatsChanged();
   return {};
 }
@@ -53,21 +53,21 @@ RoomActions::Outcome RoomActions::reset(const Command& command) {
 
 RoomActions::Outcome RoomActions::setPaused(const Command& command) {
   if (auto refused = writeAhead(command)) return refused;
-  parts_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
-  parts_.news.state = true;
+  room_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
+  room_.news.state = true;
   return {};
 }
 
 RoomActions::Outcome RoomActions::setSpeed(const Command& command) {
   if (auto refused = writeAhead(command)) return refused;
-  parts_.time.setSpeed(command.message.set_speed().speed());
-  parts_.news.state = true;
+  room_.time.setSpeed(command.message.set_speed().speed());
+  room_.news.state = true;
   return {};
 }
 
 RoomActions::Outcome RoomActions::advance(const Command& command) {
   const std::uint32_t tick_count = command.message.step().tick_count();
-  RoomTime& time = parts_.time;
+  RoomTime& time = room_.time;
   if (!time.isPaused()) {
     return wire::rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
   }
@@ -94,20 +94,20 @@ RoomActions::Outcome RoomActions::draw(const Command& command) {
 
 RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   const core::Sender& sender = command.sender;
-  if (sender.role < core::Role::kOperator && parts_.roster.hasBoat(sender.person_id)) {
+  if (sender.role < core::Role::kOperator && room_.roster.hasBoat(sender.person_id)) {
     return wire::rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat",
                            "you have a boat: remove it before you launch another");
   }
   if (auto rejected = applyToWater(command)) return rejected;
   boatsChanged();
-  new_boat_id_ = parts_.water.spawnedBoatId();
-  parts_.roster.give(new_boat_id_, sender.person_id);
+  new_boat_id_ = room_.water->spawnedBoatId();
+  room_.roster.give(new_boat_id_, sender.person_id);
   return {};
 }
 
 RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
   const std::uint32_t boat_id = command.message.control_boat().boat_id();
-  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  const std::uint32_t owner_id = room_.roster.ownerOf(boat_id);
   const bool is_free_to_operators = owner_id == 0 && command.sender.role >= core::Role::kOperator;
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
   if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
@@ -118,7 +118,7 @@ RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
 
 RoomActions::Outcome RoomActions::removeBoat(const Command& command) {
   const std::uint32_t boat_id = command.message.remove_boat().boat_id();
-  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  const std::uint32_t owner_id = room_.roster.ownerOf(boat_id);
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
   if (!is_own && command.sender.role < core::Role::kOperator && isOnTheWater(boat_id)) {
     return notYours("remove_boat.boat_id", boat_id, owner_id);
@@ -140,14 +140,14 @@ RoomActions::Outcome RoomActions::takeBoat(const Command& command) {
     return wire::rejection(v1::REJECT_REASON_FORBIDDEN, kField,
                            "only somebody in the room can take a boat: connect first");
   }
-  const std::uint32_t owner_id = parts_.roster.ownerOf(boat_id);
+  const std::uint32_t owner_id = room_.roster.ownerOf(boat_id);
   if (owner_id == sender.person_id) return {};
   const bool is_operator = sender.role >= core::Role::kOperator;
   if (owner_id != 0 && !is_operator) return notYours(kField, boat_id, owner_id);
-  if (!is_operator && parts_.roster.hasBoat(sender.person_id)) {
+  if (!is_operator && room_.roster.hasBoat(sender.person_id)) {
     return wire::rejection(v1::REJECT_REASON_HAS_BOAT, kField, "you have a boat: remove it before you take another");
   }
-  parts_.roster.give(boat_id, sender.person_id);
+  room_.roster.give(boat_id, sender.person_id);
   return {};
 }
 

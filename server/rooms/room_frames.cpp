@@ -16,28 +16,28 @@ constexpr auto kDroppedFrameRetry = 10ms;
 }  // namespace
 
 void RoomFrames::afterTick(TimePoint scheduled, TimePoint end) {
-  const auto levels = schedule_.afterTick({.time_s = parts_.water.sim().time_s(),
-                                           .scheduled = scheduled,
-                                           .end = end,
-                                           .speed = parts_.time.speed(),
-                                           .frame_rate_hz = parts_.water.scene().stream().frame_rate_hz()});
+  const auto levels = room_.schedule.afterTick({.time_s = room_.water->sim().time_s(),
+                                                .scheduled = scheduled,
+                                                .end = end,
+                                                .speed = room_.time.speed(),
+                                                .frame_rate_hz = room_.water->scene().stream().frame_rate_hz()});
   if (levels) request(end, *levels);
 }
 
 void RoomFrames::whilePaused(TimePoint now) {
-  if (now < schedule_.idleDue()) return;
-  schedule_.idleFrame(now);
+  if (now < room_.schedule.idleDue()) return;
+  room_.schedule.idleFrame(now);
   request(now, core::LevelSet::all());
 }
 
 void RoomFrames::request(TimePoint now, core::LevelSet due) {
-  const v1::Scene& scene = parts_.water.scene();
-  sim::WaterSim& sim = parts_.water.sim();
+  const v1::Scene& scene = room_.water->scene();
+  sim::WaterSim& sim = room_.water->sim();
   const core::ReducedCounts counts = sim.reducedCounts();
-  sim::FrameRequest request{.asked_s = core::monotonic_s(now), .state_id = parts_.water.stateId(), .due = due};
+  sim::FrameRequest request{.asked_s = core::monotonic_s(now), .state_id = room_.water->stateId(), .due = due};
   for (const codec::Stream& stream : codec::allStreams()) {
     const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, counts);
-    const auto demand = core::demandOfFrame(parts_.demand.of(codec::indexOf(stream), now), reduced_count,
+    const auto demand = core::demandOfFrame(room_.demand->of(codec::indexOf(stream), now), reduced_count,
                                             codec::levelsTaking(stream.layer, due));
     for (std::size_t k = 0; k < core::kLevelCount; ++k) {
       if (demand[k].watcher_count == 0) continue;
@@ -51,35 +51,35 @@ void RoomFrames::request(TimePoint now, core::LevelSet due) {
   }
   if (request.isEmpty() || sim.requestFrame(request)) return;
   ++dropped_count_;
-  schedule_.setIdleDue(now + kDroppedFrameRetry);
+  room_.schedule.setIdleDue(now + kDroppedFrameRetry);
 }
 
 void RoomFrames::handOver() {
-  sim::WaterSim& sim = parts_.water.sim();
+  sim::WaterSim& sim = room_.water->sim();
   for (core::FrameView& frame : sim.takeFrames()) {
-    frame.tick = parts_.water.tickOf(frame.tick);
+    frame.tick = room_.water->tickOf(frame.tick);
     if (std::exchange(wants_diagnostics_, false)) frame.diagnostics = diagnostics();
-    parts_.outlets.frameReady(parts_.room, std::move(frame));
+    room_.outlets.frameReady(room_.self, std::move(frame));
   }
   if (!wants_diagnostics_ || sim.framesInFlight() > 0) return;
   wants_diagnostics_ = false;
   core::FrameView frame;
-  frame.tick = parts_.water.tick();
+  frame.tick = room_.water->tick();
   frame.time_s = sim.time_s();
-  frame.state_id = parts_.water.stateId();
+  frame.state_id = room_.water->stateId();
   frame.diagnostics = diagnostics();
-  parts_.outlets.frameReady(parts_.room, std::move(frame));
+  room_.outlets.frameReady(room_.self, std::move(frame));
 }
 
 void RoomFrames::restart() {
-  schedule_.restart();
-  schedule_.setIdleDue({});
+  room_.schedule.restart();
+  room_.schedule.setIdleDue({});
   wants_diagnostics_ = false;
 }
 
 core::DiagnosticsView RoomFrames::diagnostics() {
-  sim::WaterSim& sim = parts_.water.sim();
-  return diagnosticsOf(sim, parts_.tick_meter.takeMeans(sim), parts_.time.realTimeFactor());
+  sim::WaterSim& sim = room_.water->sim();
+  return diagnosticsOf(sim, room_.tick_meter.takeMeans(sim), room_.time.realTimeFactor());
 }
 
 }  // namespace spindrift::rooms

@@ -39,7 +39,7 @@ std::optional<WaterChange::TimePoint> WaterChange::due(TimePoint ran) const {
 }
 
 WaterChange::Build& WaterChange::begin(Build::Cause cause, v1::Scene scene) {
-  build_ = Build{.cause = cause, .water = parts_.builder.build(std::move(scene))};
+  build_ = Build{.cause = cause, .water = room_.builder.build(std::move(scene))};
   return *build_;
 }
 
@@ -56,15 +56,15 @@ std::optional<WaterChange::Built> WaterChange::takeBuilt(TimePoint now) {
 
 std::optional<WaterChange::Outcome> WaterChange::beginScene(const Command& command) {
   const v1::ChangeScene& wanted = command.message.change_scene();
-  const v1::Scene& present = parts_.water.scene();
+  const v1::Scene& present = room_.water->scene();
   const bool names_level = wanted.fidelity() != v1::FIDELITY_UNSPECIFIED;
   const bool goes_on = names_level && wanted.name() == present.name();
   if (goes_on && wanted.fidelity() == present.fidelity()) {
-    if (auto refused = parts_.diary.writeAhead(parts_.water.tick(), command.message)) return refused;
-    parts_.chosen_fidelity = wanted.fidelity();
+    if (auto refused = room_.diary.writeAhead(command.message)) return refused;
+    room_.chosen_fidelity = wanted.fidelity();
     return Outcome{};
   }
-  if (!parts_.rules.scenes.has(wanted.name())) {
+  if (!room_.rules.scenes.has(wanted.name())) {
     return wire::rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kSceneField,
                            "there is no scene '" + wanted.name() + "'; the greeting lists what there is");
   }
@@ -73,8 +73,8 @@ std::optional<WaterChange::Outcome> WaterChange::beginScene(const Command& comma
                            "the scene was changed a moment ago; try again in a second");
   }
   auto scene =
-      goes_on ? water::sceneAt(parts_.rules.scenes, present, wanted.fidelity())
-              : parts_.rules.scenes.load(wanted.name(), names_level ? std::optional(wanted.fidelity()) : std::nullopt);
+      goes_on ? water::sceneAt(room_.rules.scenes, present, wanted.fidelity())
+              : room_.rules.scenes.load(wanted.name(), names_level ? std::optional(wanted.fidelity()) : std::nullopt);
   if (!scene)
     return wire::rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kSceneField, core::firstLine(scene.error().message));
   Build& build = begin(Build::Cause::kCommand, *std::move(scene));
@@ -87,47 +87,47 @@ WaterChange::Built WaterChange::takeScene(TimePoint now, const Build& build, wat
   const std::string& name = build.command->message.change_scene().name();
   const auto refuse = [](Outcome why) { return Built{.answers_command = true, .outcome = std::move(why)}; };
   if (!water) {
-    spdlog::warn("room {}: stays with scene {}, because scene {} cannot be built: {}", parts_.room,
-                 parts_.water.scene().name(), name, core::firstLine(water.error().message));
+    spdlog::warn("room {}: stays with scene {}, because scene {} cannot be built: {}", room_.name,
+                 room_.water->scene().name(), name, core::firstLine(water.error().message));
     return refuse(wire::rejection(v1::REJECT_REASON_OUT_OF_RANGE, kSceneField,
                                   "scene '" + name + "': " + core::firstLine(water.error().message)));
   }
   if (auto slow = refuseSlow(build.command->sender, kSceneField, (*water)->warmTick_ms(), water::kSceneTickMax_ms)) {
-    parts_.builder.dispose(*std::move(water));
+    room_.builder.dispose(*std::move(water));
     return refuse(std::move(slow));
   }
   Built out = build.goes_on && !is_lost_ ? continueIn(*water, "") : startIn(*std::move(water));
   out.answers_command = true;
   if (out.outcome) {
-    parts_.builder.dispose(*std::move(water));
+    room_.builder.dispose(*std::move(water));
     return out;
   }
-  parts_.chosen_fidelity = parts_.water.scene().fidelity();
+  room_.chosen_fidelity = room_.water->scene().fidelity();
   governor_.changed(core::monotonic_s(now), Step::kNone);
   return out;
 }
 
 WaterChange::Built WaterChange::startIn(std::unique_ptr<water::Water> water) {
-  parts_.builder.dispose(parts_.water.replaceWater(std::move(water)));
-  parts_.diary.beganScene(parts_.water.tick(), parts_.water.scene());
+  room_.builder.dispose(room_.water->replaceWater(std::move(water)));
+  room_.diary.beganScene();
   waterReplaced(false);
-  spdlog::info("room {}: scene {}", parts_.room, parts_.water.scene().name());
+  spdlog::info("room {}: scene {}", room_.name, room_.water->scene().name());
   return {.water = Built::Water::kAtItsStart};
 }
 
 void WaterChange::waterReplaced(bool keeps_steps) {
   is_lost_ = false;
-  parts_.diary.waterReplaced(parts_.water.sim().recoveredCount());
+  room_.diary.waterReplaced();
   const auto ready = Clock::now();
-  parts_.time.restart(parts_.water.sim().derived().tick_s, keeps_steps, ready);
-  parts_.cost.restart(parts_.water.warmTick_ms(), parts_.water.work());
+  room_.time.restart(room_.water->sim().derived().tick_s, keeps_steps, ready);
+  room_.tick_cost.restart(room_.water->warmTick_ms(), room_.water->work());
   next_scene_change_ = ready + kSceneChangeInterval;
 }
 
 WaterChange::Outcome WaterChange::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                              double max_ms) const {
   const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
-  if (parts_.load.session_count <= own_count || tick_ms <= std::max(max_ms, parts_.cost.tick_ms())) return {};
+  if (room_.load.session_count <= own_count || tick_ms <= std::max(max_ms, room_.tick_cost.tick_ms())) return {};
   return wire::rejection(
       v1::REJECT_REASON_BUSY, field,
       fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
@@ -138,41 +138,41 @@ WaterChange::Outcome WaterChange::refuseSlow(const core::Sender& sender, const s
 // The same water at another fidelity
 
 WaterChange::Built WaterChange::continueIn(std::unique_ptr<water::Water>& next, const std::string& why) {
-  const std::string before = scene::fidelityName(parts_.water.scene().fidelity());
+  const std::string before = scene::fidelityName(room_.water->scene().fidelity());
   const v1::Scene built = next->startScene();
-  if (auto done = parts_.water.continueIn(next); !done) {
+  if (auto done = room_.water->continueIn(next); !done) {
     const bool is_device = done.error().code == core::ErrorCode::kUnavailable;
     return {.outcome = wire::rejection(is_device ? v1::REJECT_REASON_BUSY : v1::REJECT_REASON_NEEDS_RESTART,
                                        kFidelityField, core::firstLine(done.error().message))};
   }
-  parts_.builder.dispose(std::move(next));
+  room_.builder.dispose(std::move(next));
   // As it was built: the lattice of its particles follows from the parameters of that moment, and the present ones from
   // the commands before.
-  parts_.diary.continuedIn(parts_.water.tick(), built);
+  room_.diary.continuedIn(built);
   waterReplaced(true);
   Built out{.water = Built::Water::kContinues};
   out.fidelity = fmt::format("{}fidelity is now {} instead of {}", why.empty() ? why : why + ": ",
-                             scene::fidelityName(parts_.water.scene().fidelity()), before);
-  spdlog::info("room {}: {}", parts_.room, out.fidelity);
+                             scene::fidelityName(room_.water->scene().fidelity()), before);
+  spdlog::info("room {}: {}", room_.name, out.fidelity);
   return out;
 }
 
 void WaterChange::adapt(TimePoint now) {
-  if (!parts_.rules.adapts || state() != State::kNone || !parts_.rules.scenes.has(parts_.water.scene().name())) return;
-  const v1::Fidelity level = parts_.water.scene().fidelity();
+  if (!room_.rules.adapts || state() != State::kNone || !room_.rules.scenes.has(room_.water->scene().name())) return;
+  const v1::Fidelity level = room_.water->scene().fidelity();
   const auto lower = scene::coarserThan(level);
   const auto upper = scene::finerThan(level);
-  const double pace = parts_.time.pace();
+  const double pace = room_.time.pace();
   const Step step = governor_.note({.now_s = core::monotonic_s(now),
                                     .pace = pace,
                                     .can_fall = lower.has_value(),
-                                    .can_rise = upper && scene::rankOf(*upper) <= scene::rankOf(parts_.chosen_fidelity),
-                                    .is_building = !parts_.builder.isIdle()},
+                                    .can_rise = upper && scene::rankOf(*upper) <= scene::rankOf(room_.chosen_fidelity),
+                                    .is_building = !room_.builder.isIdle()},
                                    [&] { return loadAt(*upper); });
   if (step == Step::kNone) return;
-  auto scene = water::sceneAt(parts_.rules.scenes, parts_.water.scene(), step == Step::kDown ? *lower : *upper);
+  auto scene = water::sceneAt(room_.rules.scenes, room_.water->scene(), step == Step::kDown ? *lower : *upper);
   if (!scene) {
-    spdlog::warn("room {}: its fidelity cannot change: {}", parts_.room, core::firstLine(scene.error().message));
+    spdlog::warn("room {}: its fidelity cannot change: {}", room_.name, core::firstLine(scene.error().message));
     return governor_.failed(core::monotonic_s(now));
   }
   Build& build = begin(Build::Cause::kAdapting, *std::move(scene));
@@ -184,16 +184,16 @@ void WaterChange::adapt(TimePoint now) {
 
 WaterChange::Built WaterChange::takeAdapted(TimePoint now, const Build& build, water::WaterBuilder::Built water) {
   const auto fail = [&](const std::string& why) {
-    spdlog::warn("room {}: its fidelity stays {}: {}", parts_.room,
-                 scene::fidelityName(parts_.water.scene().fidelity()), why);
+    spdlog::warn("room {}: its fidelity stays {}: {}", room_.name, scene::fidelityName(room_.water->scene().fidelity()),
+                 why);
     governor_.failed(core::monotonic_s(now));
-    if (water) parts_.builder.dispose(*std::move(water));
+    if (water) room_.builder.dispose(*std::move(water));
     return Built{};
   };
   if (!water) return fail(core::firstLine(water.error().message));
   if (is_lost_) return takeRebuilt(now, std::move(water));
   // It ran for the first time: a device that works beside this thread shows what it costs only now.
-  const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / parts_.time.speed();
+  const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / room_.time.speed();
   if (const double tick_ms = (*water)->warmTick_ms(); build.step == Step::kUp && tick_ms > budget_ms) {
     return fail(fmt::format("a tick would take {:.1f} ms, {:.1f} ms are the most in real time", tick_ms, budget_ms));
   }
@@ -204,20 +204,21 @@ WaterChange::Built WaterChange::takeAdapted(TimePoint now, const Build& build, w
 }
 
 double WaterChange::loadAt(v1::Fidelity level) const {
-  const auto then = water::workAt(parts_.rules.scenes, parts_.water.scene(), level);
+  const auto then = water::workAt(room_.rules.scenes, room_.water->scene(), level);
   if (!then) return std::numeric_limits<double>::infinity();
-  const double per_s_now = parts_.time.speed() / parts_.water.sim().derived().tick_s;
-  const double per_s_then = parts_.time.speed() / then->tick_s;
-  const double more_ms_per_s = parts_.cost.predict_ms(then->per_tick) * per_s_then - parts_.cost.tick_ms() * per_s_now;
-  return parts_.load.thread_share + more_ms_per_s / 1e3;
+  const double per_s_now = room_.time.speed() / room_.water->sim().derived().tick_s;
+  const double per_s_then = room_.time.speed() / then->tick_s;
+  const double more_ms_per_s =
+      room_.tick_cost.predict_ms(then->per_tick) * per_s_then - room_.tick_cost.tick_ms() * per_s_now;
+  return room_.load.thread_share + more_ms_per_s / 1e3;
 }
 
 // Another layout of the particles
 
 bool WaterChange::beginRelayout(const v1::SetParameter& change) {
-  auto inputs = parts_.water.relayout(change);
+  auto inputs = room_.water->relayout(change);
   if (!inputs) return false;
-  auto prepared = parts_.builder.prepare(inputs->wanted, std::exchange(inputs->basis, {}));
+  auto prepared = room_.builder.prepare(inputs->wanted, std::exchange(inputs->basis, {}));
   relayout_.emplace(Relayout{*std::move(inputs), std::move(prepared)});
   return true;
 }
@@ -225,16 +226,16 @@ bool WaterChange::beginRelayout(const v1::SetParameter& change) {
 std::optional<WaterChange::Outcome> WaterChange::takeLayout() {
   if (!relayout_ || !isReady(relayout_->prepared)) return std::nullopt;
   Relayout ready = *std::exchange(relayout_, std::nullopt);
-  return parts_.water.adopt(std::move(ready.inputs), ready.prepared.get());
+  return room_.water->adopt(std::move(ready.inputs), ready.prepared.get());
 }
 
 // A device that fails
 
 bool WaterChange::watchDevice(TimePoint now) {
   if (!is_lost_) {
-    const auto failure = parts_.water.failure();
+    const auto failure = room_.water->failure();
     if (!failure) return false;
-    spdlog::error("room {}: {}; scene {} is rebuilt", parts_.room, *failure, parts_.water.scene().name());
+    spdlog::error("room {}: {}; scene {} is rebuilt", room_.name, *failure, room_.water->scene().name());
     is_lost_ = true;
     rebuild_pause_ = 1s;
     next_rebuild_ = now;
@@ -244,8 +245,8 @@ bool WaterChange::watchDevice(TimePoint now) {
 }
 
 v1::Scene WaterChange::sceneAfterLoss() const {
-  const auto kept = parts_.diary.keeper() ? parts_.diary.keeper()->newest() : std::nullopt;
-  if (!kept) return parts_.water.scene();
+  const auto kept = room_.diary.keeper() ? room_.diary.keeper()->newest() : std::nullopt;
+  if (!kept) return room_.water->scene();
   v1::Scene out = kept->state->start_scene();
   scene::fillDefaults(out);
   return out;
@@ -253,7 +254,7 @@ v1::Scene WaterChange::sceneAfterLoss() const {
 
 WaterChange::Built WaterChange::takeRebuilt(TimePoint now, water::WaterBuilder::Built water) {
   if (!water) {
-    spdlog::error("room {}: its water cannot be rebuilt ({}); the next try is in {} s", parts_.room,
+    spdlog::error("room {}: its water cannot be rebuilt ({}); the next try is in {} s", room_.name,
                   water.error().message, rebuild_pause_.count());
     next_rebuild_ = now + rebuild_pause_;
     rebuild_pause_ = std::min<std::chrono::seconds>(2 * rebuild_pause_, kRebuildPauseMax);
@@ -264,32 +265,32 @@ WaterChange::Built WaterChange::takeRebuilt(TimePoint now, water::WaterBuilder::
   const bool continues = out.water == Built::Water::kContinues;
   out.recovered = continues ? "the device failed; the room continues where it was, on a new one"
                             : "the device failed; the scene began again on a new one";
-  spdlog::warn("room {}: runs again, scene {} {}", parts_.room, parts_.water.scene().name(),
+  spdlog::warn("room {}: runs again, scene {} {}", room_.name, room_.water->scene().name(),
                continues ? "where it was" : "from its start");
   return out;
 }
 
 std::optional<WaterChange::Built> WaterChange::restoreIn(std::unique_ptr<water::Water>& water) {
-  history::StateKeeper* const keeper = parts_.diary.keeper();
+  history::StateKeeper* const keeper = room_.diary.keeper();
   auto kept = keeper ? keeper->newest() : std::nullopt;
   if (!kept) return std::nullopt;
-  water::RoomWater& room_water = parts_.water;
+  water::RoomWater& room_water = *room_.water;
   const std::uint64_t lost_tick = room_water.tick();
-  parts_.builder.dispose(room_water.replaceWater(std::move(water)));
-  auto restored = history::RestoredRoom::begin(*std::move(kept), {room_water, parts_.builder});
+  room_.builder.dispose(room_water.replaceWater(std::move(water)));
+  auto restored = history::RestoredRoom::begin(*std::move(kept), room_water, room_.builder);
   const auto done = restored ? restored->continueUntil(TimePoint::max()) : core::Result<bool>(restored.error());
   if (!done) {
-    spdlog::error("room {}: its state cannot be restored: {}", parts_.room, done.error().message);
+    spdlog::error("room {}: its state cannot be restored: {}", room_.name, done.error().message);
     room_water.sim().reset();
-    parts_.diary.beganScene(room_water.tick(), room_water.scene());
+    room_.diary.beganScene();
     waterReplaced(false);
     return Built{.water = Built::Water::kAtItsStart};
   }
   const history::RepeatedRoom rest = restored->room();
-  parts_.time.restore(room_water.sim().derived().tick_s, rest.speed, rest.is_paused, rest.pending_tick_count);
-  parts_.chosen_fidelity = rest.chosen_fidelity;
+  room_.time.restore(room_water.sim().derived().tick_s, rest.speed, rest.is_paused, rest.pending_tick_count);
+  room_.chosen_fidelity = rest.chosen_fidelity;
   room_water.goOnAfter(lost_tick);
-  parts_.diary.recovered(room_water.tick());
+  room_.diary.recovered();
   waterReplaced(true);
   // Ticks have passed since the snapshot, and the log does not say so.
   keeper->openGap("the room continued after its device failed, and no snapshot says so yet");

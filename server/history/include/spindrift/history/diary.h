@@ -1,8 +1,7 @@
 // What happens to the water of a room, in order: the commands that it carried out, new scenes, people. It goes to the
-// log of `serve --record`, and to the log of the room's state on disk, where the room has one. `tick`: of the room.
+// log of `serve --record`, and to the log of the room's state on disk, where the room has one.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -22,11 +21,9 @@ namespace spindrift::history {
 
 class Diary {
  public:
-  using TimePoint = std::chrono::steady_clock::time_point;
-
-  /// `record_folder`: for the log of `serve --record`; empty: no such log. A room that continues from its state on disk
-  /// has none either, because a log begins with a scene. Errors: those of the log.
-  static core::Result<Diary> create(const std::string& room, const water::RoomWater& water,
+  /// `water` outlives it. `record_folder`: for the log of `serve --record`; empty: no such log. A room that continues
+  /// from its state on disk has none either, because a log begins with a scene. Errors: those of the log.
+  static core::Result<Diary> create(const std::string& room, water::RoomWater& water,
                                     const std::filesystem::path& record_folder, std::uint32_t hash_interval_ticks,
                                     bool is_continued);
   /// From now on the state is kept on disk, too.
@@ -36,48 +33,37 @@ class Diary {
 
   /// Writes a command before it is carried out, so that nothing is lost that was acknowledged; a rejection if the disk
   /// refuses. A command that the water then refuses is refused again when it is repeated.
-  [[nodiscard]] std::optional<wire::CommandRejection> writeAhead(std::uint64_t tick, const v1::Command& command);
+  [[nodiscard]] std::optional<wire::CommandRejection> writeAhead(const v1::Command& command);
   /// A command has changed the water that could not be written ahead, because its work began in an earlier round.
-  void carriedOutLate(std::uint64_t tick, const v1::Command& command);
+  void carriedOutLate(const v1::Command& command);
   /// The water of another scene is at its start.
-  void beganScene(std::uint64_t tick, const v1::Scene& scene);
+  void beganScene();
   /// The same water continues at the fidelity of this scene, as that water was built.
-  void continuedIn(std::uint64_t tick, const v1::Scene& built);
+  void continuedIn(const v1::Scene& built);
   /// The water went back to an earlier state; a replay does not repeat it.
-  void recovered(std::uint64_t tick);
+  void recovered();
   /// A tick has passed. What the watchdog restored in it does not follow from the logs: a snapshot is wanted then.
-  void ticked(std::uint64_t tick, sim::WaterSim& water);
+  void ticked();
   /// Writes who is here if `version` is another one than in the last call.
-  void people(std::uint64_t tick, std::uint64_t version, const std::function<v1::RoomPeople()>& people);
-  /// Other water, whose watchdog has acted so many times; a snapshot of it is wanted.
-  void waterReplaced(std::uint64_t recovered_count);
-  void setRecovered(std::uint64_t count) { recovered_count_ = count; }
+  void people(std::uint64_t version, const std::function<v1::RoomPeople()>& people);
+  /// Other water is there; a snapshot of it is wanted.
+  void waterReplaced();
 
   /// Call it before answers are sent: they must not promise what the disk refused.
   core::Result<void> flush();
-  /// Returns whether a snapshot is due. `state_id`: RoomWater::stateId().
-  [[nodiscard]] bool wantsSnapshot(TimePoint now, std::uint64_t state_id) const;
-  /// Writes a snapshot beside the room: StateKeeper::save().
-  void save(v1::KeptState state, std::uint64_t state_id, TimePoint now, double copy_s);
-  /// Writes from time to time how far the room has come, unless it stands still.
-  void progress(TimePoint now, std::uint64_t tick, std::uint64_t state_id);
-  /// The same at once.
-  void progressNow(std::uint64_t tick, std::uint64_t state_id);
 
  private:
-  explicit Diary(std::unique_ptr<CommandLogWriter> log) : log_(std::move(log)) {}
+  Diary(water::RoomWater& water, std::unique_ptr<CommandLogWriter> log) : water_(water), log_(std::move(log)) {}
+  /// Returns a record of this tick, without content.
+  [[nodiscard]] v1::Record recordNow() const;
   /// Writes what has happened into both logs.
-  void write(std::uint64_t tick, v1::Record record);
-  void log(std::uint64_t tick, v1::Record record);
-  void keep(std::uint64_t tick, v1::Record record);
+  void write(const v1::Record& record);
 
+  water::RoomWater& water_;
   std::unique_ptr<CommandLogWriter> log_;
   std::unique_ptr<StateKeeper> keeper_;
   std::uint64_t recovered_count_ = 0;  ///< sim::WaterSim::recoveredCount() as of the last tick
   std::uint64_t kept_people_version_ = 0;
-  std::uint64_t kept_state_id_ = 0;   ///< of the last progress()
-  std::uint64_t saved_state_id_ = 0;  ///< of the last snapshot
-  TimePoint next_progress_{};
 };
 
 }  // namespace spindrift::history

@@ -28,13 +28,8 @@ class Repetition {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  /// Parts that it uses; they outlive it.
-  struct Parts {
-    water::RoomWater& water;
-    water::WaterBuilder& builder;  ///< makes the water of scene changes
-  };
-  /// Starts from the present water.
-  explicit Repetition(const Parts& parts) : parts_(parts) {}
+  /// Starts from the present water. `builder` makes that of scene changes. Both outlive it.
+  Repetition(water::RoomWater& water, water::WaterBuilder& builder) : water_(water), builder_(builder) {}
   /// Puts the state into the water. Error: RoomWater::restore().
   core::Result<void> restore(const v1::KeptState& state);
 
@@ -53,7 +48,8 @@ class Repetition {
   core::Result<bool> changeWater(const v1::Record& record, Wait wait);
   void repeat(const v1::Command& message);
 
-  Parts parts_;
+  water::RoomWater& water_;
+  water::WaterBuilder& builder_;
   RepeatedRoom room_;              ///< without its pending ticks
   std::uint64_t steps_until_ = 0;  ///< the tick up to which Step commands lead
   std::uint64_t command_count_ = 0;
@@ -66,7 +62,7 @@ class RestoredRoom {
   using TimePoint = Repetition::TimePoint;
 
   /// Puts the snapshot into the water. Errors: those of Repetition.
-  static core::Result<RestoredRoom> begin(KeptRoom kept, const Repetition::Parts& parts);
+  static core::Result<RestoredRoom> begin(KeptRoom kept, water::RoomWater& water, water::WaterBuilder& builder);
   /// Repeats at least a tick or a record of the log, and then until the deadline; with TimePoint::max() to the end.
   /// Returns whether the room is where it was. Errors: those of Repetition.
   core::Result<bool> continueUntil(TimePoint deadline);
@@ -75,7 +71,7 @@ class RestoredRoom {
   [[nodiscard]] RepeatedRoom room() const { return repetition_.room(); }
 
  private:
-  RestoredRoom(KeptRoom kept, const Repetition::Parts& parts) : kept_(std::move(kept)), repetition_(parts) {}
+  RestoredRoom(KeptRoom kept, Repetition repetition) : kept_(std::move(kept)), repetition_(std::move(repetition)) {}
 
   KeptRoom kept_;
   Repetition repetition_;

@@ -8,15 +8,13 @@
 #include <optional>
 #include <vector>
 
-#include <spindrift/history/diary.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/rooms/command_queue.h>
 #include <spindrift/rooms/room_actions.h>
-#include <spindrift/rooms/room_outlets.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_view.h>
 #include <spindrift/rooms/water_change.h>
 #include <spindrift/water/room_water.h>
-#include <spindrift/water/tick_cost.h>
 
 namespace spindrift::rooms {
 
@@ -50,15 +48,8 @@ class CommandDesk {
   using TimePoint = CommandQueue::TimePoint;
   using Outcome = water::RoomWater::Outcome;
 
-  /// The parts of the room that commands need; they outlive this.
-  struct Parts {
-    water::RoomWater& water;
-    RoomActions& actions;
-    WaterChange& change;
-    const water::TickCost& cost;
-    history::Diary& diary;
-  };
-  explicit CommandDesk(const Parts& parts);
+  /// The arguments outlive this.
+  CommandDesk(RoomData& room, RoomActions& actions, WaterChange& change);
 
   /// Any thread. Checks the sender's role and the scene, then queues the command. Otherwise returns the rejection with
   /// the command's number; a full queue is BUSY.
@@ -77,9 +68,9 @@ class CommandDesk {
   /// Rejects everything that waits but commands whose scene is being built.
   void rejectAll(const wire::CommandRejection& rejection);
   /// Tells the senders the outcomes of their commands, after making sure that what is promised is on disk.
-  void sendAnswers(RoomOutlets& outlets);
+  void sendAnswers();
   /// The room ends: rejects all commands and tells their senders.
-  void close(RoomOutlets& outlets);
+  void close();
 
  private:
   using Batch = CommandQueue::Batch;
@@ -117,7 +108,9 @@ class CommandDesk {
   [[nodiscard]] Outcome checkAgain(const Command& command) const;
   void answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id = 0);
 
-  Parts parts_;
+  RoomData& room_;
+  RoomActions& actions_;
+  WaterChange& change_;
   CommandQueue queue_;
   WorkBudget heavy_budget_;
   std::optional<Values> values_;  ///< that are not concluded; no heavy command is carried out meanwhile

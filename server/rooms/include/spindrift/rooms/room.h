@@ -12,23 +12,15 @@
 
 #include <spindrift/core/demand_table.h>
 #include <spindrift/core/result.h>
-#include <spindrift/history/diary.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/rooms/command_desk.h>
 #include <spindrift/rooms/room_actions.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_frames.h>
 #include <spindrift/rooms/room_keeping.h>
-#include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_reports.h>
-#include <spindrift/rooms/room_rules.h>
-#include <spindrift/rooms/room_time.h>
 #include <spindrift/rooms/room_view.h>
-#include <spindrift/rooms/roster.h>
-#include <spindrift/rooms/tick_meter.h>
 #include <spindrift/rooms/water_change.h>
-#include <spindrift/water/room_water.h>
-#include <spindrift/water/tick_cost.h>
-#include <spindrift/water/water_builder.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::rooms {
@@ -55,14 +47,14 @@ class Room {
   core::Result<bool> isOnDisk(TimePoint deadline) { return keeping_.isOnDisk(deadline); }
 
   // Any thread.
-  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] const std::string& name() const { return data_.name; }
   /// Digests of the tokens that were made for this room; never changes.
-  [[nodiscard]] const v1::RoomAccess& access() const { return access_; }
+  [[nodiscard]] const v1::RoomAccess& access() const { return data_.access; }
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const { return reports_.snapshot(); }
   [[nodiscard]] std::shared_ptr<const RoomVitals> vitals() const { return vitals_.get(); }
   /// The people in the room.
-  [[nodiscard]] Roster& roster() { return roster_; }
-  [[nodiscard]] const Roster& roster() const { return roster_; }
+  [[nodiscard]] Roster& roster() { return data_.roster; }
+  [[nodiscard]] const Roster& roster() const { return data_.roster; }
   /// The only entry for commands, from sessions and requests: CommandDesk::admit().
   [[nodiscard]] std::optional<wire::CommandRejection> admit(Command command);
   /// Asks for a snapshot on disk as soon as possible; returns false if the room is not kept.
@@ -76,10 +68,10 @@ class Room {
   /// Returns the number of calls of run(). For tests.
   [[nodiscard]] std::uint64_t roundCount() const { return round_count_; }
   /// Returns what the sessions of the room need of its frames: they change it. Never null.
-  [[nodiscard]] const std::shared_ptr<core::DemandTable>& demand() const { return demand_; }
+  [[nodiscard]] const std::shared_ptr<core::DemandTable>& demand() const { return data_.demand; }
 
   // Simulation thread.
-  void start(TimePoint now) { time_.start(now); }
+  void start(TimePoint now) { data_.time.start(now); }
   /// `on_wake` is called on any thread when due() has come nearer, at most once per run(). Set it before other threads
   /// know the room.
   void onWake(std::function<void()> on_wake) { on_wake_ = std::move(on_wake); }
@@ -90,13 +82,13 @@ class Room {
   /// finished frames. At most one tick per call, so that rooms share the thread.
   void run(TimePoint now, const ServerLoad& load = {});
 
-  [[nodiscard]] const sim::WaterSim& water() const { return water_->sim(); }
+  [[nodiscard]] const sim::WaterSim& water() const { return data_.water->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.
-  [[nodiscard]] std::uint64_t tick() const { return water_->tick(); }
+  [[nodiscard]] std::uint64_t tick() const { return data_.water->tick(); }
   /// Returns sim::WaterSim::stateHash() of the water. Waits for the device.
-  [[nodiscard]] std::uint64_t stateHash() { return water_->sim().stateHash(); }
+  [[nodiscard]] std::uint64_t stateHash() { return data_.water->sim().stateHash(); }
   /// Rejects the commands that still wait.
-  void abandonCommands() { desk_.close(outlets_); }
+  void abandonCommands() { desk_.close(); }
   /// Writes a snapshot and waits for it until the deadline. Errors: those of the files; kUnavailable when the device
   /// does not answer, or the deadline passes: a snapshot that has begun is written nevertheless, and the log holds the
   /// rest.
@@ -127,24 +119,13 @@ class Room {
   void announce();
   void publishVitals(TimePoint now);
 
-  const std::string name_;
-  v1::RoomAccess access_;  ///< set by begin() and restoreUntil() only
-  RoomOutlets& outlets_;
-  const std::shared_ptr<core::DemandTable> demand_ = std::make_shared<core::DemandTable>();
-  std::unique_ptr<water::RoomWater> water_;
-  history::Diary diary_;
-  Roster roster_;
-  RoomTime time_;
-  water::TickCost tick_cost_;
-  TickMeter tick_meter_;
-  ServerLoad load_;
-  v1::Fidelity chosen_fidelity_;  ///< of the scene, or chosen by a person; adapting never goes above it
-  RoomReports reports_;
-  RoomFrames frames_;
-  WaterChange change_;
-  RoomActions actions_;
-  CommandDesk desk_;
-  RoomKeeping keeping_;
+  RoomData data_;
+  RoomReports reports_{data_};
+  RoomFrames frames_{data_};
+  WaterChange change_{data_};
+  RoomActions actions_{data_};
+  CommandDesk desk_{data_, actions_, change_};
+  RoomKeeping keeping_{data_};
 
   TimePoint next_vitals_{};
   TimePoint ran_{};                    ///< begin of the last run()

@@ -4,14 +4,9 @@
 #include <cstdint>
 #include <utility>
 
-#include <spindrift/history/diary.h>
 #include <spindrift/rooms/command.h>
-#include <spindrift/rooms/frame_schedule.h>
-#include <spindrift/rooms/room_reports.h>
-#include <spindrift/rooms/room_time.h>
-#include <spindrift/rooms/roster.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/water/room_water.h>
-#include <spindrift/water/tick_cost.h>
 
 namespace spindrift::rooms {
 
@@ -20,17 +15,7 @@ class RoomActions {
  public:
   using Outcome = water::RoomWater::Outcome;
 
-  /// The parts of the room that commands change; they outlive this.
-  struct Parts {
-    water::RoomWater& water;
-    history::Diary& diary;
-    RoomTime& time;
-    Roster& roster;
-    FrameSchedule& frames;
-    water::TickCost& cost;
-    News& news;
-  };
-  explicit RoomActions(const Parts& parts) : parts_(parts) {}
+  explicit RoomActions(RoomData& room) : room_(room) {}
 
   /// Applies a command that changes nothing but the water.
   Outcome applyToWater(const Command& command);
@@ -57,12 +42,10 @@ class RoomActions {
   [[nodiscard]] std::uint32_t takeNewBoatId() { return std::exchange(new_boat_id_, 0); }
 
  private:
-  [[nodiscard]] Outcome writeAhead(const Command& command) {
-    return parts_.diary.writeAhead(parts_.water.tick(), command.message);
-  }
-  [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return parts_.water.boatIds().contains(boat_id); }
+  [[nodiscard]] Outcome writeAhead(const Command& command) { return room_.diary.writeAhead(command.message); }
+  [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return room_.water->boatIds().contains(boat_id); }
 
-  Parts parts_;
+  RoomData& room_;
   std::uint32_t new_boat_id_ = 0;
 };
 

@@ -4,14 +4,9 @@
 #include <chrono>
 #include <cstdint>
 
-#include <spindrift/core/demand_table.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/core/level.h>
-#include <spindrift/rooms/frame_schedule.h>
-#include <spindrift/rooms/room_outlets.h>
-#include <spindrift/rooms/room_time.h>
-#include <spindrift/rooms/tick_meter.h>
-#include <spindrift/water/room_water.h>
+#include <spindrift/rooms/room_data.h>
 
 namespace spindrift::rooms {
 
@@ -19,18 +14,7 @@ class RoomFrames {
  public:
   using TimePoint = FrameSchedule::TimePoint;
 
-  /// The parts of the room that it reads; they outlive this.
-  struct Parts {
-    const Room& room;
-    water::RoomWater& water;
-    const RoomTime& time;
-    TickMeter& tick_meter;
-    const core::DemandTable& demand;
-    RoomOutlets& outlets;
-  };
-  explicit RoomFrames(const Parts& parts) : parts_(parts) {}
-  [[nodiscard]] FrameSchedule& schedule() { return schedule_; }
-  [[nodiscard]] const FrameSchedule& schedule() const { return schedule_; }
+  explicit RoomFrames(RoomData& room) : room_(room) {}
 
   /// Requests the frame after a tick of a running room, if it is due.
   void afterTick(TimePoint scheduled, TimePoint end);
@@ -50,8 +34,7 @@ class RoomFrames {
   /// Requests what is watched of a frame that these levels take.
   void request(TimePoint now, core::LevelSet due);
 
-  Parts parts_;
-  FrameSchedule schedule_;
+  RoomData& room_;
   bool wants_diagnostics_ = false;
   std::uint64_t dropped_count_ = 0;
 };

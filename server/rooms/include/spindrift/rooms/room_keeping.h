@@ -4,17 +4,12 @@
 #include <chrono>
 #include <memory>
 #include <optional>
-#include <string>
 
 #include <spindrift/core/result.h>
-#include <spindrift/history/diary.h>
 #include <spindrift/history/repetition.h>
 #include <spindrift/history/state_store.h>
-#include <spindrift/rooms/room_time.h>
-#include <spindrift/rooms/roster.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/v1/kept_state.pb.h>
-#include <spindrift/water/room_water.h>
-#include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
 
@@ -22,19 +17,7 @@ class RoomKeeping {
  public:
   using TimePoint = RoomTime::TimePoint;
 
-  /// The parts of the room that are kept; they outlive this.
-  struct Parts {
-    const std::string& room;
-    v1::RoomAccess& access;
-    water::RoomWater& water;
-    RoomTime& time;
-    Roster& roster;
-    v1::Fidelity& chosen_fidelity;
-    history::Diary& diary;
-    water::WaterBuilder& builder;
-    std::chrono::milliseconds disk_patience;  ///< RoomRules::disk_patience
-  };
-  explicit RoomKeeping(const Parts& parts) : parts_(parts) {}
+  explicit RoomKeeping(RoomData& room) : room_(room) {}
 
   /// Keeps the room in `place` from restoreUntil() on. If a room is kept there, puts its snapshot into the water.
   /// Error: kInvalidInput if the room cannot continue from there.
@@ -52,20 +35,22 @@ class RoomKeeping {
  private:
   /// Begins to write a snapshot. Error: the device does not answer.
   core::Result<void> save();
+  /// Writes how far the room has come, unless it stands still.
+  void writeProgress();
   /// Returns the state between two ticks; nullopt when the device does not answer.
   std::optional<v1::KeptState> stateNow();
   void restorePeople(const history::KeptRoom& kept);
   [[nodiscard]] core::Error cannotBeWritten(const core::Error& why) const;
 
-  /// Needs of a room that begins.
-  struct Restoration {
-    std::unique_ptr<history::StateKeeper> keeper;
-    std::optional<history::RestoredRoom> room;
-  };
+  RoomData& room_;
+  // Until the room is where it was:
+  std::unique_ptr<history::StateKeeper> coming_keeper_;
+  std::optional<history::RestoredRoom> restored_;
 
-  Parts parts_;
-  std::optional<Restoration> restoration_;  ///< until the room is where it was
   TimePoint first_snapshot_until_{};
+  TimePoint next_progress_{};
+  std::uint64_t saved_state_id_ = 0;  ///< RoomWater::stateId() of the last snapshot
+  std::uint64_t told_state_id_ = 0;   ///< and of the last writeProgress()
 };
 
 }  // namespace spindrift::rooms

@@ -3,29 +3,14 @@
 
 #include <chrono>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
-#include <string>
 
-#include <spindrift/rooms/room_outlets.h>
-#include <spindrift/rooms/room_time.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_view.h>
-#include <spindrift/rooms/roster.h>
 #include <spindrift/v1/wire.pb.h>
-#include <spindrift/water/room_water.h>
 
 namespace spindrift::rooms {
-
-/// Changes that the clients have not been told about yet.
-struct News {
-  bool state = false;  ///< pause or speed
-  bool boats = false;
-  bool reset = false;
-  std::map<std::string, double> parameters{};  ///< current values by path
-  std::string recovered{};                     ///< one line for people, after the device failed
-  std::string fidelity{};                      ///< the same, after the fidelity changed
-};
 
 /// Reports the growth of a counter at most once per interval; the next report includes all growth in between.
 class GrowthNews {
@@ -55,15 +40,7 @@ class RoomReports {
  public:
   using TimePoint = RoomTime::TimePoint;
 
-  /// The parts of the room that it reports on, and the outlets; they outlive this.
-  struct Parts {
-    const Room& room;
-    water::RoomWater& water;
-    const RoomTime& time;
-    const Roster& roster;
-    RoomOutlets& outlets;
-  };
-  explicit RoomReports(const Parts& parts) : parts_(parts) { begin(); }
+  explicit RoomReports(RoomData& room) : room_(room) { begin(); }
 
   /// Any thread.
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const { return snapshot_.get(); }
@@ -72,8 +49,7 @@ class RoomReports {
   void begin();
   /// Other water has replaced the present one: the clients get a greeting, which contains all.
   void sceneChanged();
-  /// To be told by the next tell().
-  [[nodiscard]] News& news() { return news_; }
+  /// Tells the room's news.
   void tell();
   /// Tells who is in the room; `is_news`: that has changed.
   void tellPeople(bool is_news, TimePoint now);
@@ -89,8 +65,7 @@ class RoomReports {
   /// Announces the boats on the water if they differ from the last announcement.
   void tellBoats();
 
-  Parts parts_;
-  News news_;
+  RoomData& room_;
   v1::BoatList boats_;  ///< as last announced
   GrowthNews recovery_news_{std::chrono::seconds(1)};
   bool has_people_news_ = false;

@@ -9,24 +9,14 @@
 #include <optional>
 #include <string>
 
-#include <spindrift/core/result.h>
-#include <spindrift/history/diary.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/rooms/fidelity_governor.h>
-#include <spindrift/rooms/room_rules.h>
-#include <spindrift/rooms/room_time.h>
+#include <spindrift/rooms/room_data.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/water/room_water.h>
-#include <spindrift/water/tick_cost.h>
 #include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
-
-/// Load of the server, as of this round of a room.
-struct ServerLoad {
-  std::size_t session_count = 0;  ///< in all rooms
-  double thread_share = 0.0;      ///< share of its time that the simulation thread was busy lately
-};
 
 /// A state machine. At most one water is being built and one layout prepared at a time; water that is ready waits until
 /// the layout is done.
@@ -42,20 +32,7 @@ class WaterChange {
     kLost,      ///< the device failed: the room stands still until new water is built
   };
 
-  /// The parts of the room that a change concerns; they outlive this.
-  struct Parts {
-    const std::string& room;
-    const RoomRules& rules;
-    water::WaterBuilder& builder;
-    water::RoomWater& water;
-    history::Diary& diary;
-    RoomTime& time;
-    water::TickCost& cost;
-    const ServerLoad& load;
-    /// Fidelity of the scene, or chosen by a person; adapting never goes above it.
-    v1::Fidelity& chosen_fidelity;
-  };
-  explicit WaterChange(const Parts& parts) : parts_(parts) {}
+  explicit WaterChange(RoomData& room) : room_(room) {}
 
   [[nodiscard]] State state() const {
     if (is_lost_) return State::kLost;
@@ -136,7 +113,7 @@ class WaterChange {
   /// Predicts how busy the thread is with the room at another level; infinite if the level is not possible.
   [[nodiscard]] double loadAt(v1::Fidelity level) const;
 
-  Parts parts_;
+  RoomData& room_;
   std::optional<Build> build_;
   std::optional<Relayout> relayout_;
   bool is_lost_ = false;
