@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -80,17 +81,40 @@ class StateKeeper {
   [[nodiscard]] Status status() const;
 
  private:
-  /// Shared with the writer, whose work may end after this.
-  struct Shared;
+  /// On the writer's thread. `known_gap_count`: gaps that had opened when the state was copied.
+  void write(const state::StatePoint& point, const v1::KeptState& state, TimePoint copied,
+             std::uint64_t known_gap_count);
+  /// A snapshot has ended; call it with the mutex held.
+  void end(core::Result<void> how);
+  /// Counts and logs the error; call it with the mutex held.
+  void note(const core::Error& error);
 
   const std::string room_;
+  const state::FolderLock lock_;  ///< before the files, which end first
+  const std::unique_ptr<state::RoomFiles> files_;
   const std::chrono::milliseconds interval_;
   core::Worker& writer_;
-  std::shared_ptr<Shared> shared_;
   TimePoint next_{};
   std::atomic<bool> is_asked_ = false;
   KeptRoom newest_{};  ///< without a state if there was too much since
   std::size_t records_bytes_ = 0;
+
+  mutable std::mutex mutex_;  ///< guards all below
+  mutable std::condition_variable finished_;
+  bool is_writing_ = false;
+  core::Result<void> outcome_;  ///< of the last snapshot
+  /// Why the log lacks something that happened. A snapshot of a later state holds it.
+  std::optional<std::string> gap_;
+  std::uint64_t gap_count_ = 0;       ///< gaps since the start
+  std::optional<TimePoint> retry_{};  ///< of the snapshot, after one failed or a gap opened
+  std::string logged_error_;
+  std::string logged_removal_;
+  TimePoint logged_at_{};
+  std::uint64_t snapshot_count_ = 0;
+  std::uint64_t failure_count_ = 0;
+  TimePoint newest_copy_ = std::chrono::steady_clock::now();
+  double copy_s_ = 0.0;
+  double write_s_ = 0.0;
 };
 
 }  // namespace spindrift::history
