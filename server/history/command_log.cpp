@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include <boost/endian/arithmetic.hpp>
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
@@ -20,24 +21,14 @@ using core::ErrorCode;
 
 constexpr std::string_view kMagic = "spinrec2";
 constexpr std::string_view kMagicV1 = "spinrec1";
-constexpr std::size_t kPrefixBytes = 8;
 /// Larger than any scene: the points of a bed take up to 4 MiB.
 constexpr std::uint32_t kRecordMaxBytes = 8u << 20;
 
-std::array<char, kPrefixBytes> prefixOf(std::uint32_t length, std::uint32_t crc) {
-  std::array<char, kPrefixBytes> out{};
-  for (unsigned k = 0; k < 4; ++k) {
-    out[k] = static_cast<char>(length >> (8 * k) & 0xFF);
-    out[4 + k] = static_cast<char>(crc >> (8 * k) & 0xFF);
-  }
-  return out;
-}
-
-std::uint32_t numberAt(const std::array<char, kPrefixBytes>& bytes, std::size_t at) {
-  std::uint32_t out = 0;
-  for (unsigned k = 0; k < 4; ++k) out |= std::uint32_t{static_cast<unsigned char>(bytes[at + k])} << (8 * k);
-  return out;
-}
+/// Before each record, little endian.
+struct Prefix {
+  boost::endian::little_uint32_t payload_bytes;
+  boost::endian::little_uint32_t crc32c;
+};
 
 using core::viewOf;
 
@@ -114,16 +105,17 @@ void CommandLogWriter::write(v1::Record record) {
   if (ended_) return;
   record.set_number(++record_count_);
   const std::string payload = record.SerializeAsString();
-  const auto prefix = prefixOf(static_cast<std::uint32_t>(payload.size()), core::crc32c(viewOf(payload)));
-  if (size_bytes_ + prefix.size() + payload.size() > kLogMaxBytes) {
+  const Prefix prefix{static_cast<std::uint32_t>(payload.size()), core::crc32c(viewOf(payload))};
+  const std::size_t record_bytes = sizeof prefix + payload.size();
+  if (size_bytes_ + record_bytes > kLogMaxBytes) {
     spdlog::warn("the log {} ends here: it has reached {} bytes", file_.string(), kLogMaxBytes);
     ended_ = true;
     return;
   }
-  out_.write(prefix.data(), prefix.size());
+  out_.write(reinterpret_cast<const char*>(&prefix), sizeof prefix);
   out_.write(payload.data(), static_cast<std::streamsize>(payload.size()));
   out_.flush();
-  size_bytes_ += prefix.size() + payload.size();
+  size_bytes_ += record_bytes;
   if (out_.good()) return;
   spdlog::error("the log {} ends here: it could not be written ({})", file_.string(), std::strerror(errno));
   ended_ = true;
@@ -159,23 +151,23 @@ std::optional<v1::Record> CommandLogReader::next() {
     truncation_ = fmt::format("{} at byte {}", why, offset_bytes_);
     return std::nullopt;
   };
-  std::array<char, kPrefixBytes> prefix{};
-  in_.read(prefix.data(), prefix.size());
+  Prefix prefix{};
+  in_.read(reinterpret_cast<char*>(&prefix), sizeof prefix);
   if (in_.gcount() == 0) return std::nullopt;
-  if (in_.gcount() < static_cast<std::streamsize>(prefix.size())) return broken("a record breaks off");
-  const std::uint32_t length = numberAt(prefix, 0);
+  if (in_.gcount() < std::streamsize{sizeof prefix}) return broken("a record breaks off");
+  const std::uint32_t length = prefix.payload_bytes;
   if (length > kRecordMaxBytes) return broken("a record is damaged");
   std::string payload(length, '\0');
   in_.read(payload.data(), length);
   if (in_.gcount() < static_cast<std::streamsize>(length)) return broken("a record breaks off");
   auto record = parse(payload, is_v1_);
-  if (core::crc32c(viewOf(payload)) != numberAt(prefix, 4) || !record) return broken("a record is damaged");
+  if (core::crc32c(viewOf(payload)) != prefix.crc32c || !record) return broken("a record is damaged");
   ++record_count_;
   if (record->number() != 0 && record->number() != record_count_) {
     return broken(fmt::format("record {} stands where record {} follows: records are missing, doubled or exchanged",
                               record->number(), record_count_));
   }
-  offset_bytes_ += prefix.size() + length;
+  offset_bytes_ += sizeof prefix + length;
   return record;
 }
 
