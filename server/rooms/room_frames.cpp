@@ -1,9 +1,9 @@
 #include <utility>
+#include <vector>
 
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/monotonic.h>
 #include <spindrift/rooms/room_frames.h>
-#include <spindrift/rooms/room_view.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -12,6 +12,21 @@ using namespace std::chrono_literals;
 
 /// A paused room's frame that found no free slot is asked for again.
 constexpr auto kDroppedFrameRetry = 10ms;
+
+std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water) {
+  std::vector<core::DiagnosticsView::GaugeNow> out;
+  if (!water.gauges()) return out;
+  const std::vector<sim::GaugeHistory::Now> now = water.gauges()->now();
+  for (std::size_t k = 0; k < now.size(); ++k) {
+    out.push_back({.name = water.scene().gauges[k].name,
+                   .elevation_m = now[k].reading.elevation_m,
+                   .velocity_x_mps = now[k].reading.velocity_x_mps,
+                   .velocity_z_mps = now[k].reading.velocity_z_mps,
+                   .highest_m = now[k].highest_m,
+                   .lowest_m = now[k].lowest_m});
+  }
+  return out;
+}
 
 }  // namespace
 
@@ -78,8 +93,30 @@ void RoomFrames::restart() {
 }
 
 core::DiagnosticsView RoomFrames::diagnostics() {
-  sim::WaterSim& sim = room_.water->sim();
-  return diagnosticsOf(sim, room_.tick_meter.takeMeans(sim), room_.time.realTimeFactor());
+  sim::WaterSim& water = room_.water->sim();
+  const TickMeter::Means& means = room_.tick_meter.takeMeans(water);
+  const sim::Health& h = water.health();
+  return {.step_ms = means.step_ms,
+          .real_time_factor = room_.time.realTimeFactor(),
+          .substeps_count = water.derived().substeps_count,
+          .particle_count = water.particleCount(),
+          .max_particle_speed_mps = h.max_speed_mps,
+          .max_elevation_m = h.max_elevation_m,
+          .kinetic_energy_j = h.kinetic_energy_j,
+          .potential_energy_j = h.potential_energy_j,
+          .wave_energy_j = h.wave_energy_j,
+          .mean_density_ratio = h.mean_density_ratio,
+          .max_density_ratio = h.max_density_ratio,
+          .nonfinite_count = water.nonfiniteCount(),
+          .escaped_count = water.escapedCount(),
+          .recovered_count = water.recoveredCount(),
+          .boat_count = water.boatCount(),
+          .volume_error_units = h.volume_error_units,
+          .emitted_m3 = h.emitted_m3,
+          .absorbed_m3 = h.absorbed_m3,
+          .breaking_ratio = h.breaking_ratio,
+          .passes = means.passes,
+          .gauges = gaugesNow(water)};
 }
 
 }  // namespace spindrift::rooms

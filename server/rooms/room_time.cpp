@@ -25,31 +25,24 @@ double seconds(std::chrono::steady_clock::duration duration) {
 
 }  // namespace
 
-void RealTimeClock::restart(TimePoint now) {
+void RoomTime::restartPace(TimePoint now) {
   due_ = now;
   ticks_.clear();
 }
 
-void RealTimeClock::ticked(TimePoint now) {
-  due_ += std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(tick_s_ / speed_));
-  due_ = std::max(due_, now - kMaxDebt);
-  ticks_.push_back(now);
-  while (now - ticks_.front() > kWindow) ticks_.pop_front();
-}
-
-double RealTimeClock::realTimeFactor() const {
+double RoomTime::runningFactor() const {
   if (ticks_.size() < 2) return 0.0;
-  const std::chrono::duration<double> span = ticks_.back() - ticks_.front();
-  return span.count() > 0 ? static_cast<double>(ticks_.size() - 1) * tick_s_ / span.count() : 0.0;
+  const double span_s = seconds(ticks_.back() - ticks_.front());
+  return span_s > 0 ? static_cast<double>(ticks_.size() - 1) * tick_s_ / span_s : 0.0;
 }
 
 void RoomTime::start(TimePoint now) {
-  clock_.restart(now);
+  restartPace(now);
   last_run_ = last_watched_ = now;
 }
 
 void RoomTime::restart(double tick_s, bool keeps_steps, TimePoint now) {
-  restore(tick_s, clock_.speed(), is_paused_, keeps_steps ? steps_to_come_ : 0);
+  restore(tick_s, speed_, is_paused_, keeps_steps ? steps_to_come_ : 0);
   start(now);
   is_asleep_ = false;
   slow_since_ = {};
@@ -57,8 +50,8 @@ void RoomTime::restart(double tick_s, bool keeps_steps, TimePoint now) {
 
 void RoomTime::restore(double tick_s, double speed, bool is_paused, std::uint32_t steps_to_come) {
   tick_s_ = tick_s;
-  clock_ = RealTimeClock(tick_s);
-  if (speed > 0) clock_.setSpeed(speed);
+  speed_ = speed > 0 ? speed : 1.0;
+  restartPace({});
   is_paused_ = is_paused;
   steps_to_come_ = steps_to_come;
 }
@@ -69,7 +62,7 @@ double RoomTime::meanRealTimeFactor(TimePoint now) const {
 }
 
 void RoomTime::setPaused(bool is_paused, TimePoint now) {
-  if (is_paused_ && !is_paused) clock_.restart(now);
+  if (is_paused_ && !is_paused) restartPace(now);
   is_paused_ = is_paused;
   steps_to_come_ = 0;
 }
@@ -82,7 +75,7 @@ void RoomTime::beginRound(TimePoint now) {
 bool RoomTime::watchOver(bool is_watched, TimePoint now) {
   if (is_watched) {
     last_watched_ = now;
-    if (is_asleep_) clock_.restart(now);
+    if (is_asleep_) restartPace(now);
     is_asleep_ = false;
     return false;
   }
@@ -95,12 +88,15 @@ void RoomTime::ticked(TimePoint begin, TimePoint end) {
   run_s_ += tick_s_;
   running_wall_s_ += seconds(end - std::max(begin, last_run_));
   last_run_ = end;
-  clock_.ticked(end);
+  due_ += std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(tick_s_ / speed_));
+  due_ = std::max(due_, end - kMaxDebt);
+  ticks_.push_back(end);
+  while (end - ticks_.front() > kWindow) ticks_.pop_front();
 }
 
 void RoomTime::warnIfSlow(const std::string& room, TimePoint now) {
-  const double factor = clock_.realTimeFactor();
-  if (factor == 0.0 || factor >= kSlowPace * clock_.speed()) {
+  const double factor = runningFactor();
+  if (factor == 0.0 || factor >= kSlowPace * speed_) {
     slow_since_ = now;
     return;
   }
@@ -110,7 +106,7 @@ void RoomTime::warnIfSlow(const std::string& room, TimePoint now) {
   spdlog::warn(
       "room {}: time runs at {:.2f} of {:.2f} wanted: this machine cannot keep up; use a lower fidelity (serve --adapt "
       "does so by itself), fewer particles, or a lower speed",
-      room, factor, clock_.speed());
+      room, factor, speed_);
 }
 
 }  // namespace spindrift::rooms

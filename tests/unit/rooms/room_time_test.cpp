@@ -16,6 +16,42 @@ RoomTime running() {
   return time;
 }
 
+TEST(RoomTime, IsDueOncePerTickAndMeasuresFullSpeedAsOne) {
+  RoomTime time(0.01);
+  time.start(kRoomStart);
+  EXPECT_EQ(time.due(), kRoomStart);
+  for (int i = 0; i < 200; ++i) time.ticked(time.due(), time.due());
+  EXPECT_EQ(time.due(), kRoomStart + 2s);
+  EXPECT_NEAR(time.realTimeFactor(), 1.0, 1e-9);
+}
+
+TEST(RoomTime, SlowsDownAndSaysSoWhenTicksTakeTooLong) {
+  RoomTime time(0.01);
+  time.start(kRoomStart);
+  auto now = kRoomStart;
+  for (int i = 0; i < 300; ++i) {
+    now += 20ms;
+    time.ticked(now, now);
+    EXPECT_GE(time.due(), now - 100ms) << "debt is dropped, so that the water never rushes to catch up";
+  }
+  EXPECT_NEAR(time.realTimeFactor(), 0.5, 1e-6);
+}
+
+TEST(RoomTime, CatchesUpAShortHiccup) {
+  RoomTime time(0.01);
+  time.start(kRoomStart);
+  time.ticked(kRoomStart, kRoomStart + 50ms);
+  EXPECT_EQ(time.due(), kRoomStart + 10ms);
+}
+
+TEST(RoomTime, FollowsTheWantedSpeed) {
+  RoomTime time(0.01);
+  time.start(kRoomStart);
+  time.setSpeed(2.0);
+  for (int i = 0; i < 400; ++i) time.ticked(time.due(), time.due());
+  EXPECT_NEAR(time.realTimeFactor(), 2.0, 1e-6);
+}
+
 TEST(RoomTime, SleepsTwoSecondsAfterTheLastClientLeftAndWakesWithTheNext) {
   RoomTime time = running();
   EXPECT_FALSE(time.watchOver(true, kRoomStart + 1s));

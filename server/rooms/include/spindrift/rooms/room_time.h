@@ -9,41 +9,14 @@
 
 namespace spindrift::rooms {
 
-/// Schedules a room's ticks: compares simulated time with wall time. When the machine cannot keep up, the lag is
-/// dropped: simulated time runs slower, and realTimeFactor() reports it.
-class RealTimeClock {
+/// Pace, pause, single steps and sleep. Compares simulated time with wall time: when the machine cannot keep up, the
+/// lag is dropped; then simulated time runs slower, and realTimeFactor() reports it.
+class RoomTime {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;
 
-  explicit RealTimeClock(double tick_s) : tick_s_(tick_s) {}
-
-  /// Sets the wanted simulated seconds per wall second; takes effect at the next tick.
-  void setSpeed(double speed) { speed_ = speed; }
-  [[nodiscard]] double speed() const { return speed_; }
-  /// Starts (again) at `now`, without lag.
-  void restart(TimePoint now);
-
-  [[nodiscard]] TimePoint due() const { return due_; }
-  /// Notes that a tick ended at `now`.
-  void ticked(TimePoint now);
-
-  /// Returns simulated seconds per wall second over the last second (too low right after a start).
-  [[nodiscard]] double realTimeFactor() const;
-
- private:
-  double tick_s_;
-  double speed_ = 1.0;
-  TimePoint due_{};
-  std::deque<TimePoint> ticks_;  ///< end times of the ticks of the last second; bounded by tick rate times speed
-};
-
-/// Pace, pause, single steps and sleep.
-class RoomTime {
- public:
-  using TimePoint = RealTimeClock::TimePoint;
-
   /// `tick_s`: simulated seconds per tick.
-  explicit RoomTime(double tick_s) : tick_s_(tick_s), clock_(tick_s) {}
+  explicit RoomTime(double tick_s) : tick_s_(tick_s) {}
 
   void start(TimePoint now);
   /// Other water at the same speed; awake, and paused as before. `keeps_steps`: with the steps that were still to come.
@@ -55,19 +28,21 @@ class RoomTime {
   [[nodiscard]] bool isAsleep() const { return is_asleep_; }
   /// Neither paused nor asleep.
   [[nodiscard]] bool runs() const { return !is_paused_ && !is_asleep_; }
-  [[nodiscard]] double speed() const { return clock_.speed(); }
+  /// Wanted simulated seconds per wall second.
+  [[nodiscard]] double speed() const { return speed_; }
   /// realTimeFactor() of a running room as a share of speed(): 1 where the machine keeps up.
-  [[nodiscard]] double pace() const { return clock_.realTimeFactor() / clock_.speed(); }
-  /// Simulated over wall time in the last second; 0 in a room that stands still.
-  [[nodiscard]] double realTimeFactor() const { return runs() ? clock_.realTimeFactor() : 0.0; }
+  [[nodiscard]] double pace() const { return runningFactor() / speed_; }
+  /// Simulated over wall time in the last second (too low right after a start); 0 in a room that stands still.
+  [[nodiscard]] double realTimeFactor() const { return runs() ? runningFactor() : 0.0; }
   /// The same since the start, without the time in which the room stood still.
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
   /// When the next tick of a running room is due.
-  [[nodiscard]] TimePoint due() const { return clock_.due(); }
+  [[nodiscard]] TimePoint due() const { return due_; }
 
   /// Ends the steps that were still to come.
   void setPaused(bool is_paused, TimePoint now);
-  void setSpeed(double speed) { clock_.setSpeed(speed); }
+  /// Takes effect at the next tick.
+  void setSpeed(double speed) { speed_ = speed; }
   /// Ticks that the paused room has still to advance.
   [[nodiscard]] std::uint32_t stepsToCome() const { return steps_to_come_; }
   void setSteps(std::uint32_t count) { steps_to_come_ = count; }
@@ -84,8 +59,14 @@ class RoomTime {
   void warnIfSlow(const std::string& room, TimePoint now);
 
  private:
+  /// The next tick is due at `now`, without lag.
+  void restartPace(TimePoint now);
+  [[nodiscard]] double runningFactor() const;
+
   double tick_s_;
-  RealTimeClock clock_;
+  double speed_ = 1.0;
+  TimePoint due_{};
+  std::deque<TimePoint> ticks_;  ///< end times of the ticks of the last second; bounded by tick rate times speed
   bool is_paused_ = false;
   bool is_asleep_ = false;
   std::uint32_t steps_to_come_ = 0;

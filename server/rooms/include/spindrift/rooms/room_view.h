@@ -5,7 +5,6 @@
 #include <memory>
 #include <mutex>
 #include <utility>
-#include <vector>
 
 #include <spindrift/core/frame_view.h>
 #include <spindrift/rooms/tick_meter.h>
@@ -58,12 +57,5 @@ class Published {
   mutable std::mutex mutex_;
   std::shared_ptr<const T> value_;
 };
-
-/// Returns what the gauges of the water read now.
-std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water);
-
-/// Returns the diagnostics layer of the present state. `means`: of the last ticks. `real_time_factor`: simulated over
-/// wall time.
-core::DiagnosticsView diagnosticsOf(const sim::WaterSim& water, const TickMeter::Means& means, double real_time_factor);
 
 }  // namespace spindrift::rooms

@@ -52,7 +52,17 @@ class TickMeter {
     double step_ms = 0.0;
     std::vector<core::DiagnosticsView::PassTime> passes{};
   };
-  const Means& takeMeans(sim::WaterSim& water);
+  const Means& takeMeans(sim::WaterSim& water) {
+    if (count_ == 0) return last_;
+    last_.step_ms = sum_ms_ / count_;
+    last_.passes.clear();
+    for (const gpu::PassCost& pass : water.takePassCosts()) {
+      last_.passes.push_back({pass.name, pass.total_ms / count_});
+    }
+    sum_ms_ = 0.0;
+    count_ = 0;
+    return last_;
+  }
   /// Other water: what was measured says nothing about it.
   void restart() {
     sum_ms_ = 0.0;
