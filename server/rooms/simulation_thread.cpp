@@ -216,27 +216,28 @@ void SimulationThread::open(RoomSetup setup, Done done) {
                                   max_room_count_)});
   }
   if (find(setup.name) ||
-      std::ranges::any_of(openings_, [&](const auto& one) { return one.room.setup.name == setup.name; })) {
+      std::ranges::any_of(openings_, [&](const auto& one) { return one.setup.name == setup.name; })) {
     return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
   }
   auto opening = opener_->begin(std::move(setup));
   if (!opening) return done(opening.error());
-  openings_.push_back({.room = *std::move(opening), .done = std::move(done)});
+  openings_.push_back(*std::move(opening));
+  openings_.back().done = std::move(done);
 }
 
 void SimulationThread::advanceOpenings() {
   for (auto opening = openings_.begin(); opening != openings_.end();) {
-    const auto is_open = advance(opening->room);
+    const auto is_open = advance(*opening);
     if (is_open && !*is_open) {
       ++opening;
       continue;
     }
     if (is_open) {
-      add(std::move(opening->room.room));
+      add(std::move(opening->room));
       opening->done({});
     } else {
       spdlog::warn("a room was not opened: {}", is_open.error().message);
-      opener_->giveUp(opening->room);
+      opener_->giveUp(*opening);
       opening->done(is_open.error());
     }
     opening = openings_.erase(opening);
@@ -303,7 +304,7 @@ void SimulationThread::loop() {
     for (const Change& change : changes) change.run();
     advanceOpenings();
     auto due = Clock::now() + std::chrono::milliseconds(100);
-    if (std::ranges::any_of(openings_, [](const Opening& opening) { return opening.room.room != nullptr; }))
+    if (std::ranges::any_of(openings_, [](const auto& opening) { return opening.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
     ServerLoad load{.thread_share = busy.value()};
     for (const auto& room : rooms_) load.session_count += room->demand()->sessionCount();
@@ -321,8 +322,8 @@ void SimulationThread::loop() {
   lock.unlock();
   const Error shut_down{ErrorCode::kUnavailable, "the server shuts down"};
   for (const Change& change : changes) change.done(shut_down);
-  for (Opening& opening : std::exchange(openings_, {})) {
-    opener_->giveUp(opening.room);
+  for (RoomOpener::Opening& opening : std::exchange(openings_, {})) {
+    opener_->giveUp(opening);
     opening.done(shut_down);
   }
   const auto saved_until = Clock::now() + rules_.disk_patience;

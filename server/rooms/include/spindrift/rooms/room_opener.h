@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <future>
 #include <memory>
 #include <string>
@@ -27,7 +28,8 @@ class RoomOpener {
     history::RoomPlace place{};    ///< until the room is there
     std::uint64_t generation = 0;  ///< of the snapshot from which it continues; 0: from the start of the scene
     std::future<water::WaterBuilder::Built> water{};
-    std::shared_ptr<Room> room{};  ///< null while the water is built
+    std::shared_ptr<Room> room{};                    ///< null while the water is built
+    std::function<void(core::Result<void>)> done{};  ///< for the caller: whom to tell
   };
 
   /// Finds the room on disk and starts to build its water. Errors: those of the files; kInvalidInput if it has no scene

@@ -103,10 +103,6 @@ class SimulationThread {
     std::function<void()> run;
     Done done;
   };
-  struct Opening {
-    RoomOpener::Opening room;
-    Done done;
-  };
 
   explicit SimulationThread(RoomOutlets& outlets) : outlets_(outlets) {}
   core::Result<void> build(std::vector<RoomSetup> setups);
@@ -133,8 +129,8 @@ class SimulationThread {
   std::condition_variable wake_;
   bool is_woken_ = false;  ///< since the last round: a room may be due, or the builder has finished a piece of work
   std::unique_ptr<water::WaterBuilder> builder_;
-  std::unique_ptr<RoomOpener> opener_;  ///< used by the thread only
-  std::vector<Opening> openings_;       ///< used by the thread only
+  std::unique_ptr<RoomOpener> opener_;         ///< used by the thread only
+  std::vector<RoomOpener::Opening> openings_;  ///< likewise
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;  ///< guarded by rooms_mutex_
