@@ -200,10 +200,9 @@ core::Result<void> NatsBus::connect(const BusOptions& options) {
     return {};
   }
   const char* detail = nats_GetLastError(nullptr);
-  return core::Error{core::ErrorCode::kUnavailable,
-                     "no connection to NATS at " + url_ + " (" + natsStatus_GetText(status) +
-                         (detail && *detail ? std::string(": ") + detail : std::string()) +
-                         "): start nats-server there, or give another URL"};
+  return core::unavailable("no connection to NATS at " + url_ + " (" + natsStatus_GetText(status) +
+                           (detail && *detail ? std::string(": ") + detail : std::string()) +
+                           "): start nats-server there, or give another URL");
 }
 
 void NatsBus::publish(const std::string& subject, core::ByteView head, core::ByteView body) {

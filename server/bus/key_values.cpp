@@ -1,4 +1,5 @@
 #include <chrono>
+#include <optional>
 #include <utility>
 
 #include <nats/nats.h>
@@ -53,8 +54,7 @@ class NatsKeyValues final : public KeyValues {
     return copy_.values();
   }
 
-  core::Result<std::optional<std::uint64_t>> set(const std::string& key, core::ByteView value,
-                                                 std::uint64_t revision) override {
+  core::Result<std::uint64_t> set(const std::string& key, core::ByteView value, std::uint64_t revision) override {
     if (auto ready = makeReady(); !ready) return ready.error();
     std::uint64_t made = 0;
     const int size = static_cast<int>(value.size());
@@ -62,11 +62,11 @@ class NatsKeyValues final : public KeyValues {
                                             : kvStore_Update(&made, store_, key.c_str(), value.data(), size, revision);
     if (status == NATS_OK) {
       keep(key, copy_.wrote(key, value, made));
-      return std::optional(made);
+      return made;
     }
     next_check_ = {};  // what the copy says may be old
     // The client reports a wrong revision as a general error of JetStream.
-    if (status == NATS_ERR || status == NATS_MISMATCH) return std::optional<std::uint64_t>();
+    if (status == NATS_ERR || status == NATS_MISMATCH) return std::uint64_t{0};
     return failure("setting '" + key + "'", status);
   }
 
@@ -133,8 +133,7 @@ core::Result<void> NatsKeyValues::open() {
 
 core::Result<void> NatsKeyValues::makeReady() {
   if (!bus_.isConnected()) {
-    return core::Error{core::ErrorCode::kUnavailable,
-                       "NATS: the bucket '" + bucket_ + "' cannot be read: there is no connection"};
+    return core::unavailable("NATS: the bucket '" + bucket_ + "' cannot be read: there is no connection");
   }
   const std::uint64_t reconnect_count = bus_.stats().reconnect_count;
   if (watcher_ && reconnect_count == watched_reconnect_count_) return {};

@@ -6,7 +6,6 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/room_name.h>
-#include <spindrift/scene/fidelity.h>
 
 #include "messages.h"
 
@@ -47,12 +46,6 @@ v1::RoomRecord Directory::recordOf(const rooms::RoomSetup& room) const {
   return record;
 }
 
-core::Result<bool> Directory::write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision) {
-  const auto written = values_->set(room, serialize(record), revision);
-  if (!written) return written.error();
-  return written->has_value();
-}
-
 void Directory::fail(const std::string& what, const core::Error& error) {
   ++failure_count_;
   if (std::exchange(said_, what + error.message) != what + error.message) spdlog::error("{}: {}", what, error.message);
@@ -72,7 +65,7 @@ core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::
       spdlog::info("room {} runs on server {}; it is not opened here", room.name, owner);
       continue;
     }
-    const auto mine = write(room.name, recordOf(room), entry.revision);
+    const auto mine = values_->set(room.name, serialize(recordOf(room)), entry.revision);
     if (!mine) return mine.error();
     if (*mine)
       out.push_back(std::move(room));
@@ -97,9 +90,9 @@ void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done)
       }
       done(outcome);
     };
-    if (!runs) return finish(core::Error{core::ErrorCode::kUnavailable, "the server shuts down"});
+    if (!runs) return finish(core::unavailable("the server shuts down"));
     closed_.erase(name);
-    const auto entered = write(name, recordOf(*shared), 0);
+    const auto entered = values_->set(name, serialize(recordOf(*shared)), 0);
     if (!entered) return finish(entered.error());
     if (!*entered) {
       return finish(core::invalid("there is a room '" + name + "' in the cluster already: choose another name"));
@@ -246,7 +239,7 @@ bool Directory::settle(const std::string& room, const Entry& entry) {
   v1::RoomRecord record = entry.record;
   record.set_server(self_);
   if (record.scene().empty()) record.set_scene(running->snapshot()->scene.name());
-  if (const auto mine = write(room, record, entry.revision); !mine) {
+  if (const auto mine = values_->set(room, serialize(record), entry.revision); !mine) {
     fail("room " + room + " could not be entered in the directory of rooms", mine.error());
     return false;
   }
@@ -257,7 +250,7 @@ bool Directory::take(const std::string& room, const Entry& entry) {
   v1::RoomRecord record = entry.record;
   const std::string before = record.server();
   record.set_server(self_);
-  const auto mine = write(room, record, entry.revision);
+  const auto mine = values_->set(room, serialize(record), entry.revision);
   if (!mine) {
     fail("room " + room + " could not be taken", mine.error());
     return false;
@@ -305,7 +298,7 @@ void Directory::release() {
         if (entry.record.server() != self_) continue;
         v1::RoomRecord record = entry.record;
         record.clear_server();
-        (void)write(room, record, entry.revision);
+        (void)values_->set(room, serialize(record), entry.revision);
       }
     }
     done.set_value();

@@ -63,7 +63,6 @@ class Directory {
   static Entries parse(const bus::KeyValueMap& values);
   /// Returns the entry of a room that runs here.
   [[nodiscard]] v1::RoomRecord recordOf(const rooms::RoomSetup& room) const;
-  core::Result<bool> write(const std::string& room, const v1::RoomRecord& record, std::uint64_t revision);
   void reviewNow();
   /// Removes the entries of closed rooms.
   core::Result<void> removeClosed();

@@ -39,11 +39,6 @@ v1::ReducedCounts toWire(const core::ReducedCounts& counts) {
 
 }  // namespace
 
-core::Role roleOf(v1::Role role) {
-  if (role == v1::ROLE_OPERATOR) return core::Role::kOperator;
-  return role == v1::ROLE_PLAYER ? core::Role::kPlayer : core::Role::kViewer;
-}
-
 void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
                   Clock::time_point now) {
   std::vector<std::unique_ptr<bus::Subscription>> ended;  // destroyed without the lock, which their handlers take
@@ -177,11 +172,12 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
     case v1::ToRoom::kArrive: {
       const v1::Arrive& who = message.arrive();
       if (link.arrived.size() >= kArrivedMaxCount) return;
-      const rooms::Admission admission = room.room->roster().arrive({.session = sessionOf(link.prefix, who.session()),
-                                                                     .role = roleOf(who.role()),
-                                                                     .name = who.name(),
-                                                                     .color_rgb = who.color_rgb(),
-                                                                     .resume_key = who.resume_key()});
+      const rooms::Admission admission =
+          room.room->roster().arrive({.session = sessionOf(link.prefix, who.session()),
+                                      .role = wire::fromWire(who.role()).value_or(core::Role::kViewer),
+                                      .name = who.name(),
+                                      .color_rgb = who.color_rgb(),
+                                      .resume_key = who.resume_key()});
       link.arrived.insert(who.session());
       v1::FromRoom answer;
       v1::Admitted& admitted = *answer.mutable_admitted();
@@ -207,7 +203,7 @@ void Feed::take(const std::string& name, core::ByteView bytes) {
       rooms::Command command;
       command.sender.session_id = sessionOf(link.prefix, sent.session());
       command.sender.person_id = sent.person_id();
-      command.sender.role = roleOf(sent.role());
+      command.sender.role = wire::fromWire(sent.role()).value_or(core::Role::kViewer);
       command.sender.details = std::make_shared<const core::SenderDetails>(
           core::SenderDetails{.room = name, .subject = sent.subject(), .name = sent.name(), .peer = sent.peer()});
       command.message = std::move(*sent.mutable_command());

@@ -30,9 +30,6 @@ inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.
 inline constexpr std::chrono::milliseconds kPulseInterval{200};
 
-/// Returns the role that a message of another process names; kViewer for one that does not exist.
-core::Role roleOf(v1::Role role);
-
 /// Thread-safe: called by the simulation thread, the encoder thread, the bus and the thread of the node.
 class Feed final : public service::RemoteAudience {
  public:

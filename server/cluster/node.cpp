@@ -28,8 +28,6 @@ namespace spindrift::cluster {
 namespace {
 
 using namespace std::chrono_literals;
-using core::Error;
-using core::ErrorCode;
 
 constexpr const char* kDefaultRoom = "main";
 constexpr auto kRound = 50ms;
@@ -156,15 +154,14 @@ core::Result<void> NodeImpl::start() {
   });
   inbox_ = bus_->subscribe(subjects_.node(options_.name), kInboxWaitingMaxBytes,
                            [this](core::ByteView message) { takeMail(message); });
-  if (!pulses_ || !inbox_) return Error{ErrorCode::kUnavailable, "NATS: the node's subjects cannot be subscribed to"};
+  if (!pulses_ || !inbox_) return core::unavailable("NATS: the node's subjects cannot be subscribed to");
   name_ = std::make_unique<NodeName>(*bus_, subjects_.name(options_.name), [this](const std::string& process) {
     spdlog::error("{}, and continues with it: this process ends", nameTaken(process));
     if (options_.on_name_lost) options_.on_name_lost();
   });
   if (const std::string process = name_->claim(kListenTime); !process.empty()) {
-    return Error{
-        ErrorCode::kInvalidInput,
-        nameTaken(process) + ": give each process a name of its own; a name is free when its process has ended"};
+    return core::invalid(nameTaken(process) +
+                         ": give each process a name of its own; a name is free when its process has ended");
   }
   return {};
 }
@@ -282,11 +279,11 @@ void NodeImpl::takeMail(core::ByteView message) {
 }
 
 core::Result<void> NodeImpl::ready() const {
-  if (!serving_) return Error{ErrorCode::kUnavailable, "this process is starting"};
-  if (!bus_->isConnected()) return Error{ErrorCode::kUnavailable, "there is no connection to NATS"};
+  if (!serving_) return core::unavailable("this process is starting");
+  if (!bus_->isConnected()) return core::unavailable("there is no connection to NATS");
   const std::lock_guard lock(mutex_);
   if (!options_.runs_rooms && servers_.alive(Clock::now()).empty())
-    return Error{ErrorCode::kUnavailable, "no server of the cluster is alive"};
+    return core::unavailable("no server of the cluster is alive");
   return {};
 }
 
@@ -305,7 +302,7 @@ std::shared_ptr<service::Venue> NodeImpl::find(const std::string& asked) {
 core::Result<void> NodeImpl::accept(const std::string& room) {
   if (auto can = ready(); !can) return can;
   if (find(room)) return {};
-  if (!hasHeardAll()) return Error{ErrorCode::kUnavailable, kNotHeardAll};
+  if (!hasHeardAll()) return core::unavailable(kNotHeardAll);
   std::string names;
   for (const std::string& known : servers().rooms()) names += (names.empty() ? "" : ", ") + known;
   return core::invalid("room '" + room + "' does not exist; rooms are: " + names);

@@ -18,18 +18,15 @@ constexpr double kRoomLoad = 0.3;
 
 void Servers::note(v1::ServerPulse pulse, Clock::time_point now) {
   if (!core::isRoomName(pulse.server())) return;
-  auto& named = *pulse.mutable_rooms();
-  named.erase(
-      std::remove_if(named.begin(), named.end(), [](const std::string& room) { return !core::isRoomName(room); }),
-      named.end());
+  const auto remove_rooms = [](v1::ServerPulse& from, const auto& which) {
+    auto& rooms = *from.mutable_rooms();
+    rooms.erase(std::remove_if(rooms.begin(), rooms.end(), which), rooms.end());
+  };
+  remove_rooms(pulse, [](const std::string& room) { return !core::isRoomName(room); });
   // A room has one server: an earlier one has lost it.
   for (auto& [name, server] : servers_) {
-    if (name == pulse.server()) continue;
-    auto& rooms = *server.pulse.mutable_rooms();
-    if (now - server.heard <= kServerPatience) continue;  // alive: it speaks for itself
-    rooms.erase(std::remove_if(rooms.begin(), rooms.end(),
-                               [&](const std::string& room) { return std::ranges::count(pulse.rooms(), room) > 0; }),
-                rooms.end());
+    if (name == pulse.server() || now - server.heard <= kServerPatience) continue;  // alive: it speaks for itself
+    remove_rooms(server.pulse, [&](const std::string& room) { return std::ranges::count(pulse.rooms(), room) > 0; });
   }
   const std::string name = pulse.server();
   servers_[name] = {std::move(pulse), now};

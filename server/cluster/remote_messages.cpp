@@ -24,7 +24,7 @@ std::array<std::uint32_t, codec::kStreamCount> fromMessage(const v1::ReducedCoun
 }  // namespace
 
 void RemoteRoom::take(const v1::FromRoom& message) {
-  std::vector<Refused> refused;
+  std::vector<rooms::Command> refused;
   {
     const std::lock_guard lock(mutex_);
     if (closed_ || message.link() != link_) return;
@@ -32,13 +32,13 @@ void RemoteRoom::take(const v1::FromRoom& message) {
     if (message.sequence() != sequence_ + 1 || (!attached_ && !message.has_view() && !message.has_refused())) {
       // Messages were lost, and with them perhaps answers and news: begin anew, which repeats all state.
       ++stats_.gap_count;
-      refused = loseLink("a message of the room's server was lost");
+      refused = loseLink();
       attach(Clock::now());
     } else {
       ++sequence_;
     }
   }
-  if (!refused.empty()) reject(refused);
+  reject(refused, "a message of the room's server was lost");
   {
     const std::lock_guard lock(mutex_);
     if (message.link() != link_) return;

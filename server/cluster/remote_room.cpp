@@ -8,7 +8,6 @@
 
 #include <spindrift/core/monotonic.h>
 #include <spindrift/wire/client_message.h>
-#include <spindrift/wire/server_message.h>
 
 #include "feed.h"
 #include "messages.h"
@@ -99,7 +98,7 @@ void RemoteRoom::detach() {
 }
 
 void RemoteRoom::review(Clock::time_point now) {
-  std::vector<Refused> refused;
+  std::vector<rooms::Command> refused;
   std::vector<Arrived> hopeless;
   {
     Dropped dropped;
@@ -108,7 +107,7 @@ void RemoteRoom::review(Clock::time_point now) {
     if (attached_ && now - heard_ > kRoomPatience) {
       spdlog::warn("room {}: its server is silent; looking for the room elsewhere", name_);
       ++stats_.lost_link_count;
-      refused = loseLink("the room's server is silent");
+      refused = loseLink();
     }
     if (!attached_ && now - tried_ > kAttachInterval) attach(now);
     for (auto guest = guests_.begin(); guest != guests_.end();) {
@@ -121,24 +120,24 @@ void RemoteRoom::review(Clock::time_point now) {
     }
     if (attached_) reviewStreams(now, now - told_ >= kPulseInterval, dropped);
   }
-  reject(refused);
+  reject(refused, "the room's server is silent");
   for (const Arrived& arrived : hopeless) arrived(unreachable());
 }
 
-std::vector<RemoteRoom::Refused> RemoteRoom::loseLink(const std::string& why) {
-  std::vector<Refused> out;
+std::vector<rooms::Command> RemoteRoom::loseLink() {
+  std::vector<rooms::Command> out;
   attached_ = false;
   if (!lost_since_) lost_since_ = heard_;
   for (auto& [session, guest] : guests_) {
-    for (const std::uint64_t id : std::exchange(guest.commands, {})) {
-      out.push_back({commandOf(session, id), why + "; whether the command was carried out is not known"});
-    }
+    for (const std::uint64_t id : std::exchange(guest.commands, {})) out.push_back(commandOf(session, id));
   }
   return out;
 }
 
-void RemoteRoom::reject(const std::vector<Refused>& commands) {
-  for (const Refused& one : commands) sessions_.commandRejected(one.command, unreachable(one.command.id(), one.why));
+void RemoteRoom::reject(const std::vector<rooms::Command>& commands, const std::string& why) {
+  for (const rooms::Command& one : commands) {
+    sessions_.commandRejected(one, unreachable(one.id(), why + "; whether the command was carried out is not known"));
+  }
 }
 
 bool RemoteRoom::isIdle(Clock::time_point now) const {

@@ -100,10 +100,6 @@ class RemoteRoom final : public service::Venue {
     [[nodiscard]] bool lacksKept() const { return isRare() && !kept.isWhole(); }
   };
   using Dropped = std::vector<std::unique_ptr<bus::Subscription>>;
-  struct Refused {
-    rooms::Command command;
-    std::string why;
-  };
 
   /// Returns what the answer to a command needs of it.
   static rooms::Command commandOf(core::SessionId session, std::uint64_t id);
@@ -111,8 +107,8 @@ class RemoteRoom final : public service::Venue {
   void send(v1::ToRoom message);
   void sendArrival(const Guest& guest);
   /// The link is gone; returns the commands that nobody will answer.
-  std::vector<Refused> loseLink(const std::string& why);
-  void reject(const std::vector<Refused>& commands);
+  std::vector<rooms::Command> loseLink();
+  void reject(const std::vector<rooms::Command>& commands, const std::string& why);
   void takeView(const v1::RoomView& message);
   void takeNews(const v1::RoomNews& message);
   void takeAdmission(const v1::Admitted& message);

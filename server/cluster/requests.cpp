@@ -9,7 +9,6 @@
 #include <spindrift/wire/api_message.h>
 #include <spindrift/wire/client_message.h>
 
-#include "feed.h"
 #include "messages.h"
 #include "request_route.h"
 
@@ -33,7 +32,9 @@ v1::Grant toMessage(const access::Grant& grant) {
 }
 
 access::Grant fromMessage(const v1::Grant& grant) {
-  access::Grant out{.role = roleOf(grant.role()), .subject = grant.subject(), .is_person = grant.is_person()};
+  access::Grant out{.role = wire::fromWire(grant.role()).value_or(core::Role::kViewer),
+                    .subject = grant.subject(),
+                    .is_person = grant.is_person()};
   if (!grant.is_for_all_rooms()) out.rooms.emplace(grant.rooms().begin(), grant.rooms().end());
   return out;
 }

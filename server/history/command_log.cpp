@@ -16,9 +16,6 @@
 namespace spindrift::history {
 namespace {
 
-using core::Error;
-using core::ErrorCode;
-
 constexpr std::string_view kMagic = "spinrec2";
 constexpr std::string_view kMagicV1 = "spinrec1";
 /// Larger than any scene: the points of a bed take up to 4 MiB.
@@ -95,8 +92,8 @@ core::Result<std::unique_ptr<CommandLogWriter>> CommandLogWriter::create(const s
     self->write(std::move(record));
   }
   if (!self->out_.good()) {
-    return Error{ErrorCode::kUnavailable, "the log " + self->file_.string() + " cannot be written (" +
-                                              std::strerror(errno) + "): choose another folder with --record"};
+    return core::unavailable("the log " + self->file_.string() + " cannot be written (" + std::strerror(errno) +
+                             "): choose another folder with --record");
   }
   return self;
 }
@@ -125,21 +122,21 @@ core::Result<std::unique_ptr<CommandLogReader>> CommandLogReader::open(const std
   auto self = std::unique_ptr<CommandLogReader>(new CommandLogReader);
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
-    return Error{ErrorCode::kUnavailable, "there is no log " + file.string() + ": `serve --record FOLDER` writes them"};
+    return core::unavailable("there is no log " + file.string() + ": `serve --record FOLDER` writes them");
   }
   self->in_.open(file, std::ios::binary);
   std::array<char, kMagic.size()> magic{};
   self->in_.read(magic.data(), magic.size());
   self->is_v1_ = std::string_view(magic.data(), magic.size()) == kMagicV1;
   if (!self->in_.good() || (!self->is_v1_ && std::string_view(magic.data(), magic.size()) != kMagic)) {
-    return Error{ErrorCode::kInvalidInput,
-                 file.string() + " is not a log of a room: it begins neither with \"spinrec2\" nor with \"spinrec1\""};
+    return core::invalid(file.string() +
+                         " is not a log of a room: it begins neither with \"spinrec2\" nor with \"spinrec1\"");
   }
   self->offset_bytes_ = magic.size();
   const auto first = self->next();
   if (!first || !first->has_header()) {
-    return Error{ErrorCode::kInvalidInput,
-                 file.string() + " has no header" + (self->truncation_ ? ": " + *self->truncation_ : std::string())};
+    return core::invalid(file.string() + " has no header" +
+                         (self->truncation_ ? ": " + *self->truncation_ : std::string()));
   }
   self->header_ = first->header();
   return self;

@@ -1,6 +1,5 @@
 #include <utility>
 
-#include <fmt/format.h>
 #include <google/protobuf/stubs/logging.h>
 #include <spdlog/spdlog.h>
 
@@ -77,15 +76,16 @@ core::Result<std::vector<std::string>> StateStore::rooms() const {
   return std::move(listed->names);
 }
 
+core::Result<state::FolderLock> StateStore::lockRoom(const std::string& room) const {
+  if (!options_.is_shared) return state::FolderLock();
+  return state::lockFolder(options_.folder / "locks" / room);
+}
+
 core::Result<RoomPlace> StateStore::place(const std::string& room, std::uint64_t before) {
   const auto folder = state::roomFolder(options_.folder, room);
   if (!folder) return folder.error();
-  state::FolderLock room_lock;
-  if (options_.is_shared) {
-    auto taken = state::lockFolder(options_.folder / "locks" / room);
-    if (!taken) return taken.error();
-    room_lock = *std::move(taken);
-  }
+  auto room_lock = lockRoom(room);
+  if (!room_lock) return room_lock.error();
   RoomPlace out;
   auto files = state::RoomFiles::open(*folder, room,
                                       {.sync = options_.sync, .kept_generation_count = options_.kept_generation_count});
@@ -110,14 +110,14 @@ core::Result<RoomPlace> StateStore::place(const std::string& room, std::uint64_t
   }
   if (has_refused && !out.kept) {
     files->reset();  // they hold no file yet
-    room_lock.reset();
+    room_lock->reset();
     const auto aside = setAside(room);
     if (!aside) return aside.error();
     spdlog::error("room {}: none of its snapshots can be used; its files are now in {}", room, aside->string());
     return place(room);
   }
-  out.keeper =
-      std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_, std::move(room_lock));
+  out.keeper = std::make_unique<StateKeeper>(room, *std::move(files), options_.snapshot_interval, writer_,
+                                             *std::move(room_lock));
   return out;
 }
 
@@ -130,12 +130,8 @@ core::Result<void> StateStore::remove(const std::string& room) const {
 }
 
 core::Result<void> StateStore::removeUnused(const std::string& room) const {
-  state::FolderLock room_lock;
-  if (options_.is_shared) {
-    auto taken = state::lockFolder(options_.folder / "locks" / room);
-    if (!taken) return {};  // another server uses it
-    room_lock = *std::move(taken);
-  }
+  const auto room_lock = lockRoom(room);
+  if (!room_lock) return {};  // another server uses it
   const auto has_state = state::hasState(options_.folder, room);
   if (!has_state) return has_state.error();
   return *has_state ? core::Result<void>() : remove(room);

@@ -48,7 +48,7 @@ core::Result<void> RoomOpener::choose(Opening& opening, std::uint64_t before) {
       scene::fillDefaults(setup.scene);
     }
   } else if (setup.scene.name().empty()) {
-    return Error{ErrorCode::kInvalidInput, "room " + setup.name + ": nothing of it on disk can be used"};
+    return core::invalid("room " + setup.name + ": nothing of it on disk can be used");
   }
   opening.water = builder_.build(std::move(start));
   return {};

@@ -205,19 +205,19 @@ void SimulationThread::carryOut(Change change) {
       return;
     }
   }
-  change.done(Error{ErrorCode::kUnavailable, "too many rooms are being opened or closed: try again"});
+  change.done(core::unavailable("too many rooms are being opened or closed: try again"));
 }
 
 void SimulationThread::open(RoomSetup setup, Done done) {
   if (rooms().size() + openings_.size() >= max_room_count_) {
-    return done(Error{ErrorCode::kUnavailable,
-                      fmt::format("the limit of {} rooms is reached: close one, or start the server with more "
-                                  "--max-rooms",
-                                  max_room_count_)});
+    return done(
+        core::unavailable(fmt::format("the limit of {} rooms is reached: close one, or start the server with more "
+                                      "--max-rooms",
+                                      max_room_count_)));
   }
   if (find(setup.name) ||
       std::ranges::any_of(openings_, [&](const auto& one) { return one.setup.name == setup.name; })) {
-    return done(Error{ErrorCode::kInvalidInput, "there is a room '" + setup.name + "' already: choose another name"});
+    return done(core::invalid("there is a room '" + setup.name + "' already: choose another name"));
   }
   auto opening = opener_->begin(std::move(setup));
   if (!opening) return done(opening.error());
@@ -263,9 +263,9 @@ void SimulationThread::add(std::shared_ptr<Room> room) {
 
 core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
   const auto room = find(name);
-  if (!room) return Error{ErrorCode::kInvalidInput, "there is no room '" + name + "'"};
+  if (!room) return core::invalid("there is no room '" + name + "'");
   if (room == find("")) {
-    return Error{ErrorCode::kInvalidInput, "room '" + name + "' is the default room: it stays as long as the server"};
+    return core::invalid("room '" + name + "' is the default room: it stays as long as the server");
   }
   end(room, before);
   return rules_.states ? rules_.states->remove(name) : core::Result<void>{};

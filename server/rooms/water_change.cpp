@@ -158,7 +158,7 @@ WaterChange::Built WaterChange::continueIn(std::unique_ptr<water::Water>& next, 
 }
 
 void WaterChange::adapt(TimePoint now) {
-  if (!room_.rules.adapts || state() != State::kNone || !room_.rules.scenes.has(room_.water->scene().name())) return;
+  if (!room_.rules.adapts || stopsTime() || build_ || !room_.rules.scenes.has(room_.water->scene().name())) return;
   const v1::Fidelity level = room_.water->scene().fidelity();
   const auto lower = scene::coarserThan(level);
   const auto upper = scene::finerThan(level);

@@ -28,7 +28,7 @@ struct Reader {
   std::uint64_t set(const std::string& key, const std::string& value, std::uint64_t revision) const {
     const auto made = values->set(key, core::Bytes(value.begin(), value.end()), revision);
     EXPECT_TRUE(made) << made.error().message;
-    return made && *made ? **made : 0;
+    return made ? *made : 0;
   }
   static std::string text(const core::Result<KeyValueMap>& values) {
     if (!values) return "error: " + values.error().message;

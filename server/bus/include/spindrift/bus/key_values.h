@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include <spindrift/bus/bus.h>
@@ -34,10 +33,9 @@ class KeyValues {
   virtual core::Result<KeyValueMap> copy() = 0;
   /// Returns what the bucket contains now: everything written before the call. One round trip.
   virtual core::Result<KeyValueMap> all() = 0;
-  /// Sets the value if its revision is still this one; 0: if there is no such key. Returns the new revision; nullopt if
+  /// Sets the value if its revision is still this one; 0: if there is no such key. Returns the new revision; 0 if
   /// another process was faster.
-  virtual core::Result<std::optional<std::uint64_t>> set(const std::string& key, core::ByteView value,
-                                                         std::uint64_t revision) = 0;
+  virtual core::Result<std::uint64_t> set(const std::string& key, core::ByteView value, std::uint64_t revision) = 0;
   virtual core::Result<void> remove(const std::string& key) = 0;
 };
 

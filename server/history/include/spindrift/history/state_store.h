@@ -57,6 +57,8 @@ class StateStore {
 
  private:
   StateStore(StateOptions options, state::FolderLock lock);
+  /// In a shared folder, takes a room for this server. Error kUnavailable when another one has it.
+  [[nodiscard]] core::Result<state::FolderLock> lockRoom(const std::string& room) const;
 
   const StateOptions options_;
   state::FolderLock lock_;  ///< of the whole folder; null if it is shared

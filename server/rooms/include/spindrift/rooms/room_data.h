@@ -1,7 +1,6 @@
 // What the parts of a room work on.
 #pragma once
 
-#include <cstdint>
 #include <map>
 #include <memory>
 #include <string>

@@ -1,7 +1,6 @@
 // The frames of a room: requests them from the water when they are due and watched, and passes finished ones on.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 
 #include <spindrift/core/frame_view.h>

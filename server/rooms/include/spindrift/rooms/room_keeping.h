@@ -1,7 +1,6 @@
 // The state of a room on disk: what is written while it runs, and how it continues from there after a restart.
 #pragma once
 
-#include <chrono>
 #include <memory>
 #include <optional>
 

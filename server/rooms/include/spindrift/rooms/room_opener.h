@@ -1,7 +1,6 @@
 // Opens rooms: where they were kept on disk, or from the start of a scene. Lives on the simulation thread.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <future>

@@ -7,7 +7,6 @@
 
 #include <spindrift/core/frame_view.h>
 #include <spindrift/rooms/command.h>
-#include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/wire.pb.h>
 #include <spindrift/wire/client_message.h>
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdint>
 #include <future>
 #include <memory>
 #include <optional>
@@ -18,27 +17,16 @@
 
 namespace spindrift::rooms {
 
-/// A state machine. At most one water is being built and one layout prepared at a time; water that is ready waits until
-/// the layout is done.
+/// A state machine. The room runs while other water is built. It stands still while its particles are laid out anew,
+/// and after the device failed until new water is built. At most one water is being built and one layout prepared at a
+/// time; water that is ready waits until the layout is done.
 class WaterChange {
  public:
   using TimePoint = RoomTime::TimePoint;
   using Outcome = water::RoomWater::Outcome;
 
-  enum class State {
-    kNone,
-    kBuilding,  ///< the room runs, while other water is built
-    kRelayout,  ///< the room stands still until its particles are laid out anew
-    kLost,      ///< the device failed: the room stands still until new water is built
-  };
-
   explicit WaterChange(RoomData& room) : room_(room) {}
 
-  [[nodiscard]] State state() const {
-    if (is_lost_) return State::kLost;
-    if (relayout_) return State::kRelayout;
-    return build_ ? State::kBuilding : State::kNone;
-  }
   [[nodiscard]] bool isLost() const { return is_lost_; }
   [[nodiscard]] bool stopsTime() const { return is_lost_ || relayout_; }
   /// Returns whether another build can begin.
