@@ -1,5 +1,6 @@
 #include "frame_head.h"
 
+#include <bit>
 #include <cstring>
 
 #include <boost/endian/arithmetic.hpp>
@@ -24,17 +25,14 @@ static_assert(sizeof(Layout) == kFrameHeadBytes);
 }  // namespace
 
 std::array<std::uint8_t, kFrameHeadBytes> toBytes(const FrameHead& head) {
-  Layout layout{};
-  layout.mark = kMark;
-  layout.run = head.run;
-  layout.sequence = head.sequence;
-  layout.reduced_count = head.reduced_count;
-  layout.due_bits = static_cast<std::uint16_t>(head.due.bits());
-  layout.keyframe_bytes = head.keyframe_bytes;
-  layout.delta_bytes = head.delta_bytes;
-  std::array<std::uint8_t, kFrameHeadBytes> out{};
-  std::memcpy(out.data(), &layout, sizeof layout);
-  return out;
+  return std::bit_cast<std::array<std::uint8_t, kFrameHeadBytes>>(
+      Layout{.mark = kMark,
+             .run = head.run,
+             .sequence = head.sequence,
+             .reduced_count = head.reduced_count,
+             .due_bits = static_cast<std::uint16_t>(head.due.bits()),
+             .keyframe_bytes = head.keyframe_bytes,
+             .delta_bytes = head.delta_bytes});
 }
 
 std::optional<FrameParts> readFrame(core::ByteView message) {
