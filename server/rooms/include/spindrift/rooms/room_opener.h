@@ -28,7 +28,7 @@ class RoomOpener {
     std::uint64_t generation = 0;  ///< of the snapshot from which it continues; 0: from the start of the scene
     std::future<water::WaterBuilder::Built> water{};
     std::shared_ptr<Room> room{};                    ///< null while the water is built
-    std::function<void(core::Result<void>)> done{};  ///< for the caller: whom to tell
+    std::function<void(core::Result<void>)> done{};  ///< called by the caller of begin(): open, or the error
   };
 
   /// Finds the room on disk and starts to build its water. Errors: those of the files; kInvalidInput if it has no scene
