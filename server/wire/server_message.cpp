@@ -39,7 +39,7 @@ core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std:
 }
 
 core::SharedBytes reject(const CommandRejection& rejection) {
-  return messageWith(&v1::ServerMessage::mutable_reject, toWire(rejection));
+  return messageWith(&v1::ServerMessage::mutable_reject, rejection);
 }
 
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick) {
