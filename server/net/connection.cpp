@@ -136,8 +136,7 @@ asio::awaitable<void> Connection::run() {
       co_return;
     }
     const auto& request = parser.get();
-    const RequestHead head = headOf(request);
-    auto routed = routeRequest(head, context_.files);
+    auto routed = routeRequest(request, context_.files);
     Reply reply;
     if (isPreflight(request)) {
       reply = preflightReply();
@@ -148,7 +147,7 @@ asio::awaitable<void> Connection::run() {
     }
     const bool keep_alive = request.keep_alive() && !stopping_ && context_.retry_after_s == 0;
     reply = fitted(request, std::move(reply));
-    const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
+    const bool sent = co_await send(reply, request.method() == http::verb::head, request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
   stream_.expires_after(kLingerTime);

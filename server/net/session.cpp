@@ -9,7 +9,6 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/text.h>
-#include <spindrift/http/routes.h>
 
 namespace spindrift::net {
 namespace {
