@@ -30,6 +30,12 @@ constexpr std::size_t kCrcFieldBytes = 1 + 4;
 
 }  // namespace
 
+core::SharedBytes serialized(const google::protobuf::MessageLite& message) {
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  return core::share(std::move(bytes));
+}
+
 // The payload is written by hand so that it is copied exactly once. Serialized parts of a message may be concatenated;
 // here all fields except server_time_s and state_id are in the order of their numbers.
 core::SharedBytes serializeFrame(const core::FrameView& frame, v1::Layer layer, core::Level level,
@@ -116,9 +122,7 @@ core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
     time.set_ms(pass.ms);
   }
   for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) writeGauge(gauge, *out.add_gauges());
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return core::share(std::move(bytes));
+  return serialized(message);
 }
 
 }  // namespace spindrift::codec

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
@@ -13,9 +14,7 @@ template <typename Part>
 core::SharedBytes messageWith(Part* (v1::ServerMessage::*mutablePart)(), Part part) {
   v1::ServerMessage message;
   *(message.*mutablePart)() = std::move(part);
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return core::share(std::move(bytes));
+  return codec::serialized(message);
 }
 
 }  // namespace
