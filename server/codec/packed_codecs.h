@@ -13,12 +13,12 @@
 
 namespace spindrift::codec {
 
-/// SurfacePredicted or FoamPredicted. Both functions return null messages if the frame lacks the layer; without
-/// `wants_keyframe` the keyframe is omitted if there is a delta.
+/// SurfacePredicted or FoamPredicted.
 class PackedPlanes {
  public:
-  EncodedFrame encodeSurface(const core::FrameView& frame, core::Level level, bool wants_keyframe);
-  EncodedFrame encodeFoam(const core::FrameView& frame, core::Level level, bool wants_keyframe);
+  /// Returns null messages if the frame lacks the layer. Without `wants_keyframe` the keyframe is omitted if there is a
+  /// delta.
+  EncodedFrame encode(const core::FrameView& frame, v1::Layer layer, core::Level level, bool wants_keyframe);
 
  private:
   template <typename Sample, typename View, typename Header>

@@ -116,8 +116,7 @@ core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame)
   const PackedPayload payload(viewOf(frame.payload()));
   const std::size_t count = header.count();
   std::vector<std::uint8_t> words(count * kParticleWordBytes + kParticleSlackBytes);
-  const ParticleShape shape{header.count(), grid->cells.cells_count, grid->cells.offset_bits};
-  if (!readParticles(payload.data(), payload.size(), shape, words.data()))
+  if (!readParticles(payload.data(), payload.size(), header.count(), grid->cells, words.data()))
     return invalid("payload: it does not hold " + std::to_string(count) + " particles; the frame is damaged");
 
   ParticleSamples out = particlesOf(header);

@@ -75,18 +75,18 @@ EncodedFrame PackedPlanes::encode(const core::FrameView& frame, v1::Layer layer,
   return out;
 }
 
-EncodedFrame PackedPlanes::encodeSurface(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
-  const auto& surface = frame.at(level).surface;
-  if (!surface) return {};
-  return encode<std::int16_t>(frame, v1::LAYER_SURFACE, level, wants_keyframe, *surface, surface->quantum_m,
-                              &v1::LayerFrame::mutable_surface_predicted);
-}
-
-EncodedFrame PackedPlanes::encodeFoam(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
-  const auto& foam = frame.at(level).foam;
-  if (!foam) return {};
-  return encode<std::uint8_t>(frame, v1::LAYER_FOAM, level, wants_keyframe, *foam, kFoamQuantum,
-                              &v1::LayerFrame::mutable_foam_predicted);
+EncodedFrame PackedPlanes::encode(const core::FrameView& frame, v1::Layer layer, core::Level level,
+                                  bool wants_keyframe) {
+  const auto& at = frame.at(level);
+  if (layer == v1::LAYER_SURFACE && at.surface) {
+    return encode<std::int16_t>(frame, layer, level, wants_keyframe, *at.surface, at.surface->quantum_m,
+                                &v1::LayerFrame::mutable_surface_predicted);
+  }
+  if (layer == v1::LAYER_FOAM && at.foam) {
+    return encode<std::uint8_t>(frame, layer, level, wants_keyframe, *at.foam, kFoamQuantum,
+                                &v1::LayerFrame::mutable_foam_predicted);
+  }
+  return {};
 }
 
 /// The planes that a client has decoded, and their header values.
