@@ -28,7 +28,7 @@ using asio::ip::tcp;
 /// Out of file descriptors or memory: retrying at once would only spin.
 constexpr std::chrono::milliseconds kAcceptPause{100};
 /// Frames of one moment of the water that come within this time are written together in rooms with many sessions; see
-/// RoomHub::kGatherSessionCount. The layers are encoded within this time.
+/// Hub::kGatherSessionCount. The layers are encoded within this time.
 constexpr std::chrono::milliseconds kGatherTime{1};
 /// stop() waits this much longer than close_timeout.
 constexpr std::chrono::seconds kStopGrace{1};
@@ -212,7 +212,7 @@ ServerStats ServerImpl::stats() const {
     out.failed_tls_reload_count = credentials->failureCount();
     out.certificate_expires = credentials->expires();
   }
-  const Outbox::Waiting waiting = context_.hub.waiting();
+  const Waiting waiting = context_.hub.waiting();
   out.waiting_control_count = waiting.answer_count + waiting.state_count;
   out.waiting_frame_count = waiting.frame_count;
   return out;

@@ -13,7 +13,6 @@
 
 #include "address_limits.h"
 #include "connection_set.h"
-#include "room_hub.h"
 #include "tls_credentials.h"
 
 namespace spindrift::net {
@@ -54,7 +53,7 @@ struct ServerContext {
   const TrustedNetworks proxies;
   const std::unique_ptr<TlsCredentials> credentials;  ///< null: the port speaks plain HTTP
   Application& application;
-  RoomHub hub{};
+  Hub hub{};
   StaticFiles files{options.web_root};
   ConnectionSet connections{
       limitConnections(options.max_session_count + kSpareConnectionCount, options.reserved_descriptor_count)};
