@@ -7,8 +7,7 @@
 #include <spindrift/codec/frame_encoder.h>
 
 #include "frame_checks.h"
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 
 namespace spindrift::codec {
 namespace {

@@ -1,5 +1,3 @@
-#include "frame_message.h"
-
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -9,6 +7,8 @@
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/crc32c.h>
+
+#include "layer_encoders.h"
 
 namespace spindrift::codec {
 namespace {

@@ -7,8 +7,7 @@
 #include <spindrift/codec/frame_decoder.h>
 
 #include "decode/particle_reader.h"
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {

@@ -10,8 +10,7 @@
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/crc32c.h>
 
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
