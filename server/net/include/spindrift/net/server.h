@@ -91,9 +91,8 @@ struct Waiting {
 class SessionLink;
 
 /// Sends to sessions. Thread-safe, never blocks, callable from any thread. Unknown session ids are ignored, because the
-/// session may have just ended. One instance per Server.
-/// One mutex; publish() visits only the sessions that watch that room and stream. A session keeps its watches when it
-/// changes the room.
+/// session may have just ended. One instance per Server, with one mutex; publish() visits only the sessions that watch
+/// that room and stream. A session keeps its watches when it changes the room.
 class Hub {
  public:
   /// Sends an answer to the session's own request. Control plane: ordered, never dropped. While
