@@ -298,7 +298,7 @@ bool Feed::commandRejected(const rooms::Command& command, const wire::CommandRej
   v1::FromRoom message;
   v1::Outcome& outcome = *message.mutable_outcome();
   outcome.set_session(numberAtNode(command.sender.session_id));
-  *outcome.mutable_reject() = wire::toWire(rejection);
+  *outcome.mutable_reject() = rejection;
   return sendToNodeOf(command.sender.session_id, std::move(message));
 }
 

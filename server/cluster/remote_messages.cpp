@@ -174,10 +174,7 @@ void RemoteRoom::takeOutcome(const v1::Outcome& message) {
   const rooms::Command command = commandOf(message.session(), id);
   if (message.has_ack())
     return sessions_.commandApplied(command, message.ack().applied_tick(), message.ack().boat_id());
-  sessions_.commandRejected(command, {.command_id = id,
-                                      .reason = message.reject().reason(),
-                                      .field = message.reject().field(),
-                                      .message = message.reject().message()});
+  sessions_.commandRejected(command, message.reject());
 }
 
 void RemoteRoom::takeClosed() {

@@ -40,7 +40,7 @@ core::Error unreachable() {
 }
 
 wire::CommandRejection unreachable(std::uint64_t command_id, const std::string& why) {
-  return {.command_id = command_id, .reason = v1::REJECT_REASON_BUSY, .field = "", .message = why};
+  return wire::rejection(v1::REJECT_REASON_BUSY, "", why, command_id);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/bytes.h>
-#include <spindrift/core/cell_counts.h>
 #include <spindrift/core/result.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -37,14 +36,7 @@ ParticleSamples particlesOf(const Header& header) {
           .foam = core::Bytes(count)};
 }
 
-/// Samples and extent of a plane, as the headers of all planes have them: what is left out along z is as along x.
-struct PlaneExtents {
-  core::CellCounts count;
-  double length_m = 0.0;
-  double width_m = 0.0;
-
-  bool operator==(const PlaneExtents&) const = default;
-};
+/// Returns the extents in the header of a plane: what is left out along z is as along x.
 template <typename Header>
 PlaneExtents extentsOf(const Header& header) {
   return {.count = {header.resolution_count(), header.count_z() > 0 ? header.count_z() : header.resolution_count()},

@@ -53,7 +53,7 @@ core::Result<SurfaceSamples> decodeSurface(const v1::LayerFrame& frame) {
   // With a quantum of 0 all samples would be flat whatever the payload.
   if (auto error = checkRange("quantum_m", header.quantum_m(), 1e-9)) return *error;
   if (auto error = checkPlainFrame(frame, v1::LAYER_SURFACE, extents.count.total() * kSampleBytes)) return *error;
-  SurfaceSamples out{extents.count, extents.length_m, extents.width_m, header.quantum_m(), {}};
+  SurfaceSamples out{extents, header.quantum_m(), {}};
   const core::ByteView payload = viewOf(frame.payload());
   out.elevation_m.resize(payload.size() / kSampleBytes);
   for (std::size_t i = 0; i < out.elevation_m.size(); ++i) {
@@ -103,7 +103,7 @@ core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
   if (auto error = checkExtents(extents)) return *error;
   if (auto error = checkPlainFrame(frame, v1::LAYER_FOAM, extents.count.total())) return *error;
   const core::ByteView payload = viewOf(frame.payload());
-  return FoamSamples{extents.count, extents.length_m, extents.width_m, {payload.begin(), payload.end()}};
+  return FoamSamples{extents, {payload.begin(), payload.end()}};
 }
 
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) {

@@ -7,8 +7,7 @@
 #include <spindrift/codec/frame_encoder.h>
 
 #include "frame_checks.h"
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 
 namespace spindrift::codec {
 namespace {
@@ -84,12 +83,12 @@ EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, c
   Packed& packed = packed_[core::indexOf(level)];
   switch (stream.layer) {
     case v1::LAYER_SURFACE:
-      if (is_packed) return packed.surface.encodeSurface(frame, level, wants_keyframe);
+      if (is_packed) return packed.surface.encode(frame, stream.layer, level, wants_keyframe);
       return {plainSurface(frame, level), nullptr};
     case v1::LAYER_PARTICLES:
       return {is_packed ? packed.particles.encode(frame, level) : plainParticles(frame, level), nullptr};
     case v1::LAYER_FOAM:
-      if (is_packed) return packed.foam.encodeFoam(frame, level, wants_keyframe);
+      if (is_packed) return packed.foam.encode(frame, stream.layer, level, wants_keyframe);
       return {plainFoam(frame, level), nullptr};
     case v1::LAYER_BODIES:
       return {is_packed ? nullptr : plainBodies(frame), nullptr};

@@ -1,5 +1,3 @@
-#include "frame_message.h"
-
 #include <cassert>
 #include <cstddef>
 #include <utility>
@@ -9,6 +7,8 @@
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/crc32c.h>
+
+#include "layer_encoders.h"
 
 namespace spindrift::codec {
 namespace {
@@ -29,6 +29,12 @@ static_assert(kFrameTag < 0x80 && kCrcTag < 0x80 && kPayloadTag < 0x80, "tags ar
 constexpr std::size_t kCrcFieldBytes = 1 + 4;
 
 }  // namespace
+
+core::SharedBytes serialized(const google::protobuf::MessageLite& message) {
+  core::Bytes bytes(message.ByteSizeLong());
+  message.SerializeWithCachedSizesToArray(bytes.data());
+  return core::share(std::move(bytes));
+}
 
 // The payload is written by hand so that it is copied exactly once. Serialized parts of a message may be concatenated;
 // here all fields except server_time_s and state_id are in the order of their numbers.
@@ -116,9 +122,7 @@ core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
     time.set_ms(pass.ms);
   }
   for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) writeGauge(gauge, *out.add_gauges());
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return core::share(std::move(bytes));
+  return serialized(message);
 }
 
 }  // namespace spindrift::codec

@@ -7,8 +7,7 @@
 #include <spindrift/codec/frame_decoder.h>
 
 #include "decode/particle_reader.h"
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
@@ -116,8 +115,7 @@ core::Result<ParticleSamples> decodePackedParticles(const v1::LayerFrame& frame)
   const PackedPayload payload(viewOf(frame.payload()));
   const std::size_t count = header.count();
   std::vector<std::uint8_t> words(count * kParticleWordBytes + kParticleSlackBytes);
-  const ParticleShape shape{header.count(), grid->cells.cells_count, grid->cells.offset_bits};
-  if (!readParticles(payload.data(), payload.size(), shape, words.data()))
+  if (!readParticles(payload.data(), payload.size(), header.count(), grid->cells, words.data()))
     return invalid("payload: it does not hold " + std::to_string(count) + " particles; the frame is damaged");
 
   ParticleSamples out = particlesOf(header);

@@ -10,14 +10,20 @@
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/crc32c.h>
 
-#include "frame_message.h"
-#include "packed_codecs.h"
+#include "layer_encoders.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {
 namespace {
 
 constexpr double kFoamQuantum = 1.0;
+
+/// A plane's quantum is in the header of a surface, and fixed for foam.
+template <typename Header>
+double quantumOf(const Header& header) {
+  if constexpr (requires { header.quantum_m(); }) return header.quantum_m();
+  return kFoamQuantum;
+}
 
 /// False: the number of weights is wrong.
 template <typename Field>
@@ -68,18 +74,18 @@ EncodedFrame PackedPlanes::encode(const core::FrameView& frame, v1::Layer layer,
   return out;
 }
 
-EncodedFrame PackedPlanes::encodeSurface(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
-  const auto& surface = frame.at(level).surface;
-  if (!surface) return {};
-  return encode<std::int16_t>(frame, v1::LAYER_SURFACE, level, wants_keyframe, *surface, surface->quantum_m,
-                              &v1::LayerFrame::mutable_surface_predicted);
-}
-
-EncodedFrame PackedPlanes::encodeFoam(const core::FrameView& frame, core::Level level, bool wants_keyframe) {
-  const auto& foam = frame.at(level).foam;
-  if (!foam) return {};
-  return encode<std::uint8_t>(frame, v1::LAYER_FOAM, level, wants_keyframe, *foam, kFoamQuantum,
-                              &v1::LayerFrame::mutable_foam_predicted);
+EncodedFrame PackedPlanes::encode(const core::FrameView& frame, v1::Layer layer, core::Level level,
+                                  bool wants_keyframe) {
+  const auto& at = frame.at(level);
+  if (layer == v1::LAYER_SURFACE && at.surface) {
+    return encode<std::int16_t>(frame, layer, level, wants_keyframe, *at.surface, at.surface->quantum_m,
+                                &v1::LayerFrame::mutable_surface_predicted);
+  }
+  if (layer == v1::LAYER_FOAM && at.foam) {
+    return encode<std::uint8_t>(frame, layer, level, wants_keyframe, *at.foam, kFoamQuantum,
+                                &v1::LayerFrame::mutable_foam_predicted);
+  }
+  return {};
 }
 
 /// The planes that a client has decoded, and their header values.
@@ -89,23 +95,19 @@ struct PackedPlaneDecoder::History {
   double quantum_m = 0.0;
   std::uint64_t tick = 0;
 
-  /// Decodes a frame's plane into `memory`; after an error it holds nothing.
-  template <typename Header>
-  std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
-                                  double header_quantum_m) {
-    auto error = check(frame, layer, header, header_quantum_m);
+  /// Decodes a packed surface or packed foam into `memory`; after an error it holds nothing.
+  std::optional<core::Error> read(const v1::LayerFrame& frame) {
+    auto error = frame.has_surface_predicted() ? read(frame, v1::LAYER_SURFACE, frame.surface_predicted())
+                                               : read(frame, v1::LAYER_FOAM, frame.foam_predicted());
     if (error) memory.row().forget();
-    extents = extentsOf(header);
-    quantum_m = header_quantum_m;
-    tick = frame.tick();
     return error;
   }
 
  private:
   template <typename Header>
-  std::optional<core::Error> check(const v1::LayerFrame& frame, v1::Layer layer, const Header& header,
-                                   double header_quantum_m) {
+  std::optional<core::Error> read(const v1::LayerFrame& frame, v1::Layer layer, const Header& header) {
     const PlaneExtents header_extents = extentsOf(header);
+    const double header_quantum_m = quantumOf(header);
     if (auto error = checkExtents(header_extents)) return error;
     if (auto error = checkRange("quantum_m", header_quantum_m, 1e-9)) return error;
     if (auto error = checkFrame(frame, layer)) return error;
@@ -122,13 +124,15 @@ struct PackedPlaneDecoder::History {
       is_read = row.readKeyframe(payload.data(), payload.size(), weights, earlier_weights);
     } else {
       if (!row.hasRow() || frame.base_tick() != tick || header_extents != extents || header_quantum_m != quantum_m) {
-        return core::Error{core::ErrorCode::kUnavailable, "base_tick: the frame builds on tick " +
-                                                              std::to_string(frame.base_tick()) +
-                                                              ", which is not here: subscribe again for a keyframe"};
+        return core::unavailable("base_tick: the frame builds on tick " + std::to_string(frame.base_tick()) +
+                                 ", which is not here: subscribe again for a keyframe");
       }
       is_read = row.readDelta(payload.data(), payload.size(), weights);
     }
     if (!is_read) return invalid("payload: its end does not fit its beginning; the frame is damaged");
+    extents = header_extents;
+    quantum_m = header_quantum_m;
+    tick = frame.tick();
     return std::nullopt;
   }
 };
@@ -138,13 +142,18 @@ PackedPlaneDecoder::~PackedPlaneDecoder() = default;
 
 core::Result<SurfaceSamples> PackedSurfaceDecoder::decode(const v1::LayerFrame& frame) {
   if (!frame.has_surface_predicted()) return invalid("codec: not surface_predicted");
-  const v1::SurfacePredicted& header = frame.surface_predicted();
-  if (auto error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m())) return *error;
-  const PlaneExtents& extents = history_->extents;
-  const double quantum_m = header.quantum_m();
+  if (auto error = history_->read(frame)) return *error;
+  const double quantum_m = history_->quantum_m;
   const auto elevationOf = [quantum_m](std::int16_t sample) { return static_cast<float>(sample * quantum_m); };
-  return SurfaceSamples{extents.count, extents.length_m, extents.width_m, quantum_m,
+  return SurfaceSamples{history_->extents, quantum_m,
                         valuesOf<float>(history_->memory.row(), &PlaneRow::row, elevationOf)};
+}
+
+core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame) {
+  if (!frame.has_foam_predicted()) return invalid("codec: not foam_predicted");
+  if (auto error = history_->read(frame)) return *error;
+  const auto foamOf = [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); };
+  return FoamSamples{history_->extents, valuesOf<std::uint8_t>(history_->memory.row(), &PlaneRow::row, foamOf)};
 }
 
 bool PlaneKeeper::take(core::ByteView message) {
@@ -152,16 +161,8 @@ bool PlaneKeeper::take(core::ByteView message) {
   auto parsed = parseServerMessage(message);
   if (!parsed || !parsed->has_frame()) return false;
   v1::LayerFrame& frame = *parsed->mutable_frame();
-  std::optional<core::Error> error;
-  if (frame.has_surface_predicted()) {
-    const v1::SurfacePredicted& header = frame.surface_predicted();
-    error = history_->read(frame, v1::LAYER_SURFACE, header, header.quantum_m());
-  } else if (frame.has_foam_predicted()) {
-    error = history_->read(frame, v1::LAYER_FOAM, frame.foam_predicted(), kFoamQuantum);
-  } else {
-    return false;
-  }
-  if (error) return false;
+  if (!frame.has_surface_predicted() && !frame.has_foam_predicted()) return false;
+  if (history_->read(frame)) return false;
   frame.clear_payload();
   head_ = std::move(frame);
   return true;
@@ -193,19 +194,7 @@ core::SharedBytes PlaneKeeper::keyframe() {
   frame.clear_base_tick();
   frame.set_crc32c(core::crc32c(form.payload));
   frame.set_payload(form.payload.data(), form.payload.size());
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return core::share(std::move(bytes));
-}
-
-core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame) {
-  if (!frame.has_foam_predicted()) return invalid("codec: not foam_predicted");
-  const v1::FoamPredicted& header = frame.foam_predicted();
-  if (auto error = history_->read(frame, v1::LAYER_FOAM, header, kFoamQuantum)) return *error;
-  const PlaneExtents& extents = history_->extents;
-  const auto foamOf = [](std::int16_t sample) { return static_cast<std::uint8_t>(std::clamp<int>(sample, 0, 255)); };
-  return FoamSamples{extents.count, extents.length_m, extents.width_m,
-                     valuesOf<std::uint8_t>(history_->memory.row(), &PlaneRow::row, foamOf)};
+  return serialized(message);
 }
 
 }  // namespace spindrift::codec

@@ -9,7 +9,6 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/http/request.h>
-#include <spindrift/http/url.h>
 
 namespace spindrift::net {
 
@@ -109,19 +108,6 @@ std::optional<Reply> replyToBadRequest(const boost::system::error_code& error, s
 
 bool expectsContinue(const Request& request) {
   return request.version() >= kHttp11 && beast::iequals(request[http::field::expect], "100-continue");
-}
-
-RequestHead headOf(const Request& request) {
-  const auto list = [&](http::field field) {
-    std::string joined;
-    const auto [first, end] = request.equal_range(field);
-    for (auto line = first; line != end; ++line) {
-      joined.append(joined.empty() ? "" : ", ").append(line->value().data(), line->value().size());
-    }
-    return joined;
-  };
-  return {std::string(request.method_string()), std::string(request.target()), list(http::field::if_none_match),
-          list(http::field::accept_encoding)};
 }
 
 HttpRequest questionOf(const Request& request, RequestTarget target, const std::string& peer) {

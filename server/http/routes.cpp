@@ -1,11 +1,14 @@
 #include <array>
 #include <optional>
 
-#include <spindrift/http/routes.h>
+#include <spindrift/http/request.h>
 
 #include "field_list.h"
 
 namespace spindrift::net {
+
+namespace http = boost::beast::http;
+
 namespace {
 
 constexpr std::string_view kApiRoot = "/api/";
@@ -31,6 +34,16 @@ Reply methodNotAllowed(const std::string& method, std::string_view allowed) {
   return reply;
 }
 
+/// Returns the list of a header that may be split over several lines.
+std::string listOf(const Request& request, http::field name) {
+  std::string joined;
+  const auto [first, end] = request.equal_range(name);
+  for (auto line = first; line != end; ++line) {
+    joined.append(joined.empty() ? "" : ", ").append(line->value().data(), line->value().size());
+  }
+  return joined;
+}
+
 /// Returns whether the If-None-Match list contains this tag, with the weak comparison of RFC 9110 section 13.1.2.
 bool matchesEtag(std::string_view list, std::string_view etag) {
   while (!list.empty()) {
@@ -41,8 +54,8 @@ bool matchesEtag(std::string_view list, std::string_view etag) {
   return false;
 }
 
-Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& files) {
-  const std::shared_ptr<const StaticFile> file = files.find(path, head.accept_encoding);
+Reply fileReply(const Request& request, const std::string& path, StaticFiles& files) {
+  const std::shared_ptr<const StaticFile> file = files.find(path, listOf(request, http::field::accept_encoding));
   if (!file && path == "/") {
     return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
   }
@@ -51,7 +64,7 @@ Reply fileReply(const RequestHead& head, const std::string& path, StaticFiles& f
   reply.headers.emplace_back("ETag", file->etag);
   reply.headers.emplace_back("Vary", "Accept-Encoding");
   reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
-  if (matchesEtag(head.if_none_match, file->etag)) {
+  if (matchesEtag(listOf(request, http::field::if_none_match), file->etag)) {
     reply.status = 304;
     return reply;
   }
@@ -118,14 +131,15 @@ std::string methodToAnswer(const std::string& method, std::string_view path) {
   return asks ? "GET" : method;
 }
 
-std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticFiles& files) {
+std::variant<Reply, RequestTarget> routeRequest(const Request& request, StaticFiles& files) {
+  const std::string method(request.method_string());
   // RFC 9112 section 3.2.4: the server as a whole.
-  if (head.method == "OPTIONS" && head.target == "*") return optionsReply("GET, HEAD, POST, DELETE, OPTIONS");
-  std::optional<RequestTarget> target = parseTarget(head.target);
+  if (method == "OPTIONS" && request.target() == "*") return optionsReply("GET, HEAD, POST, DELETE, OPTIONS");
+  std::optional<RequestTarget> target = parseTarget(request.target());
   if (!target) return textReply(400, "The request's path is not a plain absolute path.");
   if (isApplicationPath(target->path)) {
-    if (head.method == "TRACE" || head.method == "CONNECT") {
-      return methodNotAllowed(head.method, "GET, HEAD, POST, PUT, PATCH, DELETE");
+    if (method == "TRACE" || method == "CONNECT") {
+      return methodNotAllowed(method, "GET, HEAD, POST, PUT, PATCH, DELETE");
     }
     return *std::move(target);
   }
@@ -133,9 +147,9 @@ std::variant<Reply, RequestTarget> routeRequest(const RequestHead& head, StaticF
     return webSocketReply("This is a WebSocket address: connect with a WebSocket client, subprotocol spindrift.v1.");
   }
   constexpr std::string_view kAllowed = "GET, HEAD, OPTIONS";
-  if (head.method == "OPTIONS") return optionsReply(kAllowed);
-  if (head.method != "GET" && head.method != "HEAD") return methodNotAllowed(head.method, kAllowed);
-  return fileReply(head, target->path, files);
+  if (method == "OPTIONS") return optionsReply(kAllowed);
+  if (method != "GET" && method != "HEAD") return methodNotAllowed(method, kAllowed);
+  return fileReply(request, target->path, files);
 }
 
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {

@@ -18,6 +18,8 @@
 
 #include <spindrift/http/network_text.h>
 
+#include "pending_answer.h"
+
 namespace spindrift::net {
 namespace {
 
@@ -134,8 +136,7 @@ asio::awaitable<void> Connection::run() {
       co_return;
     }
     const auto& request = parser.get();
-    const RequestHead head = headOf(request);
-    auto routed = routeRequest(head, context_.files);
+    auto routed = routeRequest(request, context_.files);
     Reply reply;
     if (isPreflight(request)) {
       reply = preflightReply();
@@ -146,7 +147,7 @@ asio::awaitable<void> Connection::run() {
     }
     const bool keep_alive = request.keep_alive() && !stopping_ && context_.retry_after_s == 0;
     reply = fitted(request, std::move(reply));
-    const bool sent = co_await send(reply, head.method == "HEAD", request.version(), keep_alive);
+    const bool sent = co_await send(reply, request.method() == http::verb::head, request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
   stream_.expires_after(kLingerTime);
@@ -197,11 +198,11 @@ asio::awaitable<bool> Connection::secure() {
   auto [error, bytes_count] = co_await stream_.async_read_some(asio::buffer(first), kToken);
   if (error) {
     // Probes of the port open a connection and close it without a byte; they are not failures.
-    if (error != asio::error::eof) ++context_.counters.failed_tls_handshake_count;
+    if (error != asio::error::eof) context_.counters.add(&ServerStats::failed_tls_handshake_count);
     co_return false;
   }
   if (first[0] != kHandshakeRecord) {
-    ++context_.counters.failed_tls_handshake_count;
+    context_.counters.add(&ServerStats::failed_tls_handshake_count);
     if (first[0] >= 'A' && first[0] <= 'Z') {
       co_await sendLast(textReply(400, "This port speaks TLS: use https:// and wss://."), false);
     }
@@ -210,12 +211,12 @@ asio::awaitable<bool> Connection::secure() {
   stream_.useServerTls(*context_.credentials->context());
   std::tie(error, std::ignore) = co_await stream_.async_handshake(asio::buffer(first), kToken);
   if (error) {
-    ++context_.counters.failed_tls_handshake_count;
+    context_.counters.add(&ServerStats::failed_tls_handshake_count);
     spdlog::debug("{}: the TLS handshake failed: {}", peer_, error.message());
     stream_.close();
     co_return false;
   }
-  ++context_.counters.tls_handshake_count;
+  context_.counters.add(&ServerStats::tls_handshake_count);
   co_return true;
 }
 

@@ -12,12 +12,13 @@
 
 #include <spindrift/http/request.h>
 
-#include "pending_answer.h"
 #include "server_context.h"
 #include "session.h"
 #include "transport.h"
 
 namespace spindrift::net {
+
+class PendingAnswer;
 
 class Connection final : public std::enable_shared_from_this<Connection> {
  public:

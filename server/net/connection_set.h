@@ -30,7 +30,6 @@ class ConnectionSet {
 
   /// Refuses new connections from now on.
   void close();
-  /// Returns the connections open now.
   std::vector<std::shared_ptr<Connection>> all() const;
   /// Returns true when the last connection is gone, false if that does not happen by `deadline`.
   bool waitEmpty(std::chrono::steady_clock::time_point deadline);

@@ -2,8 +2,10 @@
 // time in; no clock is read.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <spindrift/core/level.h>
 
@@ -23,7 +25,26 @@ class LevelLadder {
 
   /// Evaluates the counts once per kWindow; returns the new level if it changed. `reduced_count`: number of levels that
   /// downsample the layer; with 0 there is no lower level.
-  std::optional<core::Level> review(Clock::time_point now, std::uint32_t reduced_count);
+  std::optional<core::Level> review(Clock::time_point now, std::uint32_t reduced_count) {
+    if (!window_begin_) {
+      window_begin_ = clean_since_ = now;
+      return std::nullopt;
+    }
+    if (now - *window_begin_ < kWindow) return std::nullopt;
+    window_begin_ = now;
+    const std::uint32_t due_count = std::exchange(due_count_, 0);
+    const std::uint32_t lost_count = std::exchange(lost_count_, 0);
+    bool changed = false;
+    if (due_count >= kLeastDueCount && lost_count * kTooManyLost > due_count) {
+      changed = stepDown(now, reduced_count);
+    } else if (lost_count * kSomeLost > due_count) {
+      clean_since_ = now;
+    } else if (now - clean_since_ >= patience_) {
+      changed = stepUp(now, reduced_count);
+    }
+    if (raised_ && now - *raised_ >= kLongestPatience) patience_ = kFirstPatience;
+    return changed ? std::optional(level_) : std::nullopt;
+  }
 
   /// Highest level allowed now.
   core::Level level() const { return level_; }
@@ -35,8 +56,30 @@ class LevelLadder {
   static constexpr auto kProbation = std::chrono::seconds(10);
 
  private:
-  bool stepDown(Clock::time_point now, std::uint32_t reduced_count);
-  bool stepUp(Clock::time_point now, std::uint32_t reduced_count);
+  /// A window with fewer frames is not evaluated.
+  static constexpr std::uint32_t kLeastDueCount = 4;
+  /// Loss of one frame in this many: the link cannot carry the level.
+  static constexpr std::uint32_t kTooManyLost = 5;
+  /// Loss of one frame in this many: no step up for now.
+  static constexpr std::uint32_t kSomeLost = 25;
+
+  bool stepDown(Clock::time_point now, std::uint32_t reduced_count) {
+    clean_since_ = now;
+    if (raised_ && now - *raised_ < kProbation) patience_ = std::min<Clock::duration>(2 * patience_, kLongestPatience);
+    raised_.reset();
+    const std::size_t lowest_same = std::min<std::size_t>(indexOf(level_), reduced_count);
+    if (lowest_same == 0) return false;
+    level_ = static_cast<core::Level>(lowest_same - 1);
+    return true;
+  }
+
+  bool stepUp(Clock::time_point now, std::uint32_t reduced_count) {
+    if (level_ == core::Level::kFull) return false;
+    level_ = core::effectiveLevel(static_cast<core::Level>(indexOf(level_) + 1), reduced_count);
+    clean_since_ = now;
+    raised_ = now;
+    return true;
+  }
 
   core::Level level_ = core::Level::kFull;
   std::uint32_t due_count_ = 0;

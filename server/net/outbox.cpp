@@ -257,7 +257,7 @@ Outbox::Next Outbox::takeFrame(std::size_t stream) {
   return out;
 }
 
-Outbox::Waiting Outbox::waiting() const {
+Waiting Outbox::waiting() const {
   const std::lock_guard lock(mutex_);
   Waiting out{.answer_count = answer_count_, .state_count = control_.size() - answer_count_};
   for (const Slot& slot : slots_) out.frame_count += slot.frame ? 1 : 0;

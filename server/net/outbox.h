@@ -101,11 +101,6 @@ class Outbox {
   /// that is a message of at most `max_bytes`; nullopt otherwise, and then nothing has changed.
   std::optional<Next> nextAlong(std::size_t max_bytes);
 
-  struct Waiting {
-    std::size_t answer_count = 0;
-    std::size_t state_count = 0;
-    std::size_t frame_count = 0;
-  };
   Waiting waiting() const;
 
   bool closing() const;

@@ -28,7 +28,7 @@ using asio::ip::tcp;
 /// Out of file descriptors or memory: retrying at once would only spin.
 constexpr std::chrono::milliseconds kAcceptPause{100};
 /// Frames of one moment of the water that come within this time are written together in rooms with many sessions; see
-/// RoomHub::kGatherSessionCount. The layers are encoded within this time.
+/// Hub::kGatherSessionCount. The layers are encoded within this time.
 constexpr std::chrono::milliseconds kGatherTime{1};
 /// stop() waits this much longer than close_timeout.
 constexpr std::chrono::seconds kStopGrace{1};
@@ -166,7 +166,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
     auto [error, socket] = co_await acceptor_.async_accept(asio::any_io_executor(asio::make_strand(io_)), kToken);
     if (error == asio::error::operation_aborted) break;
     if (error) {
-      ++context_.counters.failed_accept_count;
+      context_.counters.add(&ServerStats::failed_accept_count);
       if (const auto count = failed.count(Clock::now())) {
         spdlog::warn("{} new connections could not be accepted ({}); {} are open and continue", *count, error.message(),
                      context_.connections.count());
@@ -204,33 +204,17 @@ void ServerImpl::reloadCertificate() {
 }
 
 ServerStats ServerImpl::stats() const {
-  const Counters& counters = context_.counters;
-  ServerStats out{.open_session_count = counters.open_session_count,
-                  .accepted_session_count = counters.accepted_session_count,
-                  .open_connection_count = context_.connections.count(),
-                  .connection_max_count = context_.connections.maxCount(),
-                  .failed_accept_count = counters.failed_accept_count,
-                  .silent_session_count = counters.silent_session_count,
-                  .sent_bytes_count = counters.sent_bytes_count,
-                  .sent_frame_count = counters.sent_frame_count,
-                  .write_count = counters.write_count,
-                  .dropped_frame_count = counters.dropped_frame_count,
-                  .lowered_level_count = counters.lowered_level_count,
-                  .raised_level_count = counters.raised_level_count,
-                  .evicted_session_count = counters.evicted_session_count,
-                  .delayed_message_count = counters.delayed_message_count,
-                  .tls_handshake_count = counters.tls_handshake_count,
-                  .failed_tls_handshake_count = counters.failed_tls_handshake_count,
-                  .closed_by_code = counters.closedByCode()};
+  ServerStats out = context_.counters.stats();
+  out.open_connection_count = context_.connections.count();
+  out.connection_max_count = context_.connections.maxCount();
   if (const TlsCredentials* const credentials = context_.credentials.get()) {
     out.tls_reload_count = credentials->reloadCount();
     out.failed_tls_reload_count = credentials->failureCount();
     out.certificate_expires = credentials->expires();
   }
-  const Outbox::Waiting waiting = context_.hub.waiting();
+  const Waiting waiting = context_.hub.waiting();
   out.waiting_control_count = waiting.answer_count + waiting.state_count;
   out.waiting_frame_count = waiting.frame_count;
-  for (std::size_t k = 0; k < kRefusedCount; ++k) out.refused_count[k] = counters.refused_count[k];
   return out;
 }
 

@@ -1,10 +1,9 @@
 // State shared by all connections of one server; it outlives them.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <cstdint>
-#include <map>
+#include <memory>
 #include <mutex>
 
 #include <spindrift/http/network_text.h>
@@ -14,43 +13,35 @@
 
 #include "address_limits.h"
 #include "connection_set.h"
-#include "room_hub.h"
 #include "tls_credentials.h"
 
 namespace spindrift::net {
 
-struct Counters {
-  std::atomic<std::uint64_t> open_session_count{0};
-  std::atomic<std::uint64_t> accepted_session_count{0};
-  std::atomic<std::uint64_t> failed_accept_count{0};
-  std::atomic<std::uint64_t> silent_session_count{0};
-  std::atomic<std::uint64_t> sent_bytes_count{0};
-  std::atomic<std::uint64_t> sent_frame_count{0};
-  std::atomic<std::uint64_t> write_count{0};
-  std::atomic<std::uint64_t> dropped_frame_count{0};
-  std::atomic<std::uint64_t> lowered_level_count{0};
-  std::atomic<std::uint64_t> raised_level_count{0};
-  std::atomic<std::uint64_t> evicted_session_count{0};
-  std::atomic<std::uint64_t> delayed_message_count{0};
-  std::atomic<std::uint64_t> tls_handshake_count{0};
-  std::atomic<std::uint64_t> failed_tls_handshake_count{0};
-  std::array<std::atomic<std::uint64_t>, kRefusedCount> refused_count{};
-
-  void refused(Refused why) { ++refused_count[static_cast<std::size_t>(why)]; }
+/// The counters among the ServerStats. Thread-safe.
+class Counters {
+ public:
+  void add(std::uint64_t ServerStats::*counter, std::int64_t count = 1) {
+    const std::lock_guard lock(mutex_);
+    stats_.*counter += static_cast<std::uint64_t>(count);
+  }
+  void refused(Refused why) {
+    const std::lock_guard lock(mutex_);
+    ++stats_.refused_count[static_cast<std::size_t>(why)];
+  }
   void closed(std::uint16_t code) {
     // Peers choose their codes: unregistered codes are counted together.
     const bool is_known = code == 0 || (code >= 1000 && code < 1016) || (code >= 4400 && code < 4410);
     const std::lock_guard lock(mutex_);
-    ++closed_by_code_[is_known ? code : std::uint16_t{4000}];
+    ++stats_.closed_by_code[is_known ? code : std::uint16_t{4000}];
   }
-  std::map<std::uint16_t, std::uint64_t> closedByCode() const {
+  ServerStats stats() const {
     const std::lock_guard lock(mutex_);
-    return closed_by_code_;
+    return stats_;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::uint16_t, std::uint64_t> closed_by_code_;
+  ServerStats stats_;
 };
 
 /// TCP connections beyond the sessions, for page loads, probes and unknown peers. Further ones are closed without a
@@ -62,7 +53,7 @@ struct ServerContext {
   const TrustedNetworks proxies;
   const std::unique_ptr<TlsCredentials> credentials;  ///< null: the port speaks plain HTTP
   Application& application;
-  RoomHub hub{};
+  Hub hub{};
   StaticFiles files{options.web_root};
   ConnectionSet connections{
       limitConnections(options.max_session_count + kSpareConnectionCount, options.reserved_descriptor_count)};

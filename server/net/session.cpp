@@ -9,7 +9,6 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/core/text.h>
-#include <spindrift/http/routes.h>
 
 namespace spindrift::net {
 namespace {
@@ -74,8 +73,8 @@ asio::awaitable<void> Session::run(const Request& request, std::string room, std
   // From here on Beast's "handshake" timeout is the one for closing.
   ws_.set_option(websocket::stream_base::timeout{context_.options.close_timeout, context_.options.idle_timeout, true});
 
-  ++context_.counters.accepted_session_count;
-  ++context_.counters.open_session_count;
+  context_.counters.add(&ServerStats::accepted_session_count);
+  context_.counters.add(&ServerStats::open_session_count);
   spdlog::debug("session {} opened by {}", id_, peer);
   context_.hub.add(id_, shared_from_this());
   callApplication("sessionOpened", [&] { context_.application.sessionOpened(id_, room, peer); });
@@ -88,7 +87,7 @@ asio::awaitable<void> Session::run(const Request& request, std::string room, std
   close_timer_.cancel();
   end_timer_.cancel();
   end_of_delay_.cancel();
-  --context_.counters.open_session_count;
+  context_.counters.add(&ServerStats::open_session_count, -1);
   const SessionEnd end = end_.value_or(SessionEnd{});
   context_.counters.closed(end.code);
   spdlog::debug("session {} closed: {} {}", id_, end.code, end.reason);
@@ -140,7 +139,7 @@ asio::awaitable<void> Session::readLoop() {
       } else if (error == websocket::error::message_too_big || error == websocket::error::buffer_overflow) {
         noteEnd(static_cast<std::uint16_t>(CloseCode::kTooBig), "a message over the limit");  // Beast has sent 1009
       } else if (error == beast::error::timeout) {
-        ++context_.counters.silent_session_count;
+        context_.counters.add(&ServerStats::silent_session_count);
         noteEnd(0, "nothing came for " + std::to_string(context_.options.idle_timeout.count()) + " ms, pongs included");
       } else {
         noteEnd(0, error.message());
@@ -162,7 +161,7 @@ asio::awaitable<void> Session::readLoop() {
     }
     // All clients of the address share its rate. A message that comes too early waits, and TCP slows down the sender.
     if (const auto delay = context_.addresses.reserveMessage(address_, Clock::now()); delay > Clock::duration{}) {
-      ++context_.counters.delayed_message_count;
+      context_.counters.add(&ServerStats::delayed_message_count);
       end_of_delay_.expires_after(delay);
       (void)co_await end_of_delay_.async_wait(kToken);
       if (outbox_.closing()) co_return;
@@ -235,9 +234,9 @@ asio::awaitable<bool> Session::writeGathered() {
   if (error) {
     noteEnd(0, error.message());
   } else {
-    context_.counters.sent_bytes_count += gathered_.bytes_count;
-    context_.counters.sent_frame_count += gathered_.frame_count;
-    ++context_.counters.write_count;
+    context_.counters.add(&ServerStats::sent_bytes_count, gathered_.bytes_count);
+    context_.counters.add(&ServerStats::sent_frame_count, gathered_.frame_count);
+    context_.counters.add(&ServerStats::write_count);
   }
   gathered_ = {};  // drops the references to the frames while the session waits
   co_return !error;
@@ -250,7 +249,7 @@ void Session::watchWrites() {
     self->watches_writes_ = false;
     if (error || !self->write_deadline_) return;
     if (*self->write_deadline_ > Clock::now()) return self->watchWrites();
-    ++self->context_.counters.evicted_session_count;
+    self->context_.counters.add(&ServerStats::evicted_session_count);
     self->noteEnd(0, "evicted: a write took longer than " +
                          std::to_string(self->context_.options.write_stall_timeout.count()) + " ms");
     self->cut();
@@ -261,7 +260,7 @@ void Session::reviewLevel() {
   const core::Level before = outbox_.level();
   const auto level = outbox_.reviewLevel(Clock::now());
   if (!level) return;
-  ++(*level < before ? context_.counters.lowered_level_count : context_.counters.raised_level_count);
+  context_.counters.add(*level < before ? &ServerStats::lowered_level_count : &ServerStats::raised_level_count);
   callApplication("sessionLevelChanged", [&] { context_.application.sessionLevelChanged(id_, *level); });
 }
 
@@ -276,7 +275,7 @@ asio::awaitable<void> Session::sayGoodbye() {
 void Session::sendAnswer(core::SharedBytes message) {
   const Outbox::Outcome outcome = outbox_.pushAnswer(std::move(message));
   if (outcome.overflow) {
-    ++context_.counters.evicted_session_count;
+    context_.counters.add(&ServerStats::evicted_session_count);
     asio::post(strand_, [self = shared_from_this()] { self->armCloseDeadline(); });
   }
   if (outcome.wake) wakeWriter();
@@ -288,7 +287,7 @@ void Session::sendState(const StateTopic& topic, core::SharedBytes message) {
 
 void Session::offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) {
   const Outbox::Outcome outcome = outbox_.offerFrame(stream, frame, Clock::now());
-  if (outcome.dropped) ++context_.counters.dropped_frame_count;
+  if (outcome.dropped) context_.counters.add(&ServerStats::dropped_frame_count);
   if (wake == Wake::kNow) wakeForFrames();
 }
 

@@ -16,8 +16,8 @@
 #include "message_stream.h"
 #include "outbox.h"
 #include "rate_limit.h"
-#include "room_hub.h"
 #include "server_context.h"
+#include "session_link.h"
 
 namespace spindrift::net {
 
@@ -38,7 +38,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
   void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override { outbox_.setWatch(stream, watch); }
   void enterRoom(std::shared_ptr<core::DemandTable> demand) override { outbox_.enterRoom(std::move(demand)); }
-  Outbox::Waiting waiting() const override { return outbox_.waiting(); }
+  Waiting waiting() const override { return outbox_.waiting(); }
   void close(CloseCode code, std::string reason) override;
   void closeAt(std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) override;
 

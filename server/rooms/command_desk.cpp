@@ -92,7 +92,7 @@ CommandDesk::Outcome CommandDesk::admit(Command command, const RoomSnapshot& roo
     if (auto full = queue_.tryPush(std::move(command), Clock::now()))
       refused = wire::rejection(v1::REJECT_REASON_BUSY, "", *std::move(full));
   }
-  if (refused) refused->command_id = command_id;
+  if (refused) refused->set_command_id(command_id);
   return refused;
 }
 
@@ -249,7 +249,7 @@ void CommandDesk::sendAnswers() {
                           "it was carried out, but the server cannot keep it on disk: " + kept.error().message);
     }
     if (one.rejected) {
-      one.rejected->command_id = one.command.id();
+      one.rejected->set_command_id(one.command.id());
       room_.outlets.commandRejected(one.command, *one.rejected);
     } else {
       room_.outlets.commandApplied(one.command, room_.water->tick(), one.boat_id);

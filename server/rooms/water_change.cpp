@@ -198,7 +198,7 @@ WaterChange::Built WaterChange::takeAdapted(TimePoint now, const Build& build, w
     return fail(fmt::format("a tick would take {:.1f} ms, {:.1f} ms are the most in real time", tick_ms, budget_ms));
   }
   Built out = continueIn(*water, build.why);
-  if (out.outcome) return fail(out.outcome->message);
+  if (out.outcome) return fail(out.outcome->message());
   governor_.changed(core::monotonic_s(now), build.step);
   return out;
 }

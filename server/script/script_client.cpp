@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::script {
@@ -105,9 +106,7 @@ void ScriptClient::disconnect(bool vanish) {
 }
 
 void ScriptClient::send(const v1::ClientMessage& message) {
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  if (connection_) (void)connection_->send(core::share(std::move(bytes)));
+  if (connection_) (void)connection_->send(codec::serialized(message));
 }
 
 void ScriptClient::subscribe(const v1::Subscribe& wanted) {

@@ -36,9 +36,10 @@ void Audit::applied(const rooms::Command& command, std::uint64_t tick) {
 
 void Audit::rejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   if (!file_) return;
-  this->command(
-      command,
-      {.event = "command", .outcome = "rejected", .reason = nameOf(rejection.reason), .message = rejection.message});
+  this->command(command, {.event = "command",
+                          .outcome = "rejected",
+                          .reason = nameOf(rejection.reason()),
+                          .message = rejection.message()});
 }
 
 void Audit::command(const rooms::Command& command, access::AuditEvent event) {

@@ -151,12 +151,12 @@ void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, 
 
 void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   if (command.sender.request_id != 0) {
-    counters_.rejected(rejection.reason);
+    counters_.rejected(rejection.reason());
     access_.audit().rejected(command, rejection);
     return rest_.commandRejected(command, rejection);
   }
   if (cluster_.audience && cluster_.audience->commandRejected(command, rejection)) {
-    counters_.rejected(rejection.reason);
+    counters_.rejected(rejection.reason());
     return access_.audit().rejected(command, rejection);
   }
   sessions_.commandRejected(command, rejection);

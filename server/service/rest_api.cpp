@@ -58,8 +58,8 @@ unsigned statusOf(const core::Error& error) {
 
 HttpReply rejected(const wire::CommandRejection& rejection) {
   v1::CommandAnswer out;
-  *out.mutable_reject() = wire::toWire(rejection);
-  return json(httpStatusOf(rejection.reason), out);
+  *out.mutable_reject() = rejection;
+  return json(httpStatusOf(rejection.reason()), out);
 }
 
 std::vector<std::string> split(std::string_view path) {
@@ -320,30 +320,28 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
   const core::ByteView body = call.request.body;
   auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});
-  if (const auto* malformed = std::get_if<wire::Malformed>(&parsed)) {
+  if (!parsed) {
     counters_.rejected(v1::REJECT_REASON_MALFORMED);
-    return respond(problem(400, malformed->message));
+    return respond(problem(400, parsed.error().message));
   }
-  if (const auto* rejection = std::get_if<wire::CommandRejection>(&parsed)) {
-    counters_.rejected(rejection->reason);
+  if (const auto* rejection = std::get_if<wire::CommandRejection>(&*parsed)) {
+    counters_.rejected(rejection->reason());
     return respond(rejected(*rejection));
   }
   rooms::Command command;
   command.sender.request_id = ++last_request_id_;
   command.sender.role = call.grant.role;
   command.sender.details = std::make_shared<const core::SenderDetails>(call.details(room->name()));
-  command.message = std::get<v1::Command>(std::move(parsed));
+  command.message = std::get<v1::Command>(*std::move(parsed));
   {
     const std::lock_guard lock(mutex_);
     pending_[command.sender.request_id] = std::move(respond);
   }
-  const auto rejection =
-      access_.takeCommand(call.grant.is_person ? call.grant.subject : "")
-          ? room->admit(command)
-          : wire::CommandRejection{
-                .command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()};
+  const auto rejection = access_.takeCommand(call.grant.is_person ? call.grant.subject : "")
+                             ? room->admit(command)
+                             : wire::rejection(v1::REJECT_REASON_BUSY, "", access_.busy(), command.id());
   if (rejection) {
-    counters_.rejected(rejection->reason);
+    counters_.rejected(rejection->reason());
     access_.audit().rejected(command, *rejection);
     commandRejected(command, *rejection);
   }

@@ -179,36 +179,36 @@ void Sessions::handleWaiting(net::SessionId session) {
 
 void Sessions::handle(net::SessionId session, const State& state, core::ByteView message) {
   std::visit(core::Overloaded{
-                 [&](const wire::Hello& said) { hello(session, state, said); },
+                 [&](const v1::Hello& said) { hello(session, state, said); },
                  [&](const wire::Subscribe& asked) { subscribe(session, state, asked); },
                  [&](v1::Command&& parsed) { command(session, state, std::move(parsed)); },
-                 [&](const wire::Ping& ping) {
+                 [&](const v1::Ping& ping) {
                    const double offset_s = state.greeted ? state.greeted->clock_offset_s : 0.0;
-                   hub().sendAnswer(session, wire::pong(ping.client_time_s, core::monotonic_s() + offset_s));
+                   hub().sendAnswer(session, wire::pong(ping.client_time_s(), core::monotonic_s() + offset_s));
                  },
                  [&](const wire::CommandRejection& rejection) {
-                   counters_.rejected(rejection.reason);
+                   counters_.rejected(rejection.reason());
                    hub().sendAnswer(session, wire::reject(rejection));
                  },
-                 [&](const wire::Malformed& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
+                 [&](const core::Error& malformed) { refuse(session, net::CloseCode::kPolicy, malformed.message); },
              },
              wire::parseClientMessage(message));
 }
 
-void Sessions::hello(net::SessionId session, const State& state, const wire::Hello& hello) {
-  if (auto why = wire::checkVersion(hello)) return refuse(session, net::CloseCode::kPolicy, *why);
+void Sessions::hello(net::SessionId session, const State& state, const v1::Hello& hello) {
+  if (auto why = wire::checkVersion(hello.version())) return refuse(session, net::CloseCode::kPolicy, *why);
   const auto view = state.venue->view();
   if (view) {
-    if (auto why = wire::checkWater(hello.minor, view->room->scene))
+    if (auto why = wire::checkWater(hello.version().minor(), view->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);
   }
   if (state.stage != Stage::kNew)
     return refuse(session, net::CloseCode::kPolicy, "Hello was sent before: send it once");
   const auto now = std::chrono::system_clock::now();
   const std::string& room = state.venue->name();
-  const auto grant = access_.resolve(hello.token, {{room, view ? view->room_access : v1::RoomAccess{}}}, now);
+  const auto grant = access_.resolve(hello.token(), {{room, view ? view->room_access : v1::RoomAccess{}}}, now);
   auto details = std::make_shared<core::SenderDetails>(core::SenderDetails{
-      .room = room, .subject = grant ? grant->subject : "", .name = hello.name, .peer = state.peer});
+      .room = room, .subject = grant ? grant->subject : "", .name = hello.name(), .peer = state.peer});
   if (!grant && !view) {  // it may be a token of the room
     return refuse(session, net::CloseCode::kTryAgainLater, "the room cannot be reached now: try again later");
   }
@@ -235,14 +235,14 @@ void Sessions::hello(net::SessionId session, const State& state, const wire::Hel
   state.venue->arrive({.session = session,
                        .role = grant->role,
                        .name = details->name,
-                       .color_rgb = hello.color_rgb,
-                       .resume_key = hello.resume_key},
+                       .color_rgb = hello.color_rgb(),
+                       .resume_key = hello.resume_key()},
                       [this, session, hello, role = grant->role](const core::Result<rooms::Admission>& admission) {
                         arrived(session, hello, role, admission);
                       });
 }
 
-void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::Role role,
+void Sessions::arrived(net::SessionId session, const v1::Hello& hello, core::Role role,
                        const core::Result<rooms::Admission>& admission) {
   if (!admission) return refuse(session, net::CloseCode::kTryAgainLater, admission.error().message);
   if (admission->displaced) displace(*admission->displaced);
@@ -253,18 +253,18 @@ void Sessions::arrived(net::SessionId session, const wire::Hello& hello, core::R
     if (it == sessions_.end()) return;  // it ended meanwhile; closed() has told the room
     State& kept = it->second;
     venue = kept.venue;
-    kept.wire_minor = hello.minor;
+    kept.wire_minor = hello.version().minor();
     kept.role = role;
   }
-  spdlog::info("session {} is person {} ({}), {} {}", session, admission->person_id, core::roleName(role), hello.client,
-               admission->resumed ? "resumed" : "");
+  spdlog::info("session {} is person {} ({}), {} {}", session, admission->person_id, core::roleName(role),
+               hello.client(), admission->resumed ? "resumed" : "");
   welcome(session, *admission, role, *venue);
   // From here on the session gets the room's news, and the frames that it subscribes to. Send the changes since the
   // greeting.
   hub().join(session, venue->name(), venue->demand());
   venue->watchesChanged();
   if (const auto view = venue->view()) {
-    if (auto why = wire::checkWater(hello.minor, view->room->scene))
+    if (auto why = wire::checkWater(hello.version().minor(), view->room->scene))
       return refuse(session, net::CloseCode::kPolicy, *why);
   }
   greet(session, *venue);
@@ -343,9 +343,7 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
       .sender = {.session_id = session, .person_id = state.person_id, .role = state.role, .details = state.details},
       .message = std::move(message)};
   const auto reject = [&](v1::RejectReason reason, std::string why) {
-    auto rejection = wire::rejection(reason, "", std::move(why));
-    rejection.command_id = command.id();
-    commandRejected(command, rejection);
+    commandRejected(command, wire::rejection(reason, "", std::move(why), command.id()));
   };
   if (state.stage != Stage::kIn)
     return reject(v1::REJECT_REASON_NO_HELLO, "a command before Hello: send ClientMessage.hello first");
@@ -369,7 +367,7 @@ void Sessions::commandApplied(const rooms::Command& command, std::uint64_t tick,
 }
 
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
-  counters_.rejected(rejection.reason);
+  counters_.rejected(rejection.reason());
   access_.audit().rejected(command, rejection);
   hub().sendAnswer(command.sender.session_id, wire::reject(rejection));
 }

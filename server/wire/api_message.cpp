@@ -75,11 +75,10 @@ std::string toJson(const google::protobuf::Message& message) {
   return out;
 }
 
-std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json) {
-  v1::Command command;
-  if (std::string why = readJson(json, command); !why.empty()) return Malformed{std::move(why)};
-  return std::visit([](auto checked) -> std::variant<v1::Command, CommandRejection, Malformed> { return checked; },
-                    checkCommand(std::move(command)));
+core::Result<std::variant<v1::Command, CommandRejection>> parseCommandJson(std::string_view json) {
+  auto command = parse<v1::Command>(json);
+  if (!command) return command.error();
+  return checkCommand(*std::move(command));
 }
 
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {

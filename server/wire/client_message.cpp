@@ -23,37 +23,48 @@ constexpr std::size_t kPathMaxBytes = 128;
 constexpr std::size_t kNameEchoMaxBytes = 64;
 constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
 
-CommandRejection rejection(std::uint64_t command_id, scene::FieldIssue issue) {
-  return {command_id, issue.reason, std::move(issue.path), std::move(issue.message)};
+CommandRejection rejectionOf(std::uint64_t command_id, scene::FieldIssue issue) {
+  return rejection(issue.reason, std::move(issue.path), std::move(issue.message), command_id);
 }
 
 }  // namespace
 
+CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message, std::uint64_t command_id) {
+  CommandRejection out;
+  out.set_command_id(command_id);
+  out.set_reason(reason);
+  out.set_field(std::move(field));
+  out.set_message(std::move(message));
+  return out;
+}
+
 std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
   const std::uint64_t id = command.command_id();
   if (command.action_case() == v1::Command::ACTION_NOT_SET) {
-    return CommandRejection{id, v1::REJECT_REASON_MALFORMED, "",
-                            "this server does not know this kind of command; the greeting tells its version"};
+    return rejection(v1::REJECT_REASON_MALFORMED, "",
+                     "this server does not know this kind of command; the greeting tells its version", id);
   }
   std::vector<scene::FieldIssue> issues;
   scene::checkFields(command, "", issues);
-  if (!issues.empty()) return rejection(id, std::move(issues.front()));
+  if (!issues.empty()) return rejectionOf(id, std::move(issues.front()));
   if (command.has_set_parameter()) {
     const v1::SetParameter& set = command.set_parameter();
     if (set.path().empty() || set.path().size() > kPathMaxBytes) {
-      return CommandRejection{id, v1::REJECT_REASON_UNKNOWN_PARAMETER, "set_parameter.path",
-                              set.path().empty() ? "is empty; name a parameter of the greeting"
-                                                 : "is longer than any parameter; the greeting lists what can be set"};
+      return rejection(v1::REJECT_REASON_UNKNOWN_PARAMETER, "set_parameter.path",
+                       set.path().empty() ? "is empty; name a parameter of the greeting"
+                                          : "is longer than any parameter; the greeting lists what can be set",
+                       id);
     }
     if (!std::isfinite(set.value())) {
-      return CommandRejection{id, v1::REJECT_REASON_NOT_FINITE, core::cleanText(set.path(), kPathMaxBytes),
-                              core::formatNumber(set.value()) + " is not a finite number; send a finite one"};
+      return rejection(v1::REJECT_REASON_NOT_FINITE, core::cleanText(set.path(), kPathMaxBytes),
+                       core::formatNumber(set.value()) + " is not a finite number; send a finite one", id);
     }
   }
   if (command.has_change_scene() && !scene::isSceneName(command.change_scene().name())) {
-    return CommandRejection{id, v1::REJECT_REASON_UNKNOWN_SCENE, "change_scene.name",
-                            "\"" + core::cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
-                                "\" is not a scene; the greeting lists what there is"};
+    return rejection(v1::REJECT_REASON_UNKNOWN_SCENE, "change_scene.name",
+                     "\"" + core::cleanText(command.change_scene().name(), kNameEchoMaxBytes) +
+                         "\" is not a scene; the greeting lists what there is",
+                     id);
   }
   command.DiscardUnknownFields();
   return command;
@@ -63,46 +74,45 @@ namespace {
 
 ClientMessage parseSubscribe(const v1::Subscribe& subscribe) {
   if (!v1::Layer_IsValid(subscribe.layer()) || subscribe.layer() == v1::LAYER_UNSPECIFIED) {
-    return Malformed{"subscribe.layer: " + std::to_string(subscribe.layer()) +
-                     " is not a layer; the greeting lists the room's layers"};
+    return core::invalid("subscribe.layer: " + std::to_string(subscribe.layer()) +
+                         " is not a layer; the greeting lists the room's layers");
   }
   if (!v1::Packing_IsValid(subscribe.packing())) {
-    return Malformed{"subscribe.packing: " + std::to_string(subscribe.packing()) +
-                     " is neither plain (0) nor packed (1)"};
+    return core::invalid("subscribe.packing: " + std::to_string(subscribe.packing()) +
+                         " is neither plain (0) nor packed (1)");
   }
   const std::optional<core::Level> level = codec::fromWire(subscribe.level());
   if (!level) {
-    return Malformed{"subscribe.level: " + std::to_string(subscribe.level()) +
-                     " is not a level; full (0), coarse (1), medium (2) and fine (3) are"};
+    return core::invalid("subscribe.level: " + std::to_string(subscribe.level()) +
+                         " is not a level; full (0), coarse (1), medium (2) and fine (3) are");
   }
   std::vector<scene::FieldIssue> issues;
   scene::checkFields(subscribe, "subscribe.", issues);
-  if (!issues.empty()) return Malformed{issues.front().path + ": " + issues.front().message};
+  if (!issues.empty()) return core::invalid(issues.front().path + ": " + issues.front().message);
   return Subscribe{subscribe.layer(), subscribe.max_rate_hz(), subscribe.packing(), *level, subscribe.adapts()};
 }
 
 ClientMessage parseChecked(core::ByteView bytes) {
   if (bytes.size() > kParseMaxBytes) {
-    return Malformed{"message of " + std::to_string(bytes.size()) + " bytes is too big; the greeting tells the limit"};
+    return core::invalid("message of " + std::to_string(bytes.size()) +
+                         " bytes is too big; the greeting tells the limit");
   }
   v1::ClientMessage message;
   {
     // Protobuf would log every message with invalid UTF-8, so that a client could flood standard error.
     const google::protobuf::LogSilencer silencer;
     if (!message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) {
-      return Malformed{"not a spindrift.v1.ClientMessage; send one serialized message in each binary frame"};
+      return core::invalid("not a spindrift.v1.ClientMessage; send one serialized message in each binary frame");
     }
   }
   switch (message.message_case()) {
     case v1::ClientMessage::kHello: {
-      const v1::Hello& hello = message.hello();
-      return Hello{hello.version().major(),
-                   hello.version().minor(),
-                   core::cleanName(hello.client(), kClientNameMaxBytes),
-                   hello.token(),
-                   core::cleanName(hello.name(), kPersonNameMaxBytes),
-                   hello.color_rgb() & 0xFFFFFFu,
-                   hello.resume_key().size() <= kResumeKeyMaxBytes ? hello.resume_key() : std::string()};
+      v1::Hello& hello = *message.mutable_hello();
+      hello.set_client(core::cleanName(hello.client(), kClientNameMaxBytes));
+      hello.set_name(core::cleanName(hello.name(), kPersonNameMaxBytes));
+      hello.set_color_rgb(hello.color_rgb() & 0xFFFFFFu);
+      if (hello.resume_key().size() > kResumeKeyMaxBytes) hello.clear_resume_key();
+      return std::move(hello);
     }
     case v1::ClientMessage::kSubscribe:
       return parseSubscribe(message.subscribe());
@@ -111,15 +121,15 @@ ClientMessage parseChecked(core::ByteView bytes) {
                         checkCommand(std::move(*message.mutable_command())));
     case v1::ClientMessage::kPing:
       if (!std::isfinite(message.ping().client_time_s())) {
-        return Malformed{"ping.client_time_s: " + core::formatNumber(message.ping().client_time_s()) +
-                         " is not a finite number; send seconds"};
+        return core::invalid("ping.client_time_s: " + core::formatNumber(message.ping().client_time_s()) +
+                             " is not a finite number; send seconds");
       }
-      return Ping{message.ping().client_time_s()};
+      return message.ping();
     case v1::ClientMessage::MESSAGE_NOT_SET:
       break;
   }
-  return Malformed{"message of a kind that this server does not know; it speaks version " + std::to_string(kWireMajor) +
-                   "." + std::to_string(kWireMinor)};
+  return core::invalid("message of a kind that this server does not know; it speaks version " +
+                       std::to_string(kWireMajor) + "." + std::to_string(kWireMinor));
 }
 
 }  // namespace
@@ -128,13 +138,13 @@ ClientMessage parseClientMessage(core::ByteView bytes) {
   try {
     return parseChecked(bytes);
   } catch (const std::exception& error) {
-    return Malformed{std::string("message could not be parsed: ") + error.what()};
+    return core::invalid(std::string("message could not be parsed: ") + error.what());
   }
 }
 
-std::optional<std::string> checkVersion(const Hello& hello) {
-  if (hello.major == kWireMajor) return std::nullopt;
-  return "client speaks wire version " + std::to_string(hello.major) + "." + std::to_string(hello.minor) +
+std::optional<std::string> checkVersion(const v1::Version& client) {
+  if (client.major() == kWireMajor) return std::nullopt;
+  return "client speaks wire version " + std::to_string(client.major()) + "." + std::to_string(client.minor()) +
          ", this server " + std::to_string(kWireMajor) + "." + std::to_string(kWireMinor) +
          "; use a client of the same major version";
 }
@@ -166,15 +176,6 @@ std::optional<core::Role> fromWire(v1::Role role) {
     if (toWire(one) == role) return one;
   }
   return std::nullopt;
-}
-
-v1::Reject toWire(const CommandRejection& rejection) {
-  v1::Reject out;
-  out.set_command_id(rejection.command_id);
-  out.set_reason(rejection.reason);
-  out.set_field(rejection.field);
-  out.set_message(rejection.message);
-  return out;
 }
 
 std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::Scene& scene) {
@@ -227,7 +228,7 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
   }
   if (issues.empty()) return std::nullopt;
-  return rejection(command.command_id(), std::move(issues.front()));
+  return rejectionOf(command.command_id(), std::move(issues.front()));
 }
 
 }  // namespace spindrift::wire

@@ -1,5 +1,6 @@
 #include <utility>
 
+#include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
@@ -13,9 +14,7 @@ template <typename Part>
 core::SharedBytes messageWith(Part* (v1::ServerMessage::*mutablePart)(), Part part) {
   v1::ServerMessage message;
   *(message.*mutablePart)() = std::move(part);
-  core::Bytes bytes(message.ByteSizeLong());
-  message.SerializeWithCachedSizesToArray(bytes.data());
-  return core::share(std::move(bytes));
+  return codec::serialized(message);
 }
 
 }  // namespace
@@ -39,7 +38,7 @@ core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std:
 }
 
 core::SharedBytes reject(const CommandRejection& rejection) {
-  return messageWith(&v1::ServerMessage::mutable_reject, toWire(rejection));
+  return messageWith(&v1::ServerMessage::mutable_reject, rejection);
 }
 
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick) {

@@ -25,9 +25,10 @@ void checkCommand(v1::Command command, const v1::Scene& scene) {
   const auto rejection = wire::completeCommand(command, scene);
   must(test::isChecked(command), "defaults keep it finite and in range");
   if (rejection) {
-    must(rejection->reason != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
-    must(!rejection->message.empty() && rejection->message.find('\n') == std::string::npos, "a rejection has one line");
-    must(rejection->command_id == command.command_id(), "a rejection names its command");
+    must(rejection->reason() != v1::REJECT_REASON_UNSPECIFIED, "a rejection has a reason");
+    must(!rejection->message().empty() && rejection->message().find('\n') == std::string::npos,
+         "a rejection has one line");
+    must(rejection->command_id() == command.command_id(), "a rejection names its command");
   } else if (command.has_set_parameter()) {
     v1::Scene changed = scene;
     must(!scene::setParameter(changed, command.set_parameter().path(), command.set_parameter().value()),
@@ -48,9 +49,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const v1::Scene wave_only = fuzz::sceneOf("wave { resolution_count: 64 depth_m: 0.5 }");
   const wire::ClientMessage message = wire::parseClientMessage({data, size});
   must(test::isHarmless(message), "what comes out is finite and in range");
-  if (const auto* hello = std::get_if<wire::Hello>(&message)) {
-    const auto refusal = wire::checkVersion(*hello);
-    must(refusal.has_value() == (hello->major != wire::kWireMajor), "another major version is refused, no other");
+  if (const auto* hello = std::get_if<v1::Hello>(&message)) {
+    const auto refusal = wire::checkVersion(hello->version());
+    must(refusal.has_value() == (hello->version().major() != wire::kWireMajor),
+         "another major version is refused, no other");
   }
   if (const auto* command = std::get_if<v1::Command>(&message)) {
     fuzz::checkCommand(*command, full);
@@ -58,7 +60,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   }
   // The same commands as text, from the REST interface.
   const auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(data), size});
-  if (const auto* command = std::get_if<v1::Command>(&parsed)) {
+  if (const auto* command = parsed ? std::get_if<v1::Command>(&*parsed) : nullptr) {
     must(test::isChecked(*command), "what comes out of JSON is finite and in range");
     fuzz::checkCommand(*command, full);
     const auto again = wire::checkCommand(*command);

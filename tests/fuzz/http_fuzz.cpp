@@ -12,7 +12,6 @@
 
 #include <spindrift/http/network_text.h>
 #include <spindrift/http/request.h>
-#include <spindrift/http/routes.h>
 #include <spindrift/http/static_files.h>
 #include <spindrift/http/url.h>
 
@@ -117,7 +116,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site) {
   const bool is_heard =
       net::isOriginAllowed(field(boost::beast::http::field::origin), field(boost::beast::http::field::host), true, {});
   must(is_heard || !field(boost::beast::http::field::origin).empty(), "programs are heard");
-  const auto routed = net::routeRequest(net::headOf(request), site.files);
+  const auto routed = net::routeRequest(request, site.files);
   if (const auto* target = std::get_if<net::RequestTarget>(&routed)) {
     must(target->path.starts_with('/'), "the application sees absolute paths");
     must(net::questionOf(request, *target, "peer").body.size() <= kBodyMaxBytes, "the body keeps its bound");

@@ -26,7 +26,7 @@ class KeptLayout : public testing::Test {
   }
   static void set(water::RoomWater& water, const std::string& path, double value) {
     const auto rejected = water.apply(setParameter(path, value));
-    EXPECT_FALSE(rejected) << rejected->message;
+    EXPECT_FALSE(rejected) << rejected->message();
   }
 };
 

@@ -143,7 +143,7 @@ TEST_F(RoomFidelity, OnlyAnOperatorChangesIt) {
   const auto refused = room_->admit(
       {.sender = {.session_id = 1, .role = core::Role::kPlayer}, .message = std::get<v1::Command>(std::move(checked))});
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->reason, v1::REJECT_REASON_FORBIDDEN);
+  EXPECT_EQ(refused->reason(), v1::REJECT_REASON_FORBIDDEN);
 }
 
 TEST_F(RoomFidelity, ALogReplaysTheChangeBitForBit) {

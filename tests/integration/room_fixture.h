@@ -39,8 +39,8 @@ struct RecordingOutlets final : rooms::RoomOutlets {
     applied.push_back(command.id());
   }
   void commandRejected(const rooms::Command&, const wire::CommandRejection& rejection) override {
-    rejected.push_back(rejection.message);
-    rejected_ids.push_back(rejection.command_id);
+    rejected.push_back(rejection.message());
+    rejected_ids.push_back(rejection.command_id());
   }
   void frameReady(const rooms::Room&, core::FrameView frame) override {
     ++frame_count;
@@ -97,7 +97,7 @@ class RoomTest : public testing::Test {
     ASSERT_TRUE(std::holds_alternative<v1::Command>(checked));
     const auto refused = room_->admit({.sender = {.session_id = session_id, .person_id = person_id},
                                        .message = std::get<v1::Command>(std::move(checked))});
-    ASSERT_FALSE(refused) << refused->message;
+    ASSERT_FALSE(refused) << refused->message();
   }
 
   using Clock = std::chrono::steady_clock;

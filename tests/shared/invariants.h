@@ -63,18 +63,18 @@ inline bool isChecked(const v1::Command& command) {
 
 /// The guarantees of parseClientMessage() for its result.
 inline bool isHarmless(const wire::ClientMessage& message) {
-  if (const auto* hello = std::get_if<wire::Hello>(&message)) {
-    return hello->client.size() <= wire::kClientNameMaxBytes && hello->name.size() <= wire::kPersonNameMaxBytes;
+  if (const auto* hello = std::get_if<v1::Hello>(&message)) {
+    return hello->client().size() <= wire::kClientNameMaxBytes && hello->name().size() <= wire::kPersonNameMaxBytes;
   }
   if (const auto* subscribe = std::get_if<wire::Subscribe>(&message)) {
     return subscribe->max_rate_hz >= 0 && subscribe->max_rate_hz <= 240 && v1::Layer_IsValid(subscribe->layer);
   }
-  if (const auto* ping = std::get_if<wire::Ping>(&message)) return std::isfinite(ping->client_time_s);
+  if (const auto* ping = std::get_if<v1::Ping>(&message)) return std::isfinite(ping->client_time_s());
   if (const auto* command = std::get_if<v1::Command>(&message)) return isChecked(*command);
   if (const auto* rejection = std::get_if<wire::CommandRejection>(&message)) {
-    return rejection->reason != v1::REJECT_REASON_UNSPECIFIED && !rejection->message.empty();
+    return rejection->reason() != v1::REJECT_REASON_UNSPECIFIED && !rejection->message().empty();
   }
-  return !std::get<wire::Malformed>(message).message.empty();
+  return !std::get<core::Error>(message).message.empty();
 }
 
 inline bool allFinite(const std::vector<float>& values) {

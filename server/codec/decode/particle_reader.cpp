@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstring>
 
-#include "format/particle_format.h"
 #include "format/short_vectors.h"
 #include "prefix_slots.h"
 #include "residual_reader.h"
@@ -13,14 +12,12 @@ namespace {
 
 constexpr std::uint32_t kUsualOffsetBits = 5;
 
-bool isWithinBounds(const ParticleShape& shape) {
-  if (shape.count > kParticleReadMaxCount || shape.offset_bits < 1 || shape.offset_bits > kOffsetBitsMax) return false;
-  std::uint64_t total = 1;
-  for (const std::uint32_t cells : shape.cells_count) {
-    if (cells < 1 || cells > kCoordinateMaxCount >> shape.offset_bits) return false;
-    total *= cells;
-  }
-  return total <= kCellMaxCount;
+bool isWithinBounds(const CellGrid& grid) {
+  if (grid.offset_bits < 1 || grid.offset_bits > kOffsetBitsMax) return false;
+  const auto isAllowed = [&](std::uint32_t cells) {
+    return cells >= 1 && cells <= kCoordinateMaxCount >> grid.offset_bits;
+  };
+  return std::all_of(grid.cells_count.begin(), grid.cells_count.end(), isAllowed) && grid.totalCount() <= kCellMaxCount;
 }
 
 std::uint32_t getGamma(BitSource& in) {
@@ -51,8 +48,8 @@ constexpr std::array<std::uint32_t, kHalfSymbolCount> kEnds = makeEnds();
 /// Decodes the cells: writes the corner of its eighth as each particle's position.
 class CellReader {
  public:
-  CellReader(const ParticleShape& shape, std::uint8_t* out) : shape_(shape), out_(out), left_(shape.count) {
-    const std::uint32_t low = shape.offset_bits - 1;
+  CellReader(std::uint32_t count, const CellGrid& grid, std::uint8_t* out) : grid_(grid), out_(out), left_(count) {
+    const std::uint32_t low = grid.offset_bits - 1;
     for (std::size_t e = 0; e < 8; ++e) eighths_[e] = placeOf(e >> 2, e & 1, e >> 1 & 1) << low;
   }
 
@@ -60,7 +57,7 @@ class CellReader {
     PrefixSlots half_code, gap_code;
     if (!half_code.read(kHalfSymbolCount, from) || !gap_code.read(kGapSymbolCount, from)) return false;
     BitSource bits = from;  // a copy stays in registers
-    const auto [cells_x, cells_y, cells_z] = shape_.cells_count;
+    const auto [cells_x, cells_y, cells_z] = grid_.cells_count;
     std::uint32_t x = 0, y = 0, z = 0;
     for (; left_ > 0; ++y) {
       // At most 11 bits for the gap's code, 23 raw bits, 22 bits for the two halves.
@@ -89,7 +86,7 @@ class CellReader {
       bits.take(gap.length + raw_bits + low_half.length + high_half.length);
       const std::uint32_t halves = low_half.symbol | static_cast<std::uint32_t>(high_half.symbol) << 8;
       if (halves == 0) return false;  // a coded cell is not empty
-      const std::uint64_t corner = placeOf(x, y, z) << shape_.offset_bits;
+      const std::uint64_t corner = placeOf(x, y, z) << grid_.offset_bits;
       const bool has_many = (halves & halves >> 1 & 0x5555u) != 0;
       if (!has_many && left_ >= kSureCount)
         putFew(corner, low_half.symbol, high_half.symbol);
@@ -133,7 +130,7 @@ class CellReader {
     return true;
   }
 
-  const ParticleShape shape_;
+  const CellGrid grid_;
   std::uint8_t* out_;
   std::uint32_t left_;
   std::array<std::uint64_t, 8> eighths_;
@@ -245,24 +242,24 @@ void putUsualGroup(const BitSource& bits, std::uint32_t place, const Tails& tail
 
 }  // namespace
 
-bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, const ParticleShape& shape,
+bool readParticles(const std::uint8_t* payload, std::uint32_t byte_count, std::uint32_t count, const CellGrid& grid,
                    std::uint8_t* out) {
-  if (!isWithinBounds(shape) || byte_count > BitSource::kMaxBytes) return false;
+  if (count > kParticleReadMaxCount || !isWithinBounds(grid) || byte_count > BitSource::kMaxBytes) return false;
   ResidualReader in(payload, byte_count);
-  if (!CellReader(shape, out).read(in.bits())) return false;
+  if (!CellReader(count, grid, out).read(in.bits())) return false;
   const BitSource offsets = in.bits();
-  const std::uint32_t low = shape.offset_bits - 1;
-  if (!in.bits().skip(std::uint64_t{shape.count} * 3 * low)) return false;
+  const std::uint32_t low = grid.offset_bits - 1;
+  if (!in.bits().skip(std::uint64_t{count} * 3 * low)) return false;
   Attributes attributes;
   Tails tails;
   std::uint32_t place = offsets.place();
-  for (std::size_t begin = 0; begin < shape.count; begin += kGroupMaxCount) {
-    const std::size_t count = std::min(kGroupMaxCount, shape.count - begin);
-    attributes.read(in, count, tails);
-    if (shape.offset_bits == kUsualOffsetBits)
-      putUsualGroup(offsets, place, tails, count, out + begin * kParticleWordBytes);
+  for (std::size_t begin = 0; begin < count; begin += kGroupMaxCount) {
+    const std::size_t group_count = std::min(kGroupMaxCount, count - begin);
+    attributes.read(in, group_count, tails);
+    if (grid.offset_bits == kUsualOffsetBits)
+      putUsualGroup(offsets, place, tails, group_count, out + begin * kParticleWordBytes);
     else
-      putGroup(offsets, place, low, tails, count, out + begin * kParticleWordBytes);
+      putGroup(offsets, place, low, tails, group_count, out + begin * kParticleWordBytes);
     place += std::uint32_t{kGroupMaxCount} * 3 * low;
   }
   return in.isAtEnd();

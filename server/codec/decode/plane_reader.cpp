@@ -85,7 +85,7 @@ void PlaneRow::readPlane(ResidualReader& in, const History& history, const Surfa
     }
     predictBand(sums_ + kSumsLeft, sums_stride, known, top == 0, plane + begin, stride, layout_.nx);
   }
-  fillBorder(plane);
+  fillBorder(plane + layout_.placeOf(0), layout_.nx, layout_.nz, stride);
 }
 
 void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
@@ -99,25 +99,6 @@ void PlaneRow::readTiles(ResidualReader& in, std::size_t rows) {
     // Move the rows of a narrow tile to their positions in the group, the last one first.
     for (std::size_t j = rows; j-- > 0;)
       std::memmove(group.of.data() + j * kTile, group.of.data() + j * columns, columns * sizeof group.of[0]);
-  }
-}
-
-void PlaneRow::fillBorder(std::int16_t* plane) const {
-  const auto last_x = static_cast<std::ptrdiff_t>(layout_.nx) - 1;
-  const auto last = static_cast<std::ptrdiff_t>(layout_.nz) - 1;
-  for (std::ptrdiff_t z = 0; z <= last; ++z) {
-    std::int16_t* r = plane + layout_.placeOf(z);
-    r[-1] = r[-2] = r[0];
-    r[last_x + 1] = r[last_x + 2] = r[last_x];
-  }
-  const auto copyRow = [&](std::ptrdiff_t from, std::ptrdiff_t to) {
-    std::memcpy(plane + layout_.placeOf(to) - PlaneLayout::kBorder,
-                plane + layout_.placeOf(from) - PlaneLayout::kBorder,
-                (layout_.nx + 2 * PlaneLayout::kBorder) * sizeof *plane);
-  };
-  for (const std::ptrdiff_t beyond : {1, 2}) {
-    copyRow(0, -beyond);
-    copyRow(last, last + beyond);
   }
 }
 

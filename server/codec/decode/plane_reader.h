@@ -13,7 +13,6 @@ namespace spindrift::codec {
 /// A grid of nx x nz samples in memory, with a border: two samples repeat the outermost ones, the rest is undefined and
 /// only lets vectors be loaded and stored as a whole.
 struct PlaneLayout {
-  static constexpr std::size_t kBorder = 2;
   static constexpr std::size_t kLeft = 8;
   static constexpr std::size_t kRight = 16;
 
@@ -73,7 +72,6 @@ class PlaneRow {
   void readPlane(ResidualReader& in, const History& history, const SurfaceWeights& weights, std::int16_t* plane);
   /// Reads the residuals of a row of tiles.
   void readTiles(ResidualReader& in, std::size_t rows);
-  void fillBorder(std::int16_t* plane) const;
 
   PlaneLayout layout_;
   std::int16_t *next_ = nullptr, *before_ = nullptr, *earlier_ = nullptr;

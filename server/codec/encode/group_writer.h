@@ -118,7 +118,6 @@ const ResidualWriters& residualWriters();
 struct GroupWriter {
   /// Room for a class and 64 residuals with an escape each.
   static constexpr std::size_t kGroupMaxBytes = 4 + kGroupMaxCount * 5;
-  static constexpr std::uint32_t kPlaceBits = 6;
 
   const ResidualWriters& codes;
   BitCursor out;

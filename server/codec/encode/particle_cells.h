@@ -14,17 +14,6 @@
 
 namespace spindrift::codec {
 
-/// Number of cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that a column is
-/// contiguous, as in the simulation.
-struct CellGrid {
-  std::array<std::uint32_t, 3> cells_count{};
-  std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
-
-  [[nodiscard]] std::uint64_t totalCount() const {
-    return std::uint64_t{cells_count[0]} * cells_count[1] * cells_count[2];
-  }
-};
-
 /// Conversion of the words of core::ParticleView to quanta: place = u16 * scale along each axis, velocity = i8 *
 /// speed_scale.
 struct ParticleScale {

@@ -3,6 +3,7 @@
 // true.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 
 #define SPINDRIFT_INLINE __attribute__((always_inline)) inline
@@ -24,10 +25,28 @@ SPINDRIFT_INLINE void fetchAhead(const void* at) {
   __builtin_prefetch(static_cast<const char*>(at) + kAheadBytes);
 }
 
+/// Returns whether this processor has AVX2 and BMI2.
+inline bool hasVectors() {
+#if SPINDRIFT_HAS_VECTORS
+  return __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("bmi") != 0 &&
+         __builtin_cpu_supports("bmi2") != 0;
+#else
+  return false;
+#endif
+}
+inline std::atomic<bool>& vectorsInUse() {
+  static std::atomic<bool> in_use{hasVectors()};
+  return in_use;
+}
+
 /// Returns whether loops use AVX2 and BMI2: if the processor has them and they were not switched off. The bytes are the
 /// same either way.
-bool usesVectors();
+inline bool usesVectors() {
+  return vectorsInUse().load(std::memory_order_relaxed);
+}
 /// false: only plain loops, even if the processor has more. For tests and measurements; applies to the whole process.
-void useVectors(bool wanted);
+inline void useVectors(bool wanted) {
+  vectorsInUse().store(wanted && hasVectors(), std::memory_order_relaxed);
+}
 
 }  // namespace spindrift::codec

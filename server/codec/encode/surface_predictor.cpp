@@ -29,7 +29,7 @@ void SurfacePlane::assign(std::span<const std::int16_t> samples) {
     }
     bits |= row_bits;
   }
-  fillBorder();
+  fillBorder(row(0), nx, count_.z, stride());
   is_small_ = bits < 1 << 13;
 }
 
@@ -38,21 +38,8 @@ void SurfacePlane::assign(std::span<const std::uint8_t> samples) {
   const std::size_t nx = count_.x;
   for (std::size_t z = 0; z < count_.z; ++z)
     std::copy_n(samples.data() + z * nx, nx, row(static_cast<std::ptrdiff_t>(z)));
-  fillBorder();
+  fillBorder(row(0), nx, count_.z, stride());
   is_small_ = true;
-}
-
-void SurfacePlane::fillBorder() {
-  const auto last_x = static_cast<std::ptrdiff_t>(count_.x) - 1;
-  const auto last = static_cast<std::ptrdiff_t>(count_.z) - 1;
-  for (std::ptrdiff_t z = 0; z <= last; ++z) {
-    std::int16_t* r = row(z);
-    r[-1] = r[-2] = r[0];
-    r[last_x + 1] = r[last_x + 2] = r[last_x];
-  }
-  for (const std::ptrdiff_t z : {std::ptrdiff_t{-2}, std::ptrdiff_t{-1}})
-    std::copy_n(row(0) - kBorder, stride(), row(z) - kBorder);
-  for (const std::ptrdiff_t z : {last + 1, last + 2}) std::copy_n(row(last) - kBorder, stride(), row(z) - kBorder);
 }
 
 namespace {

@@ -18,8 +18,6 @@ namespace spindrift::codec {
 /// Samples of a grid in quanta, row by row, with a border of two that repeats the outermost samples.
 class SurfacePlane {
  public:
-  static constexpr std::size_t kBorder = 2;
-
   /// Changes the size; the samples are undefined until they are written.
   void resize(core::CellCounts count);
 
@@ -31,8 +29,6 @@ class SurfacePlane {
   /// Copies nx * nz samples into the plane and fills the border.
   void assign(std::span<const std::int16_t> samples);
   void assign(std::span<const std::uint8_t> samples);
-  /// Fills the border from the samples inside.
-  void fillBorder();
   /// Returns true if sums of four samples surely fit into 16 bits; known only after assign().
   [[nodiscard]] bool isSmall() const { return is_small_; }
 

@@ -1,10 +1,22 @@
 // Format of packed particles in the stream. Shared by encoder and decoder.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
 namespace spindrift::codec {
+
+/// Number of cells along x, y, z; the linear index of a cell is (z * cells x + x) * cells y + y, so that a column is
+/// contiguous, as in the simulation.
+struct CellGrid {
+  std::array<std::uint32_t, 3> cells_count{};
+  std::uint32_t offset_bits = 5;  ///< a cell's side is 2^offset_bits quanta; 1..8
+
+  [[nodiscard]] std::uint64_t totalCount() const {
+    return std::uint64_t{cells_count[0]} * cells_count[1] * cells_count[2];
+  }
+};
 
 inline constexpr std::uint32_t kOffsetBitsMax = 8;
 /// Coordinates have at most 16 bits, cell numbers 24.

@@ -1,6 +1,7 @@
-// Weights of the known samples in a prediction. Shared by encoder and decoder.
+// Planes and the weights of the known samples in a prediction. Shared by encoder and decoder.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -29,5 +30,22 @@ struct SurfaceWeights {
 inline constexpr int kWeightBits = 12;
 /// Number of samples along each side of a tile.
 inline constexpr std::size_t kTile = 8;
+
+/// Number of rows and columns on each side of a plane that repeat its outermost samples.
+inline constexpr std::size_t kBorder = 2;
+
+/// Fills them. `first`: sample 0 of row 0.
+inline void fillBorder(std::int16_t* first, std::size_t nx, std::size_t nz, std::size_t stride) {
+  for (std::size_t z = 0; z < nz; ++z) {
+    std::int16_t* const r = first + z * stride;
+    r[-1] = r[-2] = r[0];
+    r[nx] = r[nx + 1] = r[nx - 1];
+  }
+  std::int16_t *const top = first - kBorder, *const bottom = top + (nz - 1) * stride;
+  for (std::size_t k = 1; k <= kBorder; ++k) {
+    std::copy_n(top, nx + 2 * kBorder, top - k * stride);
+    std::copy_n(bottom, nx + 2 * kBorder, bottom + k * stride);
+  }
+}
 
 }  // namespace spindrift::codec

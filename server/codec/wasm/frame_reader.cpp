@@ -63,7 +63,7 @@ SPINDRIFT_EXPORT(prepareParticles) std::uint8_t* prepareParticles(std::uint32_t 
 SPINDRIFT_EXPORT(readParticles)
 std::uint8_t* readPreparedParticles(std::uint32_t count, std::uint32_t cells_x, std::uint32_t cells_y,
                                     std::uint32_t cells_z, std::uint32_t offset_bits) {
-  return readParticles(payload, payload_bytes, {count, {cells_x, cells_y, cells_z}, offset_bits}, words) ? words
+  return readParticles(payload, payload_bytes, count, {{cells_x, cells_y, cells_z}, offset_bits}, words) ? words
                                                                                                          : nullptr;
 }
 

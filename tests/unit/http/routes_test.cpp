@@ -2,27 +2,37 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/http/routes.h>
-#include <spindrift/http/url.h>
+#include <spindrift/http/request.h>
 
 #include "temporary_folder.h"
 
 namespace spindrift::net {
 namespace {
 
+namespace http = boost::beast::http;
+
 struct HttpRoutesTest : testing::Test {
   test::TemporaryFolder folder;
 
+  static Request requestOf(const std::string& method, const std::string& target) {
+    Request out;
+    out.method_string(method);
+    out.target(target);
+    return out;
+  }
   Reply route(const std::string& method, const std::string& target, const std::string& if_none_match = "",
               const std::string& accept_encoding = "") {
     StaticFiles files(folder.path().string());
-    auto routed = routeRequest({method, target, if_none_match, accept_encoding}, files);
+    Request request = requestOf(method, target);
+    if (!if_none_match.empty()) request.set(http::field::if_none_match, if_none_match);
+    if (!accept_encoding.empty()) request.set(http::field::accept_encoding, accept_encoding);
+    auto routed = routeRequest(request, files);
     return std::holds_alternative<Reply>(routed) ? std::get<Reply>(std::move(routed)) : Reply{};
   }
   /// The request that would go to the application.
   std::optional<RequestTarget> target(const std::string& method, const std::string& text) {
     StaticFiles files(folder.path().string());
-    auto routed = routeRequest({method, text, "", ""}, files);
+    auto routed = routeRequest(requestOf(method, text), files);
     return std::holds_alternative<RequestTarget>(routed) ? std::optional(std::get<RequestTarget>(std::move(routed)))
                                                          : std::nullopt;
   }

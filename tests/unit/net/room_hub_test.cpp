@@ -1,10 +1,9 @@
-#include "room_hub.h"
-
 #include <algorithm>
 #include <functional>
 
 #include <gtest/gtest.h>
 
+#include "session_link.h"
 #include "test_application.h"
 
 namespace spindrift::net {
@@ -35,14 +34,14 @@ struct RecordingLink final : SessionLink {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
   }
   void enterRoom(std::shared_ptr<core::DemandTable> of_room) override { demand = std::move(of_room); }
-  Outbox::Waiting waiting() const override { return {1, 2}; }
+  Waiting waiting() const override { return {1, 2}; }
   void close(CloseCode code, std::string) override { closed = code; }
   void closeAt(std::chrono::steady_clock::time_point, CloseCode code, std::string) override { closing_later = code; }
 };
 
 struct RoomHubTest : testing::Test {
   test::DemandTables demands;
-  RoomHub hub;
+  Hub hub;
   std::shared_ptr<RecordingLink> ada = std::make_shared<RecordingLink>();
   std::shared_ptr<RecordingLink> bob = std::make_shared<RecordingLink>();
 
@@ -79,7 +78,7 @@ TEST_F(RoomHubTest, PublishesToTheWatchersOfTheRoomAndLayerOnly) {
 /// A hub whose delayed calls are made by the test.
 struct GatheringHub {
   test::DemandTables demands;
-  RoomHub hub;
+  Hub hub;
   std::vector<std::function<void()>> later;
   std::vector<std::shared_ptr<RecordingLink>> links;
 
@@ -103,7 +102,7 @@ struct GatheringHub {
 
 TEST(RoomHubGathers, AFewSessionsAreWokenByEveryFrame) {
   GatheringHub test;
-  test.addToPool(RoomHub::kGatherSessionCount - 1);
+  test.addToPool(Hub::kGatherSessionCount - 1);
   test.hub.publish("pool", 3, {shared("surface"), {}});
   test.hub.publish("pool", 4, {shared("foam"), {}});
   EXPECT_TRUE(test.allWere(2, 2));
@@ -112,7 +111,7 @@ TEST(RoomHubGathers, AFewSessionsAreWokenByEveryFrame) {
 
 TEST(RoomHubGathers, ManySessionsAreWokenOnceForTheFramesOfAMoment) {
   GatheringHub test;
-  test.addToPool(RoomHub::kGatherSessionCount);
+  test.addToPool(Hub::kGatherSessionCount);
   test.hub.publish("pool", 3, {shared("surface"), {}});
   test.hub.publish("pool", 4, {shared("foam"), {}});
   EXPECT_TRUE(test.allWere(2, 0));
@@ -127,9 +126,9 @@ TEST(RoomHubGathers, ManySessionsAreWokenOnceForTheFramesOfAMoment) {
 
 TEST(RoomHubGathers, ALateWakeUpFindsTheRoomGone) {
   GatheringHub test;
-  test.addToPool(RoomHub::kGatherSessionCount);
+  test.addToPool(Hub::kGatherSessionCount);
   test.hub.publish("pool", 3, {shared("surface"), {}});
-  for (SessionId session = 1; session <= RoomHub::kGatherSessionCount; ++session) test.hub.remove(session);
+  for (SessionId session = 1; session <= Hub::kGatherSessionCount; ++session) test.hub.remove(session);
   ASSERT_EQ(test.later.size(), 1U);
   test.later[0]();
   EXPECT_TRUE(test.allWere(1, 0));

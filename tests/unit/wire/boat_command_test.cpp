@@ -48,25 +48,25 @@ TEST(BoatCommands, ArriveWithTheirValuesAndNoOthers) {
 
 TEST(BoatCommands, OutOfRangeValueIsRejectedWithItsField) {
   const auto fast = rejectionOf([](v1::Command& c) { c.mutable_control_boat()->set_throttle_ratio(1.5); });
-  EXPECT_EQ(fast.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(fast.field, "control_boat.throttle_ratio");
-  EXPECT_THAT(fast.message, HasSubstr("choose -1 to 1"));
+  EXPECT_EQ(fast.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(fast.field(), "control_boat.throttle_ratio");
+  EXPECT_THAT(fast.message(), HasSubstr("choose -1 to 1"));
   const auto nan = rejectionOf(
       [](v1::Command& c) { c.mutable_control_boat()->set_rudder_ratio(std::numeric_limits<double>::quiet_NaN()); });
-  EXPECT_EQ(nan.reason, v1::REJECT_REASON_NOT_FINITE);
-  EXPECT_EQ(nan.field, "control_boat.rudder_ratio");
+  EXPECT_EQ(nan.reason(), v1::REJECT_REASON_NOT_FINITE);
+  EXPECT_EQ(nan.field(), "control_boat.rudder_ratio");
   const auto wide = rejectionOf([](v1::Command& c) { c.mutable_spawn_boat()->mutable_boat()->set_beam_m(16); });
-  EXPECT_EQ(wide.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(wide.field, "spawn_boat.boat.beam_m");
+  EXPECT_EQ(wide.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(wide.field(), "spawn_boat.boat.beam_m");
 }
 
 TEST(StepCommands, TakeTheirRange) {
   EXPECT_EQ(expectCommand([](v1::Command& c) { c.mutable_step()->set_tick_count(600); }).step().tick_count(), 600u);
   for (const std::uint32_t count : {0u, 601u}) {
     const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_step()->set_tick_count(count); });
-    EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-    EXPECT_EQ(rejection.field, "step.tick_count");
-    EXPECT_THAT(rejection.message, HasSubstr("choose 1 to 600 ticks"));
+    EXPECT_EQ(rejection.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+    EXPECT_EQ(rejection.field(), "step.tick_count");
+    EXPECT_THAT(rejection.message(), HasSubstr("choose 1 to 600 ticks"));
   }
 }
 
@@ -77,10 +77,10 @@ TEST(SceneCommands, AcceptNamesButNoPaths) {
   for (const std::string& name : {std::string(), std::string("../etc/passwd"), std::string("a b"), std::string(65, 'a'),
                                   std::string("a\nb"), std::string(5000, 'x')}) {
     const auto rejection = rejectionOf([&](v1::Command& c) { c.mutable_change_scene()->set_name(name); });
-    EXPECT_EQ(rejection.reason, v1::REJECT_REASON_UNKNOWN_SCENE);
-    EXPECT_EQ(rejection.field, "change_scene.name");
-    EXPECT_LT(rejection.message.size(), 200u);
-    EXPECT_EQ(rejection.message.find('\n'), std::string::npos);
+    EXPECT_EQ(rejection.reason(), v1::REJECT_REASON_UNKNOWN_SCENE);
+    EXPECT_EQ(rejection.field(), "change_scene.name");
+    EXPECT_LT(rejection.message().size(), 200u);
+    EXPECT_EQ(rejection.message().find('\n'), std::string::npos);
   }
 }
 
@@ -95,8 +95,8 @@ TEST(SceneCommands, OmittedLevelIsNotALevel) {
   EXPECT_EQ(expectCommand(with(0)).change_scene().fidelity(), v1::FIDELITY_UNSPECIFIED);
   EXPECT_EQ(expectCommand(with(3)).change_scene().fidelity(), v1::FIDELITY_FINE);
   const auto rejection = rejectionOf(with(7));
-  EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(rejection.field, "change_scene.fidelity");
+  EXPECT_EQ(rejection.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(rejection.field(), "change_scene.fidelity");
 }
 
 v1::Scene harbour() {
@@ -116,9 +116,9 @@ TEST(BoatCommands, NeedASceneWithBoats) {
   for (const auto& [command, field] : cases) {
     const auto rejection = checkAgainstScene(test::numbered(2, command), *scene);
     ASSERT_TRUE(rejection) << field;
-    EXPECT_EQ(rejection->command_id, 2u);
-    EXPECT_EQ(rejection->reason, v1::REJECT_REASON_ABSENT_PART);
-    EXPECT_EQ(rejection->field, field);
+    EXPECT_EQ(rejection->command_id(), 2u);
+    EXPECT_EQ(rejection->reason(), v1::REJECT_REASON_ABSENT_PART);
+    EXPECT_EQ(rejection->field(), field);
     EXPECT_FALSE(checkAgainstScene(command, harbour()));
   }
 }
@@ -129,15 +129,15 @@ TEST(BoatCommands, AreRejectedWhereTheSceneForbidsABoat) {
     change(*spawn.mutable_spawn_boat()->mutable_boat());
     return checkAgainstScene(spawn, harbour()).value_or(CommandRejection{});
   };
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_x_m(7.5); }).field, "spawn_boat.boat.x_m");
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(-8.0); }).field, "spawn_boat.boat.z_m");
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_length_m(5.0); }).field, "spawn_boat.boat.length_m");
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_beam_m(3.0); }).field, "spawn_boat.boat.beam_m");
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_height_m(3.0); }).field, "spawn_boat.boat.height_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_x_m(7.5); }).field(), "spawn_boat.boat.x_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(-8.0); }).field(), "spawn_boat.boat.z_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_length_m(5.0); }).field(), "spawn_boat.boat.length_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_beam_m(3.0); }).field(), "spawn_boat.boat.beam_m");
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_height_m(3.0); }).field(), "spawn_boat.boat.height_m");
   const CommandRejection aground = rejectionFor([](v1::Boat& boat) { boat.set_x_m(4.0); });
-  EXPECT_EQ(aground.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_THAT(aground.message, HasSubstr("obstacles[0]"));
-  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(5.0); }).reason, v1::REJECT_REASON_UNSPECIFIED)
+  EXPECT_EQ(aground.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_THAT(aground.message(), HasSubstr("obstacles[0]"));
+  EXPECT_EQ(rejectionFor([](v1::Boat& boat) { boat.set_z_m(5.0); }).reason(), v1::REJECT_REASON_UNSPECIFIED)
       << "open water";
 }
 
@@ -152,10 +152,10 @@ TEST(WavesInADirection, HaveTheBoundsOfWavesFromASide) {
   EXPECT_FALSE(checkAgainstScene(fine, harbour()));
   v1::Command high = fine;
   high.mutable_breaking_wave()->set_amplitude_m(0.95);
-  EXPECT_EQ(checkAgainstScene(high, harbour())->field, "breaking_wave.amplitude_m");
+  EXPECT_EQ(checkAgainstScene(high, harbour())->field(), "breaking_wave.amplitude_m");
   v1::Command longer = fine;
   longer.mutable_breaking_wave()->set_length_m(17);
-  EXPECT_EQ(checkAgainstScene(longer, harbour())->field, "breaking_wave.length_m");
+  EXPECT_EQ(checkAgainstScene(longer, harbour())->field(), "breaking_wave.length_m");
 }
 
 }  // namespace

@@ -35,7 +35,7 @@ CommandRejection expectRejection(const ClientMessage& message) {
 }
 
 std::string expectMalformed(const ClientMessage& message) {
-  if (const auto* malformed = std::get_if<Malformed>(&message)) return malformed->message;
+  if (const auto* malformed = std::get_if<core::Error>(&message)) return malformed->message;
   ADD_FAILURE() << "not malformed, but alternative " << message.index();
   return {};
 }
@@ -45,11 +45,11 @@ TEST(ClientMessages, HelloKeepsVersionAndName) {
   message.mutable_hello()->mutable_version()->set_major(1);
   message.mutable_hello()->mutable_version()->set_minor(7);
   message.mutable_hello()->set_client("page 0.1");
-  const auto hello = std::get<Hello>(parse(message));
-  EXPECT_EQ(hello.major, 1u);
-  EXPECT_EQ(hello.minor, 7u);
-  EXPECT_EQ(hello.client, "page 0.1");
-  EXPECT_FALSE(checkVersion(hello));
+  const auto hello = std::get<v1::Hello>(parse(message));
+  EXPECT_EQ(hello.version().major(), 1u);
+  EXPECT_EQ(hello.version().minor(), 7u);
+  EXPECT_EQ(hello.client(), "page 0.1");
+  EXPECT_FALSE(checkVersion(hello.version()));
 }
 
 TEST(ClientMessages, TooLongResumeKeyIsDropped) {
@@ -57,18 +57,22 @@ TEST(ClientMessages, TooLongResumeKeyIsDropped) {
   std::string key;
   while (key.size() < kResumeKeyMaxBytes) key += "\xE2\x82\xAC";  // ends in the middle of a character at the limit
   message.mutable_hello()->set_resume_key(key);
-  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, "") << "half a character would break messages of a cluster";
+  EXPECT_EQ(std::get<v1::Hello>(parse(message)).resume_key(), "")
+      << "half a character would break messages of a cluster";
   key.resize(255);
   message.mutable_hello()->set_resume_key(key);
-  EXPECT_EQ(std::get<Hello>(parse(message)).resume_key, key);
+  EXPECT_EQ(std::get<v1::Hello>(parse(message)).resume_key(), key);
 }
 
 TEST(ClientMessages, HelloOfAnotherMajorVersionIsRefused) {
-  const auto refusal = checkVersion(Hello{2, 3, "later"});
+  v1::Version later;
+  later.set_major(2);
+  later.set_minor(3);
+  const auto refusal = checkVersion(later);
   ASSERT_TRUE(refusal);
   EXPECT_THAT(*refusal, HasSubstr("wire version 2.3"));
   EXPECT_THAT(*refusal, HasSubstr("this server 1." + std::to_string(kWireMinor)));
-  EXPECT_TRUE(checkVersion(Hello{0, 0, ""})) << "a hello without a version";
+  EXPECT_TRUE(checkVersion({})) << "a hello without a version";
 }
 
 TEST(ClientMessages, OldClientIsRefusedInARectangle) {
@@ -108,12 +112,12 @@ TEST(Text, NamesLoseCharactersThatReverseOrHideText) {
 TEST(ClientMessages, HelloNameIsCutAtACharacterAndCleaned) {
   v1::ClientMessage message;
   message.mutable_hello()->set_client("evil\r\n\x1b[31m\x7f\xC2\x85 name");
-  EXPECT_EQ(std::get<Hello>(parse(message)).client, "evil[31m name");
+  EXPECT_EQ(std::get<v1::Hello>(parse(message)).client(), "evil[31m name");
   // 63 bytes, then a character of three: it does not fit into 64 bytes and must not be halved.
   message.mutable_hello()->set_client(std::string(63, 'a') + "\xE2\x82\xAC");
-  EXPECT_EQ(std::get<Hello>(parse(message)).client, std::string(63, 'a'));
+  EXPECT_EQ(std::get<v1::Hello>(parse(message)).client(), std::string(63, 'a'));
   message.mutable_hello()->set_client(std::string(61, 'a') + "\xE2\x82\xAC" + "tail");
-  EXPECT_EQ(std::get<Hello>(parse(message)).client, std::string(61, 'a') + "\xE2\x82\xAC");
+  EXPECT_EQ(std::get<v1::Hello>(parse(message)).client(), std::string(61, 'a') + "\xE2\x82\xAC");
 }
 
 TEST(ClientMessages, SubscribeTakesKnownLayersAndRatesInRange) {
@@ -142,7 +146,7 @@ TEST(ClientMessages, SubscribeToNoLayerIsMalformed) {
 TEST(ClientMessages, PingWithANonFiniteTimeIsMalformed) {
   v1::ClientMessage message;
   message.mutable_ping()->set_client_time_s(12.5);
-  EXPECT_EQ(std::get<Ping>(parse(message)).client_time_s, 12.5);
+  EXPECT_EQ(std::get<v1::Ping>(parse(message)).client_time_s(), 12.5);
   message.mutable_ping()->set_client_time_s(kNaN);
   EXPECT_THAT(expectMalformed(parse(message)), HasSubstr("ping.client_time_s"));
 }
@@ -207,26 +211,26 @@ TEST(ClientMessages, CommandsArriveWithTheirValues) {
 
 TEST(ClientMessages, CommandOutOfRangeIsRejectedWithItsField) {
   const auto wide = expectRejection(parseCommand([](v1::Command& c) { c.mutable_splash()->set_radius_m(101); }));
-  EXPECT_EQ(wide.command_id, 42u);
-  EXPECT_EQ(wide.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(wide.field, "splash.radius_m");
-  EXPECT_THAT(wide.message, HasSubstr("101 m is above the maximum of 100 m"));
+  EXPECT_EQ(wide.command_id(), 42u);
+  EXPECT_EQ(wide.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(wide.field(), "splash.radius_m");
+  EXPECT_THAT(wide.message(), HasSubstr("101 m is above the maximum of 100 m"));
 
   const auto nan = expectRejection(parseCommand([](v1::Command& c) { c.mutable_splash()->set_x_m(kNaN); }));
-  EXPECT_EQ(nan.reason, v1::REJECT_REASON_NOT_FINITE);
-  EXPECT_EQ(nan.field, "splash.x_m");
+  EXPECT_EQ(nan.reason(), v1::REJECT_REASON_NOT_FINITE);
+  EXPECT_EQ(nan.field(), "splash.x_m");
 
   const auto side = expectRejection(
       parseCommand([](v1::Command& c) { c.mutable_breaking_wave()->set_side(static_cast<v1::Side>(9)); }));
-  EXPECT_EQ(side.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-  EXPECT_EQ(side.field, "breaking_wave.side");
+  EXPECT_EQ(side.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+  EXPECT_EQ(side.field(), "breaking_wave.side");
 
   for (const double speed : {0.0, 0.09, 4.1}) {
     const auto rejection =
         expectRejection(parseCommand([&](v1::Command& c) { c.mutable_set_speed()->set_speed(speed); }));
-    EXPECT_EQ(rejection.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-    EXPECT_EQ(rejection.field, "set_speed.speed");
-    EXPECT_THAT(rejection.message, HasSubstr("choose 0.1 to 4"));
+    EXPECT_EQ(rejection.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+    EXPECT_EQ(rejection.field(), "set_speed.speed");
+    EXPECT_THAT(rejection.message(), HasSubstr("choose 0.1 to 4"));
   }
 }
 
@@ -235,20 +239,20 @@ TEST(ClientMessages, ParameterWithoutNameOrNumberIsRejected) {
     c.mutable_set_parameter()->set_path("wave.depth_m");
     c.mutable_set_parameter()->set_value(kNaN);
   }));
-  EXPECT_EQ(nan.reason, v1::REJECT_REASON_NOT_FINITE);
-  EXPECT_EQ(nan.field, "wave.depth_m");
-  EXPECT_EQ(expectRejection(parseCommand([](v1::Command& c) { c.mutable_set_parameter(); })).reason,
+  EXPECT_EQ(nan.reason(), v1::REJECT_REASON_NOT_FINITE);
+  EXPECT_EQ(nan.field(), "wave.depth_m");
+  EXPECT_EQ(expectRejection(parseCommand([](v1::Command& c) { c.mutable_set_parameter(); })).reason(),
             v1::REJECT_REASON_UNKNOWN_PARAMETER);
   const auto endless = expectRejection(
       parseCommand([](v1::Command& c) { c.mutable_set_parameter()->set_path(std::string(5000, 'p')); }));
-  EXPECT_EQ(endless.reason, v1::REJECT_REASON_UNKNOWN_PARAMETER);
-  EXPECT_LT(endless.field.size() + endless.message.size(), 300u);
+  EXPECT_EQ(endless.reason(), v1::REJECT_REASON_UNKNOWN_PARAMETER);
+  EXPECT_LT(endless.field().size() + endless.message().size(), 300u);
 }
 
 TEST(ClientMessages, AnUnknownCommandIsRejectedWithItsId) {
   const auto rejection = expectRejection(parseCommand([](v1::Command&) {}));
-  EXPECT_EQ(rejection.command_id, 42u);
-  EXPECT_EQ(rejection.reason, v1::REJECT_REASON_MALFORMED);
+  EXPECT_EQ(rejection.command_id(), 42u);
+  EXPECT_EQ(rejection.reason(), v1::REJECT_REASON_MALFORMED);
 }
 
 v1::Scene smallPool() {
@@ -269,10 +273,10 @@ class ForbiddenByTheScene : public testing::TestWithParam<SceneLimit> {};
 TEST_P(ForbiddenByTheScene, IsRejectedWithItsField) {
   const auto rejection = checkAgainstScene(test::numbered(6, GetParam().command), smallPool());
   ASSERT_TRUE(rejection);
-  EXPECT_EQ(rejection->command_id, 6u);
-  EXPECT_EQ(rejection->field, GetParam().field);
-  EXPECT_EQ(rejection->reason, GetParam().reason);
-  EXPECT_FALSE(rejection->message.empty());
+  EXPECT_EQ(rejection->command_id(), 6u);
+  EXPECT_EQ(rejection->field(), GetParam().field);
+  EXPECT_EQ(rejection->reason(), GetParam().reason);
+  EXPECT_FALSE(rejection->message().empty());
 }
 
 const SceneLimit kSceneLimits[] = {
@@ -299,11 +303,11 @@ TEST(ClientMessages, BoxOfParticlesLimitsEffects) {
   EXPECT_FALSE(checkAgainstScene(at(0, 0, splash(2.5, 0.9)), *scene));
   const auto deep = checkAgainstScene(at(0, 0, splash(2.6, 0.9)), *scene);
   ASSERT_TRUE(deep);
-  EXPECT_EQ(deep->field, "splash.depth_m");
-  EXPECT_THAT(deep->message, HasSubstr("2.8284"));
+  EXPECT_EQ(deep->field(), "splash.depth_m");
+  EXPECT_THAT(deep->message(), HasSubstr("2.8284"));
   const auto wide = checkAgainstScene(at(0, 0, splash(0.5, 1.1)), *scene);
   ASSERT_TRUE(wide);
-  EXPECT_EQ(wide->field, "splash.radius_m");
+  EXPECT_EQ(wide->field(), "splash.radius_m");
 }
 
 TEST(ClientMessages, CommandsThatTheSceneAllowsPass) {
@@ -315,7 +319,7 @@ TEST(ClientMessages, CommandsThatTheSceneAllowsPass) {
                               setSpeed(2)};
   for (const v1::Command& command : fine) {
     const auto rejection = checkAgainstScene(command, smallPool());
-    EXPECT_FALSE(rejection) << command.ShortDebugString() << ": " << rejection->message;
+    EXPECT_FALSE(rejection) << command.ShortDebugString() << ": " << rejection->message();
   }
 }
 

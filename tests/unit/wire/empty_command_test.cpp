@@ -46,10 +46,10 @@ TEST(EmptyCommands, ArePermittedInEveryShippedScene) {
       const auto rejection = send(command, *scene);
       if (!rejection) {
         ++taken_count;
-      } else if (rejection->reason == v1::REJECT_REASON_ABSENT_PART) {
-        EXPECT_FALSE(scene->has_boats()) << rejection->message;
+      } else if (rejection->reason() == v1::REJECT_REASON_ABSENT_PART) {
+        EXPECT_FALSE(scene->has_boats()) << rejection->message();
       } else {
-        EXPECT_TRUE(needed.contains(rejection->reason)) << rejection->field << ": " << rejection->message;
+        EXPECT_TRUE(needed.contains(rejection->reason())) << rejection->field() << ": " << rejection->message();
       }
     }
   }
@@ -83,7 +83,7 @@ TEST(EmptyCommands, TakeTheNearestValuesInASmallScene) {
   boat.mutable_spawn_boat();
   for (v1::Command* command : {&splash, &wave, &boat}) {
     const auto rejection = send(*command, small);
-    EXPECT_FALSE(rejection) << rejection->field << ": " << rejection->message;
+    EXPECT_FALSE(rejection) << rejection->field() << ": " << rejection->message();
   }
   EXPECT_DOUBLE_EQ(splash.splash().radius_m(), 1.0);
   EXPECT_DOUBLE_EQ(splash.splash().depth_m(), 0.9 * 0.2);
@@ -100,7 +100,7 @@ TEST(EmptyCommands, KeepTheValuesThatTheSenderSet) {
   splash.mutable_splash()->set_depth_m(0.8);
   const auto rejection = send(splash, small);
   ASSERT_TRUE(rejection);
-  EXPECT_EQ(rejection->field, "splash.depth_m");
+  EXPECT_EQ(rejection->field(), "splash.depth_m");
   v1::Command gentle;
   gentle.mutable_splash()->set_depth_m(0.05);
   EXPECT_FALSE(send(gentle, small));
@@ -112,7 +112,7 @@ TEST(EmptyCommands, PutABoatBesideARockInTheMiddle) {
   v1::Command boat;
   boat.mutable_spawn_boat();
   const auto rejection = send(boat, scene);
-  EXPECT_FALSE(rejection) << rejection->message;
+  EXPECT_FALSE(rejection) << rejection->message();
   EXPECT_LT(std::hypot(boat.spawn_boat().boat().x_m(), boat.spawn_boat().boat().z_m()), 5.0);
   v1::Command placed;
   placed.mutable_spawn_boat()->mutable_boat()->set_x_m(0.5);

@@ -330,7 +330,7 @@ std::vector<GoldenCase> goldenCases() {
       {"reject.bin", kOk,
        "\"kind\": \"reject\", \"command_id\": \"301\", \"reason\": \"REJECT_REASON_OUT_OF_RANGE\", "
        "\"field\": \"splash.radius_m\", \"message\": \"too wide\"",
-       *reject({301, v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide"})},
+       *reject(rejection(v1::REJECT_REASON_OUT_OF_RANGE, "splash.radius_m", "too wide", 301))},
       {"foam_16.bin", kOk, foamJson(foam), foam},
       {"bodies_2.bin", kOk, bodiesJson(bodies), bodies},
       {"bodies_state_id.bin", kOk, "\"state_id\": " + wide(kTick + 2) + ", " + bodiesJson(numberedBytes()),

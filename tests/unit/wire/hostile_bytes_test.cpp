@@ -127,7 +127,7 @@ TEST(HostileBytes, DamagedClientMessagesDoNoHarm) {
     if (const auto* command = std::get_if<v1::Command>(&message)) {
       v1::Command completed = *command;
       const auto rejection = completeCommand(completed, scene);
-      ASSERT_TRUE(!rejection || !rejection->message.empty()) << "case " << i;
+      ASSERT_TRUE(!rejection || !rejection->message().empty()) << "case " << i;
       ASSERT_TRUE(test::isChecked(completed)) << "case " << i;
     }
   }

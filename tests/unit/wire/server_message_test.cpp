@@ -65,12 +65,14 @@ TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
   EXPECT_EQ(acknowledged.applied_tick(), 1234u);
   EXPECT_EQ(acknowledged.boat_id(), 0u);
   EXPECT_EQ(read(ack(7, 1234, 5)).ack().boat_id(), 5u);
-  const v1::Reject rejected = read(reject({8, v1::REJECT_REASON_OUT_OF_RANGE, "splash.x_m", "too far"})).reject();
+  const v1::Reject rejected =
+      read(reject(rejection(v1::REJECT_REASON_OUT_OF_RANGE, "splash.x_m", "too far", 8))).reject();
   EXPECT_EQ(rejected.command_id(), 8u);
   EXPECT_EQ(rejected.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
   EXPECT_EQ(rejected.field(), "splash.x_m");
   EXPECT_EQ(rejected.message(), "too far");
-  EXPECT_EQ(read(reject({9, v1::REJECT_REASON_BUSY, "", "try again"})).reject().reason(), v1::REJECT_REASON_BUSY);
+  EXPECT_EQ(read(reject(rejection(v1::REJECT_REASON_BUSY, "", "try again", 9))).reject().reason(),
+            v1::REJECT_REASON_BUSY);
 }
 
 TEST(ServerMessages, StateMessagesHaveTheirValues) {

@@ -20,14 +20,24 @@ inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
 inline constexpr std::uint32_t kBodyMaxCount = 1024;
 inline constexpr std::size_t kServerMessageMaxBytes = 64 * 1024 * 1024;
 
-/// Elevations on a grid, row by row (x fastest); sample (i, k) lies at x = (i + 1/2) length_m / count.x - length_m / 2,
-/// z likewise with k and width_m.
-struct SurfaceSamples {
+/// Samples of a plane and its extent. The samples are row by row (x fastest); sample (i, k) lies at x = (i + 1/2)
+/// length_m / count.x - length_m / 2, z likewise with k and width_m.
+struct PlaneExtents {
   core::CellCounts count;
   double length_m = 0.0;
   double width_m = 0.0;
+
+  bool operator==(const PlaneExtents&) const = default;
+};
+
+struct SurfaceSamples : PlaneExtents {
   double quantum_m = 0.0;
   std::vector<float> elevation_m;  ///< count.total() values
+};
+
+/// White water on the surface.
+struct FoamSamples : PlaneExtents {
+  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): count.total() values
 };
 
 /// Particles in the order of the wire.
@@ -38,14 +48,6 @@ struct ParticleSamples {
   std::vector<float> velocity_mps;  ///< x, y, z per particle: 3 * count values
   std::vector<std::uint8_t> tint;   ///< density over rest density from 0.5 (0) to 1.1 (255): count values
   std::vector<std::uint8_t> foam;   ///< none (0) to white (255): count values
-};
-
-/// White water on the surface, with samples that lie like a surface's.
-struct FoamSamples {
-  core::CellCounts count;
-  double length_m = 0.0;
-  double width_m = 0.0;
-  std::vector<std::uint8_t> foam;  ///< none (0) to white (255): count.total() values
 };
 
 /// Position and motion of a boat. Heading turns from +x toward +z, pitch lifts the bow, roll lowers starboard.

@@ -36,6 +36,9 @@ class FrameEncoder {
   std::unique_ptr<Packed[]> packed_;  ///< indexed by core::Level
 };
 
+/// Returns the bytes of a message.
+core::SharedBytes serialized(const google::protobuf::MessageLite& message);
+
 /// Writes what a gauge measured: in Diagnostics and in answers of the REST interface.
 void writeGauge(const core::DiagnosticsView::GaugeNow& gauge, v1::GaugeReading& out);
 

@@ -24,10 +24,8 @@ constexpr std::size_t indexOf(Stream stream) {
 }
 /// Returns the stream for a subscription: the plain one if the layer has no packed form.
 Stream streamOf(v1::Layer layer, v1::Packing packing);
-/// Returns all streams.
 std::span<const Stream> allStreams();
 
-/// Returns whether the layer has levels of detail.
 bool hasLevels(v1::Layer layer);
 /// Returns "full", "coarse", ...
 std::string nameOf(core::Level level);
@@ -37,7 +35,6 @@ std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts)
 /// diagnostics are not a part of the picture; sessions of every level take them.
 core::LevelSet levelsTaking(v1::Layer layer, core::LevelSet due);
 
-/// Converts the level to its enum on the wire.
 v1::Level toWire(core::Level level);
 /// Returns nullopt for a number that is not a level.
 std::optional<core::Level> fromWire(v1::Level level);

@@ -9,9 +9,11 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -78,23 +80,32 @@ struct SessionEnd {
   std::string reason;
 };
 
+/// Messages that wait to be sent.
+struct Waiting {
+  std::size_t answer_count = 0;
+  std::size_t state_count = 0;
+  std::size_t frame_count = 0;
+};
+
+/// The sending side of one session.
+class SessionLink;
+
 /// Sends to sessions. Thread-safe, never blocks, callable from any thread. Unknown session ids are ignored, because the
-/// session may have just ended. One instance per Server.
+/// session may have just ended. One instance per Server, with one mutex; publish() visits only the sessions that watch
+/// that room and stream. A session keeps its watches when it changes the room.
 class Hub {
  public:
-  virtual ~Hub() = default;
-
   /// Sends an answer to the session's own request. Control plane: ordered, never dropped. While
   /// ServerOptions::answer_pause_count of them wait, the session is not read; beyond answer_max_count it is closed with
   /// kTryAgainLater.
-  virtual void sendAnswer(SessionId session, core::SharedBytes message) = 0;
+  void sendAnswer(SessionId session, core::SharedBytes message);
 
   /// Sends a state message. Control plane: only the newest message of a topic waits; it takes the place of the older
   /// one. Never closes a session.
-  virtual void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) = 0;
+  void sendState(SessionId session, const StateTopic& topic, core::SharedBytes message);
 
   /// Sends a state message to every session of the room.
-  virtual void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) = 0;
+  void broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message);
 
   /// Publishes a frame. Data plane: one write in flight and one newest slot per stream; an unsent older frame in the
   /// slot is dropped and counted. `room` is the group that the sessions joined. Only sessions that watch `stream` get
@@ -102,26 +113,69 @@ class Hub {
   /// skipped and not counted). A session that has the previous frame gets the delta if there is one, any other session
   /// the keyframe. If the keyframe is missing, it gets nothing, and its DemandTable has the need. Each level is
   /// published by itself; a session gets its own level.
-  virtual void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
+  void publish(const std::string& room, StreamIndex stream, const FrameBytes& frame);
 
   /// Gives the newest frame of the stream at this level, as a keyframe, to the sessions that have just begun to watch
   /// it (Watch::is_first) and have had no frame yet. They continue with the delta of the next frame, so no other frame
   /// may be published between that one and this call. It does not count for the rate.
-  virtual void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) = 0;
+  void offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame);
 
   /// Moves the session into a room. It leaves its previous room; its watches stay, unsent frames are dropped. While it
   /// is there, `demand` says what it needs of the room's frames.
-  virtual void join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) = 0;
+  void join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand);
 
   /// Starts, changes or stops a stream for a session.
-  virtual void watch(SessionId session, StreamIndex stream, const Watch& watch) = 0;
+  void watch(SessionId session, StreamIndex stream, const Watch& watch);
 
   /// Sends all queued control messages, then closes. The socket is closed after close_timeout in any case.
-  virtual void close(SessionId session, CloseCode code, std::string reason) = 0;
+  void close(SessionId session, CloseCode code, std::string reason);
 
   /// Closes the session as close() does, at a later time; the latest call counts. time_point::max() means never.
-  virtual void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
-                       std::string reason) = 0;
+  void closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code, std::string reason);
+
+  // For the Server and its sessions.
+
+  /// In a room with this many sessions or more, sessions are woken once for all frames of the next moment, because most
+  /// of the cost of a frame is the write, and a write takes all frames along that wait.
+  static constexpr std::size_t kGatherSessionCount = 64;
+  /// Calls its argument once, about a millisecond later, on any thread and without the hub's lock.
+  using Later = std::function<void(std::function<void()>)>;
+  /// Without this call every frame wakes its sessions at once. Call it before the first session.
+  void gatherFrames(Later later) { later_ = std::move(later); }
+
+  void add(SessionId session, std::shared_ptr<SessionLink> link);
+  /// Removes the session; no call reaches its link afterwards.
+  void remove(SessionId session);
+
+  /// Sum over all sessions.
+  Waiting waiting() const;
+  /// Number of rooms with at least one session.
+  std::size_t roomCount() const;
+
+ private:
+  struct Member {
+    std::shared_ptr<SessionLink> link;
+    std::optional<std::string> room;
+    std::array<bool, kMaxStreamCount> watches{};
+  };
+  struct Watcher {
+    SessionId session = 0;
+    SessionLink* link = nullptr;  ///< owned by the session, which leaves the room before it is destroyed
+  };
+  struct Group {
+    std::vector<Watcher> sessions;
+    bool will_wake = false;  ///< wakeRoom() comes
+    std::array<std::vector<Watcher>, kMaxStreamCount> watchers;
+  };
+
+  void enterRoom(SessionId session, Member& member, const std::string& room);
+  void leaveRoom(SessionId session, Member& member);
+  void wakeRoom(const std::string& room);
+
+  Later later_;
+  mutable std::mutex mutex_;
+  std::unordered_map<SessionId, Member> members_;
+  std::map<std::string, Group> rooms_;
 };
 
 /// The user of a Server: implemented by service, outlives the Server. An exception from a callback is logged and ends

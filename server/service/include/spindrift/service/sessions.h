@@ -89,8 +89,8 @@ class Sessions {
   /// same state, or while the room cannot be reached.
   void greet(net::SessionId session, const Venue& venue);
   void handle(net::SessionId session, const State& state, core::ByteView message);
-  void hello(net::SessionId session, const State& state, const wire::Hello& hello);
-  void arrived(net::SessionId session, const wire::Hello& hello, core::Role role,
+  void hello(net::SessionId session, const State& state, const v1::Hello& hello);
+  void arrived(net::SessionId session, const v1::Hello& hello, core::Role role,
                const core::Result<rooms::Admission>& admission);
   /// Handles what came while the session arrived.
   void handleWaiting(net::SessionId session);

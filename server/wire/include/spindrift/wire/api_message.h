@@ -18,8 +18,8 @@ namespace spindrift::wire {
 std::string toJson(const google::protobuf::Message& message);
 
 /// Parses one Command, with names as in the proto files or in lowerCamelCase, and checks it like one from a session.
-/// Returns Malformed for text that is no such object or has unknown fields.
-std::variant<v1::Command, CommandRejection, Malformed> parseCommandJson(std::string_view json);
+/// kInvalidInput with one line for text that is no such object or has unknown fields.
+core::Result<std::variant<v1::Command, CommandRejection>> parseCommandJson(std::string_view json);
 
 /// Parses the body of a request for a room. Error: kInvalidInput with one line. Does not check whether the name is free
 /// or the scene exists.

@@ -9,6 +9,7 @@
 
 #include <spindrift/core/bytes.h>
 #include <spindrift/core/level.h>
+#include <spindrift/core/result.h>
 #include <spindrift/core/sender.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/v1/wire.pb.h>
@@ -30,16 +31,6 @@ inline constexpr std::size_t kPersonNameMaxBytes = 32;
 /// No server gives out a longer Hello.resume_key.
 inline constexpr std::size_t kResumeKeyMaxBytes = 256;
 
-struct Hello {
-  std::uint32_t major = 0;
-  std::uint32_t minor = 0;
-  std::string client;           ///< at most kClientNameMaxBytes of cleaned UTF-8 (see text.h); may be empty
-  std::string token{};          ///< arbitrary bytes, as long as the message allows; empty: a client without a token
-  std::string name{};           ///< at most kPersonNameMaxBytes, likewise; empty if it had no visible characters
-  std::uint32_t color_rgb = 0;  ///< 24 bits; 0: the server chooses
-  std::string resume_key{};     ///< at most kResumeKeyMaxBytes of arbitrary UTF-8; empty for a longer one
-};
-
 struct Subscribe {
   v1::Layer layer = v1::LAYER_UNSPECIFIED;  ///< a declared layer, never UNSPECIFIED; a room may lack it
   double max_rate_hz = 0.0;                 ///< 0..240; 0 = stop
@@ -48,32 +39,21 @@ struct Subscribe {
   bool adapts = false;
 };
 
-struct Ping {
-  double client_time_s = 0.0;  ///< finite
-};
+/// A command that is refused.
+using CommandRejection = v1::Reject;
 
-/// A command that is refused; becomes a Reject.
-struct CommandRejection {
-  std::uint64_t command_id = 0;
-  v1::RejectReason reason = v1::REJECT_REASON_UNSPECIFIED;
-  std::string field;    ///< "splash.radius_m"; empty if the whole command is meant
-  std::string message;  ///< one line for the user
-};
+/// Makes a rejection. `field`: "splash.radius_m"; empty if the whole command is meant. `message`: one line for the
+/// user.
+CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message,
+                           std::uint64_t command_id = 0);
 
-/// Makes a rejection; the caller sets its command number.
-inline CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message) {
-  return {.command_id = 0, .reason = reason, .field = std::move(field), .message = std::move(message)};
-}
+/// An Error stands for bytes that are not a valid client message, or one that cannot be answered; becomes a Refusal and
+/// a close.
+using ClientMessage = std::variant<v1::Hello, Subscribe, v1::Command, v1::Ping, CommandRejection, core::Error>;
 
-/// Bytes that are not a valid client message, or one that cannot be answered; becomes a Refusal and a close.
-struct Malformed {
-  std::string message;  ///< one line for the user
-};
-
-using ClientMessage = std::variant<Hello, Subscribe, v1::Command, Ping, CommandRejection, Malformed>;
-
-/// Parses and checks one client message. Numbers in the result are finite and in range. Fields that a command leaves
-/// out stay empty: completeCommand() fills them in.
+/// Parses and checks one client message. Numbers in the result are finite and in range. Names in a Hello are cleaned
+/// (see text.h) and cut, a resume key that is too long is left out. Fields that a command leaves out stay empty:
+/// completeCommand() fills them in.
 ClientMessage parseClientMessage(core::ByteView bytes);
 
 /// Checks a command from any source, as parseClientMessage() does. Returns it without unknown fields.
@@ -82,10 +62,9 @@ std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command);
 v1::Role toWire(core::Role role);
 /// Returns nullopt for an unknown role.
 std::optional<core::Role> fromWire(v1::Role role);
-v1::Reject toWire(const CommandRejection& rejection);
 
 /// Returns nullopt if this server supports the client's version, otherwise one line for a Refusal.
-std::optional<std::string> checkVersion(const Hello& hello);
+std::optional<std::string> checkVersion(const v1::Version& client);
 
 /// Returns nullopt if a client of this minor version can show the scene's water, otherwise one line for a Refusal:
 /// clients of 1.0 take every plane for a square.

@@ -1,18 +1,20 @@
-#include "room_hub.h"
-
 #include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <utility>
 
+#include <spindrift/net/server.h>
+
+#include "session_link.h"
+
 namespace spindrift::net {
 
-void RoomHub::add(SessionId session, std::shared_ptr<SessionLink> link) {
+void Hub::add(SessionId session, std::shared_ptr<SessionLink> link) {
   const std::lock_guard lock(mutex_);
   members_[session].link = std::move(link);
 }
 
-void RoomHub::remove(SessionId session) {
+void Hub::remove(SessionId session) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found == members_.end()) return;
@@ -20,26 +22,26 @@ void RoomHub::remove(SessionId session) {
   members_.erase(found);
 }
 
-void RoomHub::sendAnswer(SessionId session, core::SharedBytes message) {
+void Hub::sendAnswer(SessionId session, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found != members_.end()) found->second.link->sendAnswer(std::move(message));
 }
 
-void RoomHub::sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) {
+void Hub::sendState(SessionId session, const StateTopic& topic, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found != members_.end()) found->second.link->sendState(topic, std::move(message));
 }
 
-void RoomHub::broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) {
+void Hub::broadcastState(const std::string& room, const StateTopic& topic, core::SharedBytes message) {
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end()) return;
   for (const Watcher& session : found->second.sessions) session.link->sendState(topic, message);
 }
 
-void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
+void Hub::publish(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
   assert(stream < kMaxStreamCount && (frame.keyframe || frame.delta));
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
@@ -51,7 +53,7 @@ void RoomHub::publish(const std::string& room, StreamIndex stream, const FrameBy
   if (gathers && !std::exchange(group.will_wake, true)) later_([this, room] { wakeRoom(room); });
 }
 
-void RoomHub::wakeRoom(const std::string& room) {
+void Hub::wakeRoom(const std::string& room) {
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
   if (found == rooms_.end()) return;
@@ -59,7 +61,7 @@ void RoomHub::wakeRoom(const std::string& room) {
   for (const Watcher& session : found->second.sessions) session.link->wakeForFrames();
 }
 
-void RoomHub::offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
+void Hub::offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
   assert(stream < kMaxStreamCount && frame.keyframe);
   const std::lock_guard lock(mutex_);
   const auto found = rooms_.find(room);
@@ -67,7 +69,7 @@ void RoomHub::offerNewest(const std::string& room, StreamIndex stream, const Fra
   for (const Watcher& watcher : found->second.watchers[stream]) watcher.link->offerNewest(stream, frame);
 }
 
-void RoomHub::join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) {
+void Hub::join(SessionId session, const std::string& room, std::shared_ptr<core::DemandTable> demand) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found == members_.end() || found->second.room == room) return;
@@ -76,7 +78,7 @@ void RoomHub::join(SessionId session, const std::string& room, std::shared_ptr<c
   found->second.link->enterRoom(std::move(demand));
 }
 
-void RoomHub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
+void Hub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
   assert(stream < kMaxStreamCount);
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
@@ -93,24 +95,23 @@ void RoomHub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
   }
 }
 
-void RoomHub::close(SessionId session, CloseCode code, std::string reason) {
+void Hub::close(SessionId session, CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found != members_.end()) found->second.link->close(code, std::move(reason));
 }
 
-void RoomHub::closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code,
-                      std::string reason) {
+void Hub::closeAt(SessionId session, std::chrono::steady_clock::time_point when, CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   const auto found = members_.find(session);
   if (found != members_.end()) found->second.link->closeAt(when, code, std::move(reason));
 }
 
-Outbox::Waiting RoomHub::waiting() const {
+Waiting Hub::waiting() const {
   const std::lock_guard lock(mutex_);
-  Outbox::Waiting out;
+  Waiting out;
   for (const auto& [session, member] : members_) {
-    const Outbox::Waiting waits = member.link->waiting();
+    const Waiting waits = member.link->waiting();
     out.answer_count += waits.answer_count;
     out.state_count += waits.state_count;
     out.frame_count += waits.frame_count;
@@ -118,12 +119,12 @@ Outbox::Waiting RoomHub::waiting() const {
   return out;
 }
 
-std::size_t RoomHub::roomCount() const {
+std::size_t Hub::roomCount() const {
   const std::lock_guard lock(mutex_);
   return rooms_.size();
 }
 
-void RoomHub::enterRoom(SessionId session, Member& member, const std::string& room) {
+void Hub::enterRoom(SessionId session, Member& member, const std::string& room) {
   Group& entered = rooms_[room];
   entered.sessions.push_back({session, member.link.get()});
   member.room = room;
@@ -132,7 +133,7 @@ void RoomHub::enterRoom(SessionId session, Member& member, const std::string& ro
   }
 }
 
-void RoomHub::leaveRoom(SessionId session, Member& member) {
+void Hub::leaveRoom(SessionId session, Member& member) {
   if (!member.room) return;
   const auto left = rooms_.find(*member.room);
   const auto isIt = [session](const Watcher& watcher) { return watcher.session == session; };
