@@ -208,7 +208,7 @@ double WaterChange::loadAt(v1::Fidelity level) const {
   if (!then) return std::numeric_limits<double>::infinity();
   const double per_s_now = parts_.time.speed() / parts_.water.sim().derived().tick_s;
   const double per_s_then = parts_.time.speed() / then->tick_s;
-  const double more_ms_per_s = parts_.cost.predict_ms(then->per_tick) * per_s_then - parts_.cost.tick_ms() * per_s_now;
+  const double more_ms_per_s = parts_.cost.predict_ms(*then) * per_s_then - parts_.cost.tick_ms() * per_s_now;
   return parts_.load.thread_share + more_ms_per_s / 1e3;
 }
 

@@ -9,7 +9,6 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/sim_setup/ground.h>
-#include <spindrift/water/recorded_hash.h>
 #include <spindrift/water/room_water.h>
 #include <spindrift/water/water_state.h>
 

@@ -2,9 +2,12 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/water/water_state.h>
@@ -155,6 +158,22 @@ sim::StrokeTool toTool(v1::StrokeTool tool) {
   return tool == v1::STROKE_TOOL_CALM ? sim::StrokeTool::kCalm : sim::StrokeTool::kFinger;
 }
 
+std::uint64_t hashOfVersion0(const sim::StateCopy& state) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;  // 64-bit FNV-1a over bytes
+  const auto add = [&](const auto& values) {
+    for (const std::byte b : std::as_bytes(std::span(values)))
+      hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
+  };
+  add(state.position);
+  add(state.velocity);
+  add(state.elevation_m);
+  add(state.flow_m2ps);
+  add(state.boats);
+  add(state.pool);
+  add(state.elevation_x_units);
+  return hash;
+}
+
 }  // namespace
 
 sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
@@ -242,6 +261,14 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   host.patch_x_m = message.patch_x_m();
   host.patch_z_m = message.patch_z_m();
   return out;
+}
+
+core::Result<std::uint64_t> recordedHash(sim::WaterSim& water, std::uint32_t version) {
+  if (version == 0) return hashOfVersion0(water.copyState());
+  if (version == kStateHashVersion) return water.stateHash();
+  return core::invalid(fmt::format(
+      "its state hashes are of version {}, and this program knows versions up to {}: use the program that wrote them",
+      version, kStateHashVersion));
 }
 
 }  // namespace spindrift::water
