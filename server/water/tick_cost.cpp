@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/water/tick_cost.h>
 
