@@ -14,7 +14,6 @@
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
-#include "distribution.h"
 #include "side_response.h"
 
 namespace spindrift::sim {

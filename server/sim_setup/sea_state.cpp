@@ -6,8 +6,6 @@
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
-#include "distribution.h"
-
 namespace spindrift::sim {
 namespace {
 
@@ -95,6 +93,22 @@ double waveNumber(double omega_radps, double gravity_mps2, double depth_m) {
 double jonswapPeak(double ratio, double enhancement) {
   const double width = ratio <= 1 ? 0.07 : 0.09;
   return std::pow(enhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+}
+
+Distribution::Distribution(double from, double to, const std::function<double(double)>& density) : from_(from) {
+  constexpr int kSteps = 4000;
+  step_ = (to - from) / kSteps;
+  sums_.push_back(0.0);
+  for (int k = 0; k < kSteps; ++k) sums_.push_back(sums_.back() + density(from + (k + 0.5) * step_) * step_);
+}
+
+double Distribution::quantile(double share) const {
+  const double wanted = std::clamp(share, 0.0, 1.0) * integral();
+  const auto above = std::ranges::upper_bound(sums_, wanted);
+  if (above == sums_.end()) return from_ + static_cast<double>(sums_.size() - 1) * step_;
+  const auto k = above - sums_.begin() - 1;
+  const double low = sums_[static_cast<std::size_t>(k)];
+  return from_ + (static_cast<double>(k) + (wanted - low) / (*above - low)) * step_;
 }
 
 WindSeaSpectrum WindSeaSpectrum::of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m) {
