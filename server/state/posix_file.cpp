@@ -209,9 +209,8 @@ core::Result<fs::path> nameToSetAside(const fs::path& path) {
     std::error_code error;
     if (fs::symlink_status(name, error).type() == fs::file_type::not_found) return name;
   }
-  return Error{ErrorCode::kUnavailable,
-               fmt::format("there are {} files {}.damaged already: look at them and remove them", kSetAsideMaxCount,
-                           path.string())};
+  return core::unavailable(fmt::format("there are {} files {}.damaged already: look at them and remove them",
+                                       kSetAsideMaxCount, path.string()));
 }
 
 core::Result<fs::path> setAside(const fs::path& path) {

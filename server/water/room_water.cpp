@@ -156,7 +156,7 @@ std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
 
 core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
   const sim::CarriedState carried = sim().carriedState();
-  if (auto why = failure()) return core::Error{core::ErrorCode::kUnavailable, *why};
+  if (auto why = failure()) return core::unavailable(*why);
   // Values may have changed since the building began.
   v1::Scene wanted = next->scene();
   scene::keepParameters(scene(), wanted);

@@ -55,7 +55,7 @@ std::vector<std::string> SceneCatalog::names() const {
 }
 
 core::Result<v1::Scene> SceneCatalog::load(const std::string& name, std::optional<v1::Fidelity> fidelity) const {
-  if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
+  if (!has(name)) return core::unavailable("scene '" + name + "' is not listed");
   auto scene = scene::loadSceneFile(files_.at(name), fidelity ? fidelity : fidelity_);
   if (scene) scene->set_name(name);
   return scene;
