@@ -24,28 +24,17 @@ constexpr double kPeakEnhancement = 3.3;
 constexpr double kDevelopedFetch = 15625.0;
 constexpr double kSmallestVariance_m2 = 1e-12;
 
-/// Sides of the water by what waves do there. Periodic sides are in neither set.
-struct Sides {
-  std::uint32_t absorbing = 0;
-  std::uint32_t closed = 0;
-
-  explicit Sides(const core::WaveScene& wave) {
-    for (const WaterSide& each : sidesOf(wave)) {
-      if (each.boundary == core::WaveBoundary::kAbsorb) absorbing |= each.bit;
-      if (each.boundary == core::WaveBoundary::kReflect) closed |= each.bit;
-    }
-  }
-
-  /// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from.
-  /// If all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
-  [[nodiscard]] std::uint32_t of(double direction_x, double direction_z) const {
-    std::uint32_t from = 0;
-    if (direction_x != 0.0) from |= direction_x > 0 ? MINUS_X_BIT : PLUS_X_BIT;
-    if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
-    if ((from & absorbing) == 0) return 0;
-    return (from & closed) == 0 ? absorbing : from & absorbing;
-  }
-};
+/// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from. If
+/// all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
+std::uint32_t sidesOfWave(const core::WaveScene& water, double direction_x, double direction_z) {
+  const std::uint32_t absorbing = sidesWith(water, core::WaveBoundary::kAbsorb);
+  const std::uint32_t closed = sidesWith(water, core::WaveBoundary::kReflect);
+  std::uint32_t from = 0;
+  if (direction_x != 0.0) from |= direction_x > 0 ? MINUS_X_BIT : PLUS_X_BIT;
+  if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
+  if ((from & absorbing) == 0) return 0;
+  return (from & closed) == 0 ? absorbing : from & absorbing;
+}
 
 /// Returns the numbers below kSeaWaveCount in the order of the multiples of the golden ratio (modulo 1, from `begin`):
 /// numbers that follow each other are far apart, and every part of the order has small and large ones.
@@ -175,7 +164,6 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
 
   const Distribution spread(-pi / 2, pi / 2,
                             [](double angle) { return std::pow(std::cos(angle / 2), 2 * kSpreadExponent); });
-  const Sides sides(wave);
   core::SplitMix64 random(scene.seed * 0x9fb21c651e98df25ull + 1);
   const std::vector<int> place = mixedOrder(random.unit());
   for (int n = 0; n < kSeaWaveCount; ++n) {
@@ -200,7 +188,7 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
     each.omega_radps = waveFrequency(k, g, d);
     if (!oscillates(each.omega_radps, wave)) continue;
     each.decay_pm = 0.5 * wave.damping_per_s / groupSpeed(k, g, d);
-    each.sides = sides.of(each.kx_radpm, each.kz_radpm);
+    each.sides = sidesOfWave(wave, each.kx_radpm, each.kz_radpm);
     out.waves.push_back(each);
   }
   return out;

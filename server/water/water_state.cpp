@@ -130,29 +130,6 @@ std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
   return out;
 }
 
-}  // namespace
-
-v1::Side toMessage(core::Side side) {
-  for (const v1::Side one : {v1::SIDE_PLUS_X, v1::SIDE_MINUS_X, v1::SIDE_PLUS_Z, v1::SIDE_MINUS_Z}) {
-    if (scene::toCore(one) == side) return one;
-  }
-  return v1::SIDE_DIRECTION;
-}
-
-v1::StrokeTool toMessage(sim::StrokeTool tool) {
-  switch (tool) {
-    case sim::StrokeTool::kFinger:
-      return v1::STROKE_TOOL_FINGER;
-    case sim::StrokeTool::kRain:
-      return v1::STROKE_TOOL_RAIN;
-    case sim::StrokeTool::kCalm:
-      break;
-  }
-  return v1::STROKE_TOOL_CALM;
-}
-
-namespace {
-
 sim::StrokeTool toTool(v1::StrokeTool tool) {
   if (tool == v1::STROKE_TOOL_RAIN) return sim::StrokeTool::kRain;
   return tool == v1::STROKE_TOOL_CALM ? sim::StrokeTool::kCalm : sim::StrokeTool::kFinger;
@@ -175,6 +152,20 @@ std::uint64_t hashOfVersion0(const sim::StateCopy& state) {
 }
 
 }  // namespace
+
+v1::Side toMessage(core::Side side) {
+  for (const v1::Side one : {v1::SIDE_PLUS_X, v1::SIDE_MINUS_X, v1::SIDE_PLUS_Z, v1::SIDE_MINUS_Z}) {
+    if (scene::toCore(one) == side) return one;
+  }
+  return v1::SIDE_DIRECTION;
+}
+
+v1::StrokeTool toMessage(sim::StrokeTool tool) {
+  for (const v1::StrokeTool one : {v1::STROKE_TOOL_RAIN, v1::STROKE_TOOL_CALM}) {
+    if (toTool(one) == tool) return one;
+  }
+  return v1::STROKE_TOOL_FINGER;
+}
 
 sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
   sim::StrokePart out{.ends = stroke.ends(), .tool = toTool(stroke.tool())};
