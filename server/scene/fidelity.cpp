@@ -10,7 +10,6 @@
 #include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
-#include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
 namespace spindrift::scene {

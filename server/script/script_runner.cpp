@@ -99,9 +99,11 @@ class Runner {
     return {passed, std::move(detail)};
   }
 
-  /// The same for what frames of a layer show: `shows` looks at each once, until one shows what is wanted.
+  /// The same for what frames of a layer show, which the client subscribes to: `shows` looks at each once, until one
+  /// shows what is wanted.
   Outcome awaitFrame(ScriptClient& client, v1::Layer layer, double duration_s, const std::function<bool()>& shows,
                      const std::function<std::string()>& seen) {
+    client.needLayer(layer);
     std::uint64_t looked_count = 0;
     bool has_shown = false;
     const auto holds = [&] {
@@ -199,7 +201,6 @@ class Runner {
   }
 
   Outcome expectSurface(const v1::ExpectSurface& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_SURFACE);
     std::optional<double> seen_m;
     const auto shows = [&] {
       seen_m = elevation_m(client.received.newest[v1::LAYER_SURFACE], step.x_m(), step.z_m());
@@ -223,7 +224,6 @@ class Runner {
   }
 
   Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_DIAGNOSTICS);
     std::string seen = "no diagnostics";
     const auto shows = [&] {
       const auto& gauges = client.received.diagnostics.gauges();
@@ -245,7 +245,6 @@ class Runner {
   }
 
   Outcome expectBoat(const v1::ExpectBoat& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_BODIES);
     std::uint32_t boat_id = step.boat_id();
     if (!step.boat().empty()) {
       const auto saved = boats_.find(step.boat());
@@ -270,17 +269,15 @@ class Runner {
   }
 
   Outcome expectParticles(const v1::ExpectParticles& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_PARTICLES);
-    std::optional<std::uint32_t> count;
-    const auto holds = [&] {
-      const auto frame = client.received.newest.find(v1::LAYER_PARTICLES);
-      if (frame == client.received.newest.end()) return false;
-      const v1::LayerFrame& seen = frame->second;
-      count = seen.has_particles_fixed12() ? seen.particles_fixed12().count() : seen.particles_by_cell().count();
-      return *count >= step.min_count() && (!step.has_max_count() || *count <= step.max_count());
+    std::uint32_t count = 0;
+    const auto shows = [&] {
+      const v1::LayerFrame& frame = client.received.newest[v1::LAYER_PARTICLES];
+      count = frame.has_particles_fixed12() ? frame.particles_fixed12().count() : frame.particles_by_cell().count();
+      return count >= step.min_count() && (!step.has_max_count() || count <= step.max_count());
     };
-    return await(client, patience_s(step), holds, [&] {
-      return count ? fmt::format("{} particles", *count) : std::string("no frame of the particles");
+    return awaitFrame(client, v1::LAYER_PARTICLES, patience_s(step), shows, [&] {
+      const bool has_frame = client.received.newest.contains(v1::LAYER_PARTICLES);
+      return has_frame ? fmt::format("{} particles", count) : std::string("no frame of the particles");
     });
   }
 

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/core/text.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>

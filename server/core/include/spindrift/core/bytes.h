@@ -1,7 +1,6 @@
 // Immutable bytes that many readers share: one encoded frame, however many clients receive it.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
