@@ -1,6 +1,7 @@
 // Immutable bytes that many readers share: one encoded frame, however many clients receive it.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
