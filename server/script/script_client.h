@@ -31,7 +31,7 @@ struct LayerTally {
   double longest_gap_ever_s = 0.0;
 };
 
-/// What a client has received, through all of its connections.
+/// Messages and statistics of a client, through all of its connections.
 struct Received {
   std::map<v1::Layer, v1::LayerFrame> newest;
   std::map<v1::Layer, LayerTally> tallies;
