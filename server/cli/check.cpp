@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/core/paths.h>
+#include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim_setup/derive.h>

@@ -12,7 +12,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include <spindrift/core/paths.h>
+#include <spindrift/core/files.h>
 
 #include "access_files.h"
 #include "config_file.h"

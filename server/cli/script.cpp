@@ -4,8 +4,7 @@
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
-#include <spindrift/script/script_file.h>
-#include <spindrift/script/script_runner.h>
+#include <spindrift/script/script.h>
 
 #include "commands.h"
 #include "forms.h"

@@ -11,7 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include <spindrift/cluster/node.h>
-#include <spindrift/core/paths.h>
+#include <spindrift/core/files.h>
 #include <spindrift/core/room_name.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>

@@ -4,7 +4,7 @@
 
 #include <spindrift/core/version.h>
 #include <spindrift/history/diary.h>
-#include <spindrift/water/recorded_hash.h>
+#include <spindrift/water/water_state.h>
 
 namespace spindrift::history {
 namespace {

@@ -3,7 +3,7 @@
 #include <spindrift/history/repetition.h>
 #include <spindrift/history/replay.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/water/recorded_hash.h>
+#include <spindrift/water/water_state.h>
 
 namespace spindrift::history {
 

@@ -6,7 +6,7 @@
 #include <spindrift/core/room_name.h>
 #include <spindrift/core/text.h>
 #include <spindrift/history/state_store.h>
-#include <spindrift/state/room_folders.h>
+#include <spindrift/state/folders.h>
 
 namespace spindrift::history {
 namespace {

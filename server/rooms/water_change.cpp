@@ -208,8 +208,7 @@ double WaterChange::loadAt(v1::Fidelity level) const {
   if (!then) return std::numeric_limits<double>::infinity();
   const double per_s_now = room_.time.speed() / room_.water->sim().derived().tick_s;
   const double per_s_then = room_.time.speed() / then->tick_s;
-  const double more_ms_per_s =
-      room_.tick_cost.predict_ms(then->per_tick) * per_s_then - room_.tick_cost.tick_ms() * per_s_now;
+  const double more_ms_per_s = room_.tick_cost.predict_ms(*then) * per_s_then - room_.tick_cost.tick_ms() * per_s_now;
   return room_.load.thread_share + more_ms_per_s / 1e3;
 }
 

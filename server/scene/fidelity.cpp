@@ -10,7 +10,6 @@
 #include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
-#include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 
 namespace spindrift::scene {
@@ -18,7 +17,6 @@ namespace {
 
 /// Factors of a level relative to BALANCED, and its values for fields that the scene leaves out.
 struct FidelityScale {
-  v1::Fidelity fidelity;
   double wave_scale;      ///< factor on the wave's resolution
   double particle_scale;  ///< factor on particles per length; the spacing is divided by it
   double tick_scale;      ///< factor on the tick rate, and so on the minimum number of steps
@@ -27,17 +25,13 @@ struct FidelityScale {
   double surface_quantum_m;
 };
 
-constexpr std::array<FidelityScale, 4> kScales = {{
-    {v1::FIDELITY_DRAFT, 0.5, 0.7, 1.0, 3, 3, 0.002},
-    {v1::FIDELITY_BALANCED, 1.0, 1.0, 1.0, 3, 4, 0.001},
-    {v1::FIDELITY_FINE, 1.5, 1.7, 1.0, 5, 4, 0.0005},
-    {v1::FIDELITY_REFERENCE, 2.5, 2.2, 2.0, 5, 8, 0.0005},
+/// Of kFidelities.
+constexpr std::array<FidelityScale, kFidelities.size()> kScales = {{
+    {0.5, 0.7, 1.0, 3, 3, 0.002},
+    {1.0, 1.0, 1.0, 3, 4, 0.001},
+    {1.5, 1.7, 1.0, 5, 4, 0.0005},
+    {2.5, 2.2, 2.0, 5, 8, 0.0005},
 }};
-
-const FidelityScale& scaleOf(v1::Fidelity fidelity) {
-  const auto level = std::ranges::find(kScales, fidelity, &FidelityScale::fidelity);
-  return level != kScales.end() ? *level : kScales[1];
-}
 
 /// Multiplies a number by `factor`, limited to its range and rounded to an allowed value.
 void scaleNumber(google::protobuf::Message& message, const char* name, double factor) {
@@ -90,7 +84,8 @@ double layersOf(const v1::ParticleScene& particles) {
 }  // namespace
 
 std::size_t rankOf(v1::Fidelity fidelity) {
-  return static_cast<std::size_t>(std::ranges::find(kFidelities, scaleOf(fidelity).fidelity) - kFidelities.begin());
+  const auto level = std::ranges::find(kFidelities, fidelity);
+  return level != kFidelities.end() ? static_cast<std::size_t>(level - kFidelities.begin()) : 1;
 }
 
 std::optional<v1::Fidelity> coarserThan(v1::Fidelity fidelity) {
@@ -112,13 +107,13 @@ std::optional<v1::Fidelity> parseFidelity(std::string_view name) {
 }
 
 std::string fidelityName(v1::Fidelity fidelity) {
-  std::string name = v1::Fidelity_Name(scaleOf(fidelity).fidelity).substr(9);
+  std::string name = v1::Fidelity_Name(kFidelities[rankOf(fidelity)]).substr(9);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return name;
 }
 
 void applyFidelity(v1::Scene& scene) {
-  const FidelityScale& level = scaleOf(scene.fidelity());
+  const FidelityScale& level = kScales[rankOf(scene.fidelity())];
   const bool is_two_way = scene.coupling().mode() == v1::COUPLING_MODE_TWO_WAY;
   scaleNumber(scene, "tick_rate_hz", level.tick_scale);
   if (scene.has_wave()) {
@@ -149,34 +144,6 @@ void applyFidelity(v1::Scene& scene) {
     if (!coupling.has_lattice_count()) coupling.set_lattice_count(level.lattice_count);
   }
   if (!scene.stream().has_surface_quantum_m()) scene.mutable_stream()->set_surface_quantum_m(level.surface_quantum_m);
-}
-
-namespace {
-
-/// Live parameters that applyFidelity() sets.
-constexpr std::array<std::string_view, 2> kOfLevel = {"particles.count", "particles.iterations_count"};
-
-void keepNumbers(const google::protobuf::Message& from, google::protobuf::Message& to, const std::string& prefix) {
-  const google::protobuf::Descriptor& type = *to.GetDescriptor();
-  for (int i = 0; i < type.field_count(); ++i) {
-    const google::protobuf::FieldDescriptor& field = *type.field(i);
-    if (field.is_repeated()) continue;
-    const std::string path = prefix + field.name();
-    if (field.cpp_type() == google::protobuf::FieldDescriptor::CPPTYPE_MESSAGE) {
-      if (!from.GetReflection()->HasField(from, &field) || !to.GetReflection()->HasField(to, &field)) continue;
-      keepNumbers(from.GetReflection()->GetMessage(from, &field), *to.GetReflection()->MutableMessage(&to, &field),
-                  path + ".");
-    } else if (const v1::ParameterOptions* options = parameterOptions(field);
-               options && !options->restart() && std::ranges::find(kOfLevel, path) == kOfLevel.end()) {
-      setNumber(to, field, numberOf(from, field));
-    }
-  }
-}
-
-}  // namespace
-
-void keepParameters(const v1::Scene& from, v1::Scene& to) {
-  keepNumbers(from, to, "");
 }
 
 core::Result<v1::FidelityErrors> loadFidelityErrors(const std::filesystem::path& folder) {

@@ -41,6 +41,23 @@ FieldIssue outOfRange(std::string message) {
 
 }  // namespace
 
+void forEachField(const Message& message, const std::string& prefix, const FieldVisitor& visit) {
+  const Reflection& reflection = *message.GetReflection();
+  const google::protobuf::Descriptor& type = *message.GetDescriptor();
+  for (int i = 0; i < type.field_count(); ++i) {
+    const FieldDescriptor& field = *type.field(i);
+    const std::string path = prefix + field.name();
+    if (field.cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) {
+      visit(message, field, path);
+    } else if (field.is_repeated()) {
+      for (int k = 0; k < reflection.FieldSize(message, &field); ++k)
+        forEachField(reflection.GetRepeatedMessage(message, &field, k), path + "[" + std::to_string(k) + "].", visit);
+    } else if (reflection.HasField(message, &field)) {
+      forEachField(reflection.GetMessage(message, &field), path + ".", visit);
+    }
+  }
+}
+
 const v1::ParameterOptions* parameterOptions(const FieldDescriptor& field) {
   if (field.is_repeated() || !field.options().HasExtension(v1::parameter)) return nullptr;
   return &field.options().GetExtension(v1::parameter);
@@ -87,55 +104,35 @@ std::optional<FieldIssue> checkNumber(const FieldDescriptor& field, double value
 }
 
 void checkFields(const Message& message, const std::string& prefix, std::vector<FieldIssue>& issues) {
-  const Reflection& reflection = *message.GetReflection();
-  const google::protobuf::Descriptor& type = *message.GetDescriptor();
-  for (int i = 0; i < type.field_count(); ++i) {
-    const FieldDescriptor& field = *type.field(i);
-    const std::string path = prefix + field.name();
-    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-      if (field.is_repeated()) {
-        for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {
-          checkFields(reflection.GetRepeatedMessage(message, &field, k), path + "[" + std::to_string(k) + "].", issues);
-        }
-      } else if (reflection.HasField(message, &field)) {
-        checkFields(reflection.GetMessage(message, &field), path + ".", issues);
-      }
-    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM && !field.is_repeated()) {
-      const int number = reflection.GetEnumValue(message, &field);
-      if (field.enum_type()->FindValueByNumber(number) != nullptr) continue;
+  forEachField(message, prefix, [&](const Message& part, const FieldDescriptor& field, const std::string& path) {
+    const Reflection& reflection = *part.GetReflection();
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM && !field.is_repeated()) {
+      const int number = reflection.GetEnumValue(part, &field);
+      if (field.enum_type()->FindValueByNumber(number) != nullptr) return;
       issues.push_back({v1::REJECT_REASON_OUT_OF_RANGE, path,
                         std::to_string(number) + " is not of type " + field.enum_type()->name() + "; choose 1 to " +
                             std::to_string(field.enum_type()->value_count() - 1)});
-    } else if (parameterOptions(field) != nullptr && !(field.has_presence() && !reflection.HasField(message, &field))) {
-      if (auto issue = checkNumber(field, numberOf(message, field))) {
+    } else if (parameterOptions(field) != nullptr && !(field.has_presence() && !reflection.HasField(part, &field))) {
+      if (auto issue = checkNumber(field, numberOf(part, field))) {
         issue->path = path;
         issues.push_back(std::move(*issue));
       }
     }
-  }
+  });
 }
 
 void fillMessageDefaults(Message& message) {
-  const Reflection& reflection = *message.GetReflection();
-  const google::protobuf::Descriptor& type = *message.GetDescriptor();
-  for (int i = 0; i < type.field_count(); ++i) {
-    const FieldDescriptor& field = *type.field(i);
-    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-      if (field.is_repeated()) {
-        for (int k = 0; k < reflection.FieldSize(message, &field); ++k) {
-          fillMessageDefaults(*reflection.MutableRepeatedMessage(&message, &field, k));
-        }
-      } else if (reflection.HasField(message, &field)) {
-        fillMessageDefaults(*reflection.MutableMessage(&message, &field));
-      }
-    } else if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM && !field.is_repeated()) {
+  forEachField(message, "", [](const Message& visited, const FieldDescriptor& field, const std::string&) {
+    auto& part = const_cast<Message&>(visited);  // of `message`, which may be modified
+    const Reflection& reflection = *part.GetReflection();
+    if (field.cpp_type() == FieldDescriptor::CPPTYPE_ENUM && !field.is_repeated()) {
       // An `optional` one may be left out: then it says nothing.
-      if (!field.has_presence() && reflection.GetEnumValue(message, &field) == 0)
-        reflection.SetEnumValue(&message, &field, 1);
+      if (!field.has_presence() && reflection.GetEnumValue(part, &field) == 0)
+        reflection.SetEnumValue(&part, &field, 1);
     } else if (const v1::ParameterOptions* options = parameterOptions(field)) {
-      if (field.has_presence() && !reflection.HasField(message, &field)) setNumber(message, field, options->default_());
+      if (field.has_presence() && !reflection.HasField(part, &field)) setNumber(part, field, options->default_());
     }
-  }
+  });
 }
 
 }  // namespace spindrift::scene

@@ -31,18 +31,13 @@ v1::ParameterDescription describe(const v1::ParameterOptions& options, const std
   return out;
 }
 
-void describePart(const Message& part, const std::string& prefix, std::vector<v1::ParameterDescription>& out) {
-  const Descriptor& type = *part.GetDescriptor();
-  for (int i = 0; i < type.field_count(); ++i) {
-    const FieldDescriptor& field = *type.field(i);
-    if (field.is_repeated()) continue;
-    if (field.cpp_type() == FieldDescriptor::CPPTYPE_MESSAGE) {
-      if (!part.GetReflection()->HasField(part, &field)) continue;
-      describePart(part.GetReflection()->GetMessage(part, &field), prefix + field.name() + ".", out);
-    } else if (const v1::ParameterOptions* options = parameterOptions(field); options && !options->restart()) {
-      out.push_back(describe(*options, prefix + field.name(), numberOf(part, field)));
-    }
-  }
+/// Calls `visit` for each parameter that changes while a room runs.
+void forEachLive(const v1::Scene& scene, const FieldVisitor& visit) {
+  forEachField(scene, "", [&](const Message& part, const FieldDescriptor& field, const std::string& path) {
+    const v1::ParameterOptions* options = parameterOptions(field);
+    const bool is_of_list = path.find('[') != std::string::npos;
+    if (options && !options->restart() && !is_of_list) visit(part, field, path);
+  });
 }
 
 /// Target of a path: the part with the field (null if the scene lacks the part), and the field.
@@ -138,8 +133,9 @@ void appendReference(const Descriptor& type, const std::string& prefix, std::str
 
 std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene) {
   std::vector<v1::ParameterDescription> out;
-  describePart(scene, "", out);
-  std::erase_if(out, [&](const v1::ParameterDescription& each) { return hasNoEffect(scene, each.path()); });
+  forEachLive(scene, [&](const Message& part, const FieldDescriptor& field, const std::string& path) {
+    if (!hasNoEffect(scene, path)) out.push_back(describe(*parameterOptions(field), path, numberOf(part, field)));
+  });
   return out;
 }
 
@@ -157,6 +153,14 @@ std::optional<FieldIssue> setParameter(v1::Scene& scene, std::string_view path, 
   if (auto error = checkChanged(changed, path)) return error;
   scene = std::move(changed);
   return std::nullopt;
+}
+
+void keepParameters(const v1::Scene& from, v1::Scene& to) {
+  forEachLive(to, [&](const Message& part, const FieldDescriptor& field, const std::string& path) {
+    if (path == "particles.count" || path == "particles.iterations_count") return;  // applyFidelity() sets them
+    const Message* known = findTarget(from, path)->part;
+    if (known) setNumber(const_cast<Message&>(part), field, numberOf(*known, field));
+  });
 }
 
 std::string parameterReferenceMarkdown() {

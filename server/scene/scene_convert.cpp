@@ -1,13 +1,61 @@
 // Scene messages made complete, made fit to send, and converted as far as generated code (scene_types.py) does not:
 // depths of a grid, and a limit.
+#include <algorithm>
+#include <array>
 #include <cstring>
 #include <memory>
 
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_loader.h>
+#include <spindrift/scene/scene_rules.h>
 #include <spindrift/scene/to_core.h>
 
 namespace spindrift::scene {
+namespace {
+
+/// Water that is at least this many times as long as wide is a flume.
+constexpr double kFlumeAspect = 2.0;
+/// Walled water with sides up to this length is in a glass tank, larger water in a pool; a channel up to this wide is a
+/// flume. [m]
+constexpr double kTankMaxSide_m = 6.0;
+
+v1::Setting walledSetting(double side_m) {
+  return side_m <= kTankMaxSide_m ? v1::SETTING_GLASS_TANK : v1::SETTING_POOL;
+}
+
+/// Where the water is, as it follows from sides and parts. Precondition: the defaults are filled in.
+v1::Setting ofWave(const v1::WaveScene& wave) {
+  const core::WaveCells cells = waveCellsOf(wave);
+  const double longer_m = std::max(cells.length_m, cells.width_m);
+  const double shorter_m = std::min(cells.length_m, cells.width_m);
+  const std::array along_x{wave.boundary_minus_x(), wave.boundary_plus_x()};  // the ends of this axis
+  const std::array along_z{wave.boundary_minus_z(), wave.boundary_plus_z()};
+  // Walls along a narrow channel, whatever its ends are.
+  const auto& long_sides = cells.length_m > cells.width_m ? along_z : along_x;
+  if (longer_m >= kFlumeAspect * shorter_m && shorter_m <= kTankMaxSide_m &&
+      std::ranges::count(long_sides, v1::WAVE_BOUNDARY_REFLECT) == 2)
+    return v1::SETTING_FLUME;
+  if (std::ranges::count(along_x, v1::WAVE_BOUNDARY_ABSORB) + std::ranges::count(along_z, v1::WAVE_BOUNDARY_ABSORB) > 0)
+    return v1::SETTING_OPEN_SEA;
+  const bool is_periodic_x = along_x[0] == v1::WAVE_BOUNDARY_PERIODIC;
+  const bool is_periodic_z = along_z[0] == v1::WAVE_BOUNDARY_PERIODIC;
+  if (is_periodic_x && is_periodic_z) return v1::SETTING_OPEN_SEA;
+  // Walls at two ends only: the waves do not depend on the width, as in a flume.
+  if (is_periodic_x != is_periodic_z) return v1::SETTING_FLUME;
+  return walledSetting(longer_m);
+}
+
+v1::Setting ofBox(const v1::Scene& scene) {
+  const v1::ParticleScene& box = scene.particles();
+  const WaterExtents water = waterExtentsOf(scene);
+  const double longer_m = water.side_x_m + water.side_z_m - water.shorterSide_m();
+  const bool is_periodic_x = box.boundary_x() == v1::BOUNDARY_PERIODIC;
+  if (is_periodic_x != (box.boundary_z() == v1::BOUNDARY_PERIODIC)) return v1::SETTING_FLUME;
+  if (longer_m >= kFlumeAspect * water.shorterSide_m()) return v1::SETTING_FLUME;
+  return walledSetting(longer_m);
+}
+
+}  // namespace
 
 void fillDefaults(v1::Scene& scene) {
   scene.mutable_stream();
@@ -19,8 +67,13 @@ void fillDefaults(v1::Scene& scene) {
   }
   const v1::Setting named = scene.setting();
   fillMessageDefaults(scene);
-  scene.set_setting(named);
-  scene.set_setting(settingOf(scene));
+  scene.set_setting(named != v1::SETTING_UNSPECIFIED ? named : scene.has_wave() ? ofWave(scene.wave()) : ofBox(scene));
+}
+
+std::string settingName(v1::Setting setting) {
+  std::string name = v1::Setting_Name(setting).substr(sizeof "SETTING_" - 1);
+  std::ranges::transform(name, name.begin(), [](char c) { return c == '_' ? ' ' : static_cast<char>(c - 'A' + 'a'); });
+  return name;
 }
 
 v1::Scene forClients(const v1::Scene& scene) {

@@ -34,12 +34,6 @@ void checkPosition(double value_m, double side_m, const std::string& path, std::
 void checkAtMost(double value_m, double max_m, const std::string& path, const std::string& what,
                  std::vector<FieldIssue>& issues);
 
-/// Bed and gauges: counts, names, and shapes that are missing.
-void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues);
-
-/// Bed and gauges: sizes and positions, in a scene with a wave.
-void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues);
-
 /// Waves of wave-makers that are missing or excluded by each other.
 void checkMakerStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues);
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -19,6 +20,7 @@ constexpr int kStrokePointMaxCount = 64;
 /// water's and over the radius.
 constexpr double kStrokeMaxRadiusSides = 0.125, kStrokeMaxDepthRatio = 1.0 / 3.0, kStrokeMaxDepthRadii = 0.5;
 constexpr std::size_t kNameMaxBytes = 64;
+constexpr std::size_t kGaugeNameMaxBytes = 32;
 constexpr std::size_t kTitleMaxBytes = 200;
 constexpr std::size_t kDescriptionMaxBytes = 4000;
 
@@ -106,6 +108,28 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
     issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("obstacles", i),
                       "has no shape; say what stands there: \"rock {}\" or \"breakwater {}\""});
+  }
+}
+
+void checkBedStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  checkCount(scene.bed().shapes_size(), kSceneBedShapeMaxCount, "bed.shapes", "shapes", issues,
+             "remove some, or give a grid");
+  for (int i = 0; i < scene.bed().shapes_size(); ++i) {
+    if (scene.bed().shapes(i).shape_case() != v1::BedShape::SHAPE_NOT_SET) continue;
+    issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("bed.shapes", i),
+                      "has no shape; say what is there: \"cone {}\", \"slope {}\", \"sill {}\" or \"channel {}\""});
+  }
+  checkCount(scene.gauges_size(), static_cast<int>(core::kMaxGauges), "gauges", "gauges", issues);
+  std::set<std::string> names;
+  for (int i = 0; i < scene.gauges_size(); ++i) {
+    const std::string& name = scene.gauges(i).name();
+    const std::string shown = "\"" + core::quoteText(name, kGaugeNameMaxBytes) + "\"";
+    if (name.size() > kGaugeNameMaxBytes || !isSceneName(name)) {
+      addRange(issues, indexed("gauges", i) + ".name",
+               shown + " is not a name; use 1 to 32 letters, digits, '_' and '-'");
+    } else if (!names.insert(name).second) {
+      addRange(issues, indexed("gauges", i) + ".name", shown + " names an earlier gauge, too; choose another name");
+    }
   }
 }
 

@@ -165,6 +165,23 @@ void checkBeaches(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   }
 }
 
+void checkBedNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  checkAtMost(scene.bed().floor_depth_m(), scene.wave().depth_m(), "bed.floor_depth_m",
+              "is deeper than the water of " + metres(scene.wave().depth_m()), issues);
+  for (int i = 0; i < scene.bed().shapes_size(); ++i) {
+    const v1::BedShape& shape = scene.bed().shapes(i);
+    if (shape.cone().crest_radius_m() <= shape.cone().toe_radius_m()) continue;
+    addRange(issues, indexed("bed.shapes", i) + ".cone.crest_radius_m",
+             metres(shape.cone().crest_radius_m()) + " is more than the toe radius of " +
+                 metres(shape.cone().toe_radius_m()) + "; choose at most that");
+  }
+  const WaterExtents water = waterExtentsOf(scene);
+  for (int i = 0; i < scene.gauges_size(); ++i) {
+    checkPosition(scene.gauges(i).x_m(), water.side_x_m, indexed("gauges", i) + ".x_m", issues);
+    checkPosition(scene.gauges(i).z_m(), water.side_z_m, indexed("gauges", i) + ".z_m", issues);
+  }
+}
+
 void checkHull(const core::Boat& boat, const WaterExtents& water, const std::string& prefix,
                std::vector<FieldIssue>& issues) {
   const double max_length_m = std::min(kMaxBoatSideRatio * std::max(water.side_x_m, water.side_z_m),

@@ -10,13 +10,6 @@
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::script {
-namespace {
-
-double since_s(ScriptClient::Clock::time_point begin) {
-  return std::chrono::duration<double>(ScriptClient::Clock::now() - begin).count();
-}
-
-}  // namespace
 
 ScriptClient::ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url)
     : setup_(setup), pool_(pool), url_(url.inRoom(setup.room())) {
@@ -75,7 +68,7 @@ void ScriptClient::planMove(const v1::Draining& draining) {
   if (!draining.go_to().empty()) {
     const auto url = net::ClientUrl::parse(draining.go_to());
     if (!url) {
-      ++malformed_count_;
+      ++received.malformed_count;
       return;
     }
     move.url = *url;
@@ -111,7 +104,7 @@ void ScriptClient::send(const v1::ClientMessage& message) {
 
 void ScriptClient::subscribe(const v1::Subscribe& wanted) {
   subscriptions_[wanted.layer()] = wanted;
-  LayerTally& tally = tallies_[static_cast<std::size_t>(wanted.layer())];
+  LayerTally& tally = received.tallies[wanted.layer()];
   tally.last = wanted.max_rate_hz() > 0 ? std::optional(Clock::now()) : std::nullopt;
   v1::ClientMessage message;
   *message.mutable_subscribe() = wanted;
@@ -142,41 +135,41 @@ std::uint64_t ScriptClient::command(v1::Command command) {
 }
 
 void ScriptClient::take(core::ByteView bytes) {
-  received_bytes_ += bytes.size();
+  received.byte_count += bytes.size();
   auto parsed = codec::parseServerMessage(bytes);
   if (!parsed) {
-    ++malformed_count_;
+    ++received.malformed_count;
     return;
   }
-  const auto answered = [&](std::uint64_t id, Answer answer) {
-    if (const auto sent = sent_at_.extract(id)) answer_times_ms_.push_back(1e3 * since_s(sent.mapped()));
-    answers_[id] = std::move(answer);
+  const auto answered = [&](std::uint64_t id) {
+    if (const auto sent = sent_at_.extract(id)) received.answer_times_ms.push_back(1e3 * since_s(sent.mapped()));
+    received.answers[id] = *std::move(parsed);
   };
   switch (parsed->message_case()) {
     case v1::ServerMessage::kFrame: {
-      v1::LayerFrame& received = *parsed->mutable_frame();
-      if (!v1::Layer_IsValid(received.layer())) return;
-      frame(received.layer(), received.state_id());
-      newest_[static_cast<std::size_t>(received.layer())] = std::move(received);
+      v1::LayerFrame& newest = *parsed->mutable_frame();
+      if (!v1::Layer_IsValid(newest.layer())) return;
+      frame(newest.layer(), newest.state_id());
+      received.newest[newest.layer()] = std::move(newest);
       return;
     }
     case v1::ServerMessage::kDiagnostics:
-      diagnostics_ = std::move(*parsed->mutable_diagnostics());
-      return frame(v1::LAYER_DIAGNOSTICS, diagnostics_->state_id());
+      received.diagnostics = std::move(*parsed->mutable_diagnostics());
+      return frame(v1::LAYER_DIAGNOSTICS, received.diagnostics.state_id());
     case v1::ServerMessage::kAck:
-      return answered(parsed->ack().command_id(), {.ack = parsed->ack(), .reject = {}});
+      return answered(parsed->ack().command_id());
     case v1::ServerMessage::kReject:
-      return answered(parsed->reject().command_id(), {.ack = {}, .reject = parsed->reject()});
+      return answered(parsed->reject().command_id());
     case v1::ServerMessage::kWelcome:
       welcome_ = parsed->welcome();
       resume_key_ = welcome_->resume_key();
       move_.reset();
       return;
     case v1::ServerMessage::kPeople:
-      people_ = std::move(*parsed->mutable_people());
+      received.people = std::move(*parsed->mutable_people());
       return;
     case v1::ServerMessage::kRoomEvent:
-      ++events_[parsed->room_event().kind()];
+      ++received.event_counts[parsed->room_event().kind()];
       return;
     case v1::ServerMessage::kDraining:
       return planMove(parsed->draining());
@@ -189,7 +182,7 @@ void ScriptClient::take(core::ByteView bytes) {
 }
 
 void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id) {
-  LayerTally& tally = tallies_[static_cast<std::size_t>(layer)];
+  LayerTally& tally = received.tallies[layer];
   ++tally.frame_count;
   // A server that does not number its states sends 0: then each frame counts.
   if (state_id == 0 || state_id != tally.state_id) ++tally.state_count;
@@ -203,24 +196,9 @@ void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id) {
 }
 
 double ScriptClient::takeLongestGap_s(v1::Layer layer) {
-  LayerTally& tally = tallies_[static_cast<std::size_t>(layer)];
+  LayerTally& tally = received.tallies[layer];
   const double open_s = tally.last ? since_s(*tally.last) : 0.0;
   return std::max(std::exchange(tally.longest_gap_s, 0.0), open_s);
-}
-
-const ScriptClient::Answer* ScriptClient::answerTo(std::uint64_t command_id) const {
-  const auto found = answers_.find(command_id);
-  return found == answers_.end() ? nullptr : &found->second;
-}
-
-const v1::LayerFrame* ScriptClient::newest(v1::Layer layer) const {
-  const auto& frame = newest_[static_cast<std::size_t>(layer)];
-  return frame ? &*frame : nullptr;
-}
-
-std::uint64_t ScriptClient::eventCount(v1::RoomEventKind kind) const {
-  const auto found = events_.find(kind);
-  return found == events_.end() ? 0 : found->second;
 }
 
 }  // namespace spindrift::script

@@ -1,7 +1,6 @@
 // One client of a script: its connection and what it has received. Runs only on the thread that drives the pool.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -16,25 +15,37 @@
 
 namespace spindrift::script {
 
+using Clock = std::chrono::steady_clock;
+
+inline double since_s(Clock::time_point begin) {
+  return std::chrono::duration<double>(Clock::now() - begin).count();
+}
+
+/// Statistics of one layer, or of the diagnostics.
+struct LayerTally {
+  std::uint64_t frame_count = 0;
+  std::uint64_t state_count = 0;  ///< different states of the water in the frames; a paused room repeats its state
+  std::uint64_t state_id = 0;     ///< of the last frame
+  std::optional<Clock::time_point> last;  ///< time of the last frame, or of the subscription
+  double longest_gap_s = 0.0;             ///< since the subscription or the last takeLongestGap_s()
+  double longest_gap_ever_s = 0.0;
+};
+
+/// Messages and statistics of a client, through all of its connections.
+struct Received {
+  std::map<v1::Layer, v1::LayerFrame> newest;
+  std::map<v1::Layer, LayerTally> tallies;
+  v1::Diagnostics diagnostics;  ///< the newest
+  v1::People people;
+  std::map<v1::RoomEventKind, std::uint64_t> event_counts;
+  std::map<std::uint64_t, v1::ServerMessage> answers;  ///< Ack or Reject by the number of the command
+  std::vector<double> answer_times_ms;
+  std::uint64_t byte_count = 0;
+  std::uint64_t malformed_count = 0;
+};
+
 class ScriptClient {
  public:
-  using Clock = std::chrono::steady_clock;
-
-  /// Result of a command.
-  struct Answer {
-    std::optional<v1::Ack> ack;
-    std::optional<v1::Reject> reject;
-  };
-  /// Statistics of one layer, or of the diagnostics.
-  struct LayerTally {
-    std::uint64_t frame_count = 0;
-    std::uint64_t state_count = 0;  ///< different states of the water in the frames; a paused room repeats its state
-    std::uint64_t state_id = 0;     ///< of the last frame
-    std::optional<Clock::time_point> last;  ///< time of the last frame, or of the subscription
-    double longest_gap_s = 0.0;             ///< since the subscription or the last resetGap()
-    double longest_gap_ever_s = 0.0;
-  };
-
   /// `setup` and the pool must outlive the client.
   ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url);
 
@@ -62,20 +73,10 @@ class ScriptClient {
   [[nodiscard]] const std::optional<End>& end() const { return end_; }
   /// The same, but also while the client is about to come back after a Draining message.
   [[nodiscard]] const std::optional<End>& lastEnd() const { return last_end_; }
-  [[nodiscard]] const Answer* answerTo(std::uint64_t command_id) const;
-  [[nodiscard]] const v1::LayerFrame* newest(v1::Layer layer) const;
-  /// The newest diagnostics; null before the first.
-  [[nodiscard]] const v1::Diagnostics* diagnostics() const { return diagnostics_ ? &*diagnostics_ : nullptr; }
-  [[nodiscard]] const LayerTally& tally(v1::Layer layer) const { return tallies_[static_cast<std::size_t>(layer)]; }
-  [[nodiscard]] const v1::People& people() const { return people_; }
-  [[nodiscard]] std::uint64_t eventCount(v1::RoomEventKind kind) const;
   /// Returns the longest gap since the last call, including the current one, and starts a new measurement.
   double takeLongestGap_s(v1::Layer layer);
 
-  // For the report.
-  [[nodiscard]] std::uint64_t receivedBytes() const { return received_bytes_; }
-  [[nodiscard]] const std::vector<double>& answerTimes_ms() const { return answer_times_ms_; }
-  [[nodiscard]] std::uint64_t malformedCount() const { return malformed_count_; }
+  Received received;
 
  private:
   /// Address and times of the next connection, after a Draining message.
@@ -103,15 +104,6 @@ class ScriptClient {
   std::map<v1::Layer, v1::Subscribe> subscriptions_;
   std::uint64_t last_command_id_ = 0;
   std::map<std::uint64_t, Clock::time_point> sent_at_;
-  std::map<std::uint64_t, Answer> answers_;  ///< one per command of the script
-  std::array<std::optional<v1::LayerFrame>, v1::Layer_ARRAYSIZE> newest_;
-  std::array<LayerTally, v1::Layer_ARRAYSIZE> tallies_;
-  std::optional<v1::Diagnostics> diagnostics_;
-  v1::People people_;
-  std::map<v1::RoomEventKind, std::uint64_t> events_;
-  std::uint64_t received_bytes_ = 0;
-  std::uint64_t malformed_count_ = 0;
-  std::vector<double> answer_times_ms_;
 };
 
 }  // namespace spindrift::script

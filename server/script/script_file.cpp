@@ -7,7 +7,7 @@
 
 #include <spindrift/core/files.h>
 #include <spindrift/core/text.h>
-#include <spindrift/script/script_file.h>
+#include <spindrift/script/script.h>
 
 namespace spindrift::script {
 namespace {

@@ -10,14 +10,12 @@
 #include <fmt/format.h>
 
 #include <spindrift/codec/frame_decoder.h>
-#include <spindrift/script/script_runner.h>
+#include <spindrift/script/script.h>
 
 #include "script_client.h"
 
 namespace spindrift::script {
 namespace {
-
-using Clock = ScriptClient::Clock;
 
 constexpr double kPatience_s = 5.0;
 
@@ -65,8 +63,6 @@ class Runner {
   }
 
  private:
-  static double since_s(Clock::time_point begin) { return std::chrono::duration<double>(Clock::now() - begin).count(); }
-
   static std::string describe(const v1::ScriptStep& step) {
     const auto* descriptor = v1::ScriptStep::descriptor();
     std::string out = descriptor->FindFieldByNumber(static_cast<int>(step.what_case()))->name();
@@ -103,13 +99,15 @@ class Runner {
     return {passed, std::move(detail)};
   }
 
-  /// The same for what frames of a layer show: `shows` looks at each once, until one shows what is wanted.
+  /// The same for what frames of a layer show, which the client subscribes to: `shows` looks at each once, until one
+  /// shows what is wanted.
   Outcome awaitFrame(ScriptClient& client, v1::Layer layer, double duration_s, const std::function<bool()>& shows,
                      const std::function<std::string()>& seen) {
+    client.needLayer(layer);
     std::uint64_t looked_count = 0;
     bool has_shown = false;
     const auto holds = [&] {
-      const std::uint64_t frame_count = client.tally(layer).frame_count;
+      const std::uint64_t frame_count = client.received.tallies[layer].frame_count;
       if (!has_shown && std::exchange(looked_count, frame_count) != frame_count) has_shown = shows();
       return has_shown;
     };
@@ -182,16 +180,16 @@ class Runner {
     }
     const std::uint64_t id = client.command(std::move(command));
     const Outcome answered = await(
-        client, patience_s(step), [&] { return client.answerTo(id) != nullptr; }, [] { return std::string(); });
+        client, patience_s(step), [&] { return client.received.answers.contains(id); }, [] { return std::string(); });
     if (!answered.passed) return {false, "no answer" + answered.detail};
-    const ScriptClient::Answer& answer = *client.answerTo(id);
-    if (answer.ack) {
-      if (!step.save_boat().empty()) boats_[step.save_boat()] = answer.ack->boat_id();
+    const v1::ServerMessage& answer = client.received.answers[id];
+    if (answer.has_ack()) {
+      if (!step.save_boat().empty()) boats_[step.save_boat()] = answer.ack().boat_id();
       const bool wanted = step.rejected() == v1::REJECT_REASON_UNSPECIFIED;
-      return {wanted, fmt::format("applied at tick {}{}", answer.ack->applied_tick(),
+      return {wanted, fmt::format("applied at tick {}{}", answer.ack().applied_tick(),
                                   wanted ? "" : "; wanted " + v1::RejectReason_Name(step.rejected()))};
     }
-    const v1::Reject& reject = *answer.reject;
+    const v1::Reject& reject = answer.reject();
     const bool wanted = reject.reason() == step.rejected() &&
                         (step.rejected_field().empty() || reject.field() == step.rejected_field());
     return {wanted, fmt::format("rejected: {} {} {}{}", v1::RejectReason_Name(reject.reason()), reject.field(),
@@ -203,10 +201,9 @@ class Runner {
   }
 
   Outcome expectSurface(const v1::ExpectSurface& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_SURFACE);
     std::optional<double> seen_m;
     const auto shows = [&] {
-      seen_m = elevation_m(*client.newest(v1::LAYER_SURFACE), step.x_m(), step.z_m());
+      seen_m = elevation_m(client.received.newest[v1::LAYER_SURFACE], step.x_m(), step.z_m());
       return seen_m && (!step.has_min_m() || *seen_m >= step.min_m()) && (!step.has_max_m() || *seen_m <= step.max_m());
     };
     return awaitFrame(client, v1::LAYER_SURFACE, patience_s(step), shows, [&] {
@@ -227,10 +224,9 @@ class Runner {
   }
 
   Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_DIAGNOSTICS);
     std::string seen = "no diagnostics";
     const auto shows = [&] {
-      const auto& gauges = client.diagnostics()->gauges();
+      const auto& gauges = client.received.diagnostics.gauges();
       const auto gauge = std::ranges::find(gauges, step.gauge(), &v1::GaugeReading::name);
       if (gauge == gauges.end()) {
         seen = fmt::format("the scene has no gauge \"{}\"", step.gauge());
@@ -249,7 +245,6 @@ class Runner {
   }
 
   Outcome expectBoat(const v1::ExpectBoat& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_BODIES);
     std::uint32_t boat_id = step.boat_id();
     if (!step.boat().empty()) {
       const auto saved = boats_.find(step.boat());
@@ -258,7 +253,7 @@ class Runner {
     }
     std::string seen = "no frame of the boats";
     const auto shows = [&] {
-      const auto bodies = codec::decodeBodies(*client.newest(v1::LAYER_BODIES));
+      const auto bodies = codec::decodeBodies(client.received.newest[v1::LAYER_BODIES]);
       if (!bodies) return false;
       const auto boat = std::ranges::find(*bodies, boat_id, &codec::BodySample::boat_id);
       if (boat == bodies->end()) {
@@ -274,22 +269,21 @@ class Runner {
   }
 
   Outcome expectParticles(const v1::ExpectParticles& step, ScriptClient& client) {
-    client.needLayer(v1::LAYER_PARTICLES);
-    std::optional<std::uint32_t> count;
-    const auto holds = [&] {
-      const v1::LayerFrame* frame = client.newest(v1::LAYER_PARTICLES);
-      if (!frame) return false;
-      count = frame->has_particles_fixed12() ? frame->particles_fixed12().count() : frame->particles_by_cell().count();
-      return *count >= step.min_count() && (!step.has_max_count() || *count <= step.max_count());
+    std::uint32_t count = 0;
+    const auto shows = [&] {
+      const v1::LayerFrame& frame = client.received.newest[v1::LAYER_PARTICLES];
+      count = frame.has_particles_fixed12() ? frame.particles_fixed12().count() : frame.particles_by_cell().count();
+      return count >= step.min_count() && (!step.has_max_count() || count <= step.max_count());
     };
-    return await(client, patience_s(step), holds, [&] {
-      return count ? fmt::format("{} particles", *count) : std::string("no frame of the particles");
+    return awaitFrame(client, v1::LAYER_PARTICLES, patience_s(step), shows, [&] {
+      const bool has_frame = client.received.newest.contains(v1::LAYER_PARTICLES);
+      return has_frame ? fmt::format("{} particles", count) : std::string("no frame of the particles");
     });
   }
 
   Outcome expectFrames(const v1::ExpectFrames& step, ScriptClient& client) {
-    const std::uint64_t before_count = client.tally(step.layer()).frame_count;
-    const auto came = [&] { return client.tally(step.layer()).frame_count - before_count; };
+    const std::uint64_t before_count = client.received.tallies[step.layer()].frame_count;
+    const auto came = [&] { return client.received.tallies[step.layer()].frame_count - before_count; };
     return await(
         client, patience_s(step), [&] { return came() >= step.min_count(); },
         [&] { return fmt::format("{} frames", came()); });
@@ -304,7 +298,8 @@ class Runner {
 
   Outcome expectPeople(const v1::ExpectPeople& step, ScriptClient& client) {
     const auto count = [&] {
-      return std::ranges::count_if(client.people().people(), [](const v1::Person& person) { return !person.away(); });
+      return std::ranges::count_if(client.received.people.people(),
+                                   [](const v1::Person& person) { return !person.away(); });
     };
     return await(
         client, patience_s(step), [&] { return count() == step.count(); },
@@ -315,7 +310,7 @@ class Runner {
     // Counts events since the previous step of this kind for this client: they may arrive before this step begins.
     std::uint64_t& used_count = used_events_[{client.name(), step.kind()}];
     Outcome out = await(
-        client, patience_s(step), [&] { return client.eventCount(step.kind()) > used_count; },
+        client, patience_s(step), [&] { return client.received.event_counts[step.kind()] > used_count; },
         [&] { return v1::RoomEventKind_Name(step.kind()); });
     if (out.passed) ++used_count;
     return out;
@@ -336,16 +331,15 @@ class Runner {
   }
 
   static ClientReport reportOf(const ScriptClient& client) {
+    const Received& received = client.received;
     ClientReport out{.name = client.name(),
-                     .received_bytes = client.receivedBytes(),
-                     .malformed_count = client.malformedCount(),
+                     .received_bytes = received.byte_count,
+                     .malformed_count = received.malformed_count,
                      .layers = {},
-                     .answer_count = client.answerTimes_ms().size(),
-                     .answer_p50_ms = quantile(client.answerTimes_ms(), 0.5),
-                     .answer_p99_ms = quantile(client.answerTimes_ms(), 0.99)};
-    for (int k = v1::Layer_MIN + 1; k < v1::Layer_ARRAYSIZE; ++k) {
-      const auto layer = static_cast<v1::Layer>(k);
-      const ScriptClient::LayerTally& tally = client.tally(layer);
+                     .answer_count = received.answer_times_ms.size(),
+                     .answer_p50_ms = quantile(received.answer_times_ms, 0.5),
+                     .answer_p99_ms = quantile(received.answer_times_ms, 0.99)};
+    for (const auto& [layer, tally] : received.tallies) {
       if (tally.frame_count > 0)
         out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.state_count, tally.longest_gap_ever_s});
     }

@@ -90,10 +90,9 @@ std::vector<Four> layOutSpread(const DispersionLevel& level, const DispersionGri
   constexpr double kNone = std::numeric_limits<double>::infinity();
   const std::array is_periodic{layout.is_periodic_x, layout.is_periodic_z};
   std::vector<Four> out(level.stiffness.size());
-  const auto massOf = [&](std::size_t cell, int axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    const double mass = level.stiffness[cell][a];
-    return !has_walls && mass == 0.0 && grid.isAtSide(cell, axis) && !is_periodic[a] ? kNone : mass;
+  const auto massOf = [&](std::size_t cell, std::size_t axis) {
+    const double mass = level.stiffness[cell][axis];
+    return !has_walls && mass == 0.0 && grid.isAtSide(cell, axis) && !is_periodic[axis] ? kNone : mass;
   };
   for (int z = 0; z < grid.nz; ++z) {
     for (int x = 0; x < grid.nx; ++x) {

@@ -43,10 +43,9 @@ class Laplacian {
  public:
   explicit Laplacian(const DispersionGrid& grid) : wet_(grid.wet) {
     for (std::size_t i = 0; i < wet_.size(); ++i) {
-      for (int axis = 0; axis < 2; ++axis) {
-        const auto a = static_cast<std::size_t>(axis);
-        if (grid.open[i][a] > 0.0)
-          faces_.push_back({i, grid.behind(i, axis), a, grid.open[i][a] / grid.resistance_pm[i][a]});
+      for (std::size_t axis = 0; axis < 2; ++axis) {
+        if (grid.open[i][axis] > 0.0)
+          faces_.push_back({i, grid.behind(i, axis), axis, grid.open[i][axis] / grid.resistance_pm[i][axis]});
       }
     }
   }
@@ -197,10 +196,9 @@ struct FaceBetween {
   double sign;
 };
 std::optional<FaceBetween> faceBetween(const DispersionGrid& grid, std::size_t from, std::size_t to) {
-  for (int axis = 0; axis < 2; ++axis) {
-    const auto a = static_cast<std::size_t>(axis);
-    if (grid.behind(from, axis) == to && grid.open[from][a] > 0.0) return FaceBetween{from, a, 1.0};
-    if (grid.behind(to, axis) == from && grid.open[to][a] > 0.0) return FaceBetween{to, a, -1.0};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    if (grid.behind(from, axis) == to && grid.open[from][axis] > 0.0) return FaceBetween{from, axis, 1.0};
+    if (grid.behind(to, axis) == from && grid.open[to][axis] > 0.0) return FaceBetween{to, axis, -1.0};
   }
   return {};
 }
@@ -229,8 +227,8 @@ Motion coarser(const DispersionGrid& fine, const DispersionGrid& coarse, const C
   for (std::size_t i = 0; i < owner.size(); ++i) {
     if (!owner[i]) continue;
     out.level[*owner[i]] += fine.wet[i] * motion.level[i] / (4 * coarse.wet[*owner[i]]);
-    for (int axis = 0; axis < 2; ++axis) {
-      const double flux = motion.flux[i][static_cast<std::size_t>(axis)] / 2;
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+      const double flux = motion.flux[i][axis] / 2;
       const auto& behind = owner[fine.behind(i, axis)];
       if (flux != 0.0 && behind && behind != owner[i]) addFlux(coarse, *owner[i], *behind, flux, out.flux);
     }
@@ -264,7 +262,7 @@ void fit(DispersionGrid& grid, const std::vector<Motion>& motions, double width)
     Sums out;
     for (const Motion& motion : motions) {
       const double flux = motion.flux[i][axis];
-      const double slope = (motion.level[grid.behind(i, static_cast<int>(axis))] - motion.level[i]) / width;
+      const double slope = (motion.level[grid.behind(i, axis)] - motion.level[i]) / width;
       constexpr double kAtLeast = 0.3;  // motions that are short for this grid
       out.measured += slope * flux / std::max(kAtLeast, 1 - kAlongShare * motion.k_squared * width * width / 12);
       out.mean += grid.resistance_pm[i][axis] / grid.open[i][axis] * flux * flux;
@@ -289,7 +287,7 @@ void fit(DispersionGrid& grid, const std::vector<Motion>& motions, double width)
   const std::vector<bool> is_beside = besideWalls(grid);
   std::vector<std::array<double, 2>> fitted = grid.resistance_pm;
   forEachOpen([&](std::size_t i, std::size_t axis) {
-    if (!is_beside[i] && !is_beside[grid.behind(i, static_cast<int>(axis))]) return;
+    if (!is_beside[i] && !is_beside[grid.behind(i, axis)]) return;
     const Sums sums = sumsOf(i, axis);
     fitted[i][axis] *= std::clamp((sums.measured + weak) / (sums.mean + weak), kLeast, kMost);
   });

@@ -25,20 +25,20 @@ struct DispersionGrid {
 
   DispersionGrid(CellCounts counts, std::array<double, 2> extent);
   /// Number of a cell along an axis.
-  [[nodiscard]] int along(std::size_t cell, int axis) const {
+  [[nodiscard]] int along(std::size_t cell, std::size_t axis) const {
     return axis == 0 ? static_cast<int>(cell) % nx : static_cast<int>(cell) / nx;
   }
   /// Returns which share of a cell's width lies between the sides of the water.
-  [[nodiscard]] double shareInside(std::size_t cell, int axis) const {
-    return std::clamp(extent[static_cast<std::size_t>(axis)] - along(cell, axis), 0.0, 1.0);
+  [[nodiscard]] double shareInside(std::size_t cell, std::size_t axis) const {
+    return std::clamp(extent[axis] - along(cell, axis), 0.0, 1.0);
   }
   /// Returns whether the face that a cell owns leads out of the water, or is beyond it.
-  [[nodiscard]] bool isAtSide(std::size_t cell, int axis) const {
-    return along(cell, axis) + 1 >= extent[static_cast<std::size_t>(axis)];
+  [[nodiscard]] bool isAtSide(std::size_t cell, std::size_t axis) const {
+    return along(cell, axis) + 1 >= extent[axis];
   }
   /// Returns whether walls or ground close at least a part of a face.
-  [[nodiscard]] bool isObstructed(std::size_t cell, int axis) const {
-    return !isAtSide(cell, axis) && open[cell][static_cast<std::size_t>(axis)] < shareInside(cell, 1 - axis);
+  [[nodiscard]] bool isObstructed(std::size_t cell, std::size_t axis) const {
+    return !isAtSide(cell, axis) && open[cell][axis] < shareInside(cell, 1 - axis);
   }
   /// Returns whether any face is obstructed.
   [[nodiscard]] bool hasWalls() const {
@@ -50,9 +50,9 @@ struct DispersionGrid {
   [[nodiscard]] std::size_t at(int x, int z) const {
     return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
   }
-  [[nodiscard]] std::size_t behind(std::size_t cell, int axis) const {
-    const int x = static_cast<int>(cell) % nx;
-    const int z = static_cast<int>(cell) / nx;
+  [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
+    const int x = along(cell, 0);
+    const int z = along(cell, 1);
     return axis == 0 ? at(x + 1, z) : at(x, z + 1);
   }
 };

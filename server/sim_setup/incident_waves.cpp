@@ -14,7 +14,6 @@
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
-#include "distribution.h"
 #include "side_response.h"
 
 namespace spindrift::sim {
@@ -256,12 +255,10 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
       if (const auto bound = boundHarmonic(side, amplitude_m, omega, -pi / 2, depth_m))
         out.components_.push_back(*bound);
     }
-    if (out.is_simple_wave_) out.keepLevels(long_mps);
     if (const auto answered = side.at(omega)) out.absorbing_mps_ = answered->absorbing_mps;
   } else if (const auto* irregular = std::get_if<core::IrregularWaves>(&maker.waves)) {
     out.ramp_s_ = irregular->peak_period_s;
     if (irregular->significant_height_m > 0) out.components_ = irregularComponents(*irregular, scene.seed, side);
-    if (out.is_simple_wave_) out.keepLevels(long_mps);
     if (const auto answered = side.at(2 * pi / irregular->peak_period_s)) out.absorbing_mps_ = answered->absorbing_mps;
   } else if (const auto* solitary = std::get_if<core::SolitaryWave>(&maker.waves)) {
     if (solitary->height_m < 1e-6 * depth_m) return out;
@@ -282,22 +279,26 @@ IncidentWaves IncidentWaves::of(const core::WaveMaker& maker, const core::Scene&
       out.table_.values[k].flow_m2ps +=
           0.75 * long_mps / depth_m * levels.values[k].elevation_m * levels.values[k].elevation_m;
   }
-  return out;
-}
-
-void IncidentWaves::keepLevels(double long_mps) {
-  for (Component& each : components_) {
+  if (!out.is_simple_wave_) return out;
+  // The components' levels are those of the wave itself, as of any simple wave, whose flow follows from its level.
+  for (Component& each : out.components_) {
     each.edge_m = each.flow_m2ps / long_mps;
     each.edge_phase_rad = each.phase_rad;
   }
+  return out;
 }
 
-double IncidentWaves::envelope(double since_s) const {
-  const double up = pulse(since_s / ramp_s_);
-  return duration_s_ > 0 ? up * (1 - pulse((since_s - duration_s_) / ramp_s_)) : up;
-}
-
-Incident IncidentWaves::ofComponents(double since_s) const {
+Incident IncidentWaves::linearAt(double since_s) const {
+  if (components_.empty()) {
+    const double place = (since_s - table_.begin_s) / table_.step_s;
+    if (!(place >= 0.0) || !(place < static_cast<double>(table_.values.size()) - 1)) return {};
+    const auto k = static_cast<std::size_t>(place);
+    const double share = place - static_cast<double>(k);
+    const Incident& a = table_.values[k];
+    const Incident& b = table_.values[k + 1];
+    return {.elevation_m = std::lerp(a.elevation_m, b.elevation_m, share),
+            .flow_m2ps = std::lerp(a.flow_m2ps, b.flow_m2ps, share)};
+  }
   Incident out;
   if (since_s <= 0) return out;
   for (const Component& each : components_) {
@@ -305,29 +306,19 @@ Incident IncidentWaves::ofComponents(double since_s) const {
     out.elevation_m += each.edge_m * std::cos(turn + each.edge_phase_rad);
     out.flow_m2ps += each.flow_m2ps * std::cos(turn + each.phase_rad);
   }
-  const double share = envelope(since_s);
+  double share = pulse(since_s / ramp_s_);
+  if (duration_s_ > 0) share *= 1 - pulse((since_s - duration_s_) / ramp_s_);
   return {.elevation_m = share * out.elevation_m, .flow_m2ps = share * out.flow_m2ps};
 }
 
-Incident IncidentWaves::ofTable(double since_s) const {
-  const double place = (since_s - table_.begin_s) / table_.step_s;
-  if (!(place >= 0.0) || !(place < static_cast<double>(table_.values.size()) - 1)) return {};
-  const auto k = static_cast<std::size_t>(place);
-  const double share = place - static_cast<double>(k);
-  const Incident& a = table_.values[k];
-  const Incident& b = table_.values[k + 1];
-  return {.elevation_m = std::lerp(a.elevation_m, b.elevation_m, share),
-          .flow_m2ps = std::lerp(a.flow_m2ps, b.flow_m2ps, share)};
-}
-
 Incident IncidentWaves::at(double time_s) const {
-  Incident out = components_.empty() ? ofTable(time_s - begin_s_) : ofComponents(time_s - begin_s_);
+  Incident out = linearAt(time_s - begin_s_);
   if (!is_simple_wave_) return out;
   out.flow_m2ps = simpleFlow(gravity_mps2_, depth_m_, out.elevation_m);
   // The centres of the cells are half a cell inside, and a maker sees their level half a step later, less half of its
   // own part (side_response.h).
   const double later_s = time_s - begin_s_ + seen_later_s_;
-  const double inside_m = components_.empty() ? ofTable(later_s).elevation_m : ofComponents(later_s).elevation_m;
+  const double inside_m = linearAt(later_s).elevation_m;
   out.elevation_m = inside_m - own_part_spm_ * out.flow_m2ps;
   return out;
 }

@@ -191,21 +191,22 @@ double pressureOf(core::EquationOfState equation, double stiffness_m2ps2, double
   return stiffness_m2ps2 * rho_0 / 7 * (std::pow(rho / rho_0, 7) - 1);
 }
 
-std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
-  const double s = water.spacing_m;
-  const double H = water.support_radius_m;
+std::vector<double> restingLayers(const core::ParticleScene& water, const ParticleLayout& layout,
+                                  double stiffness_m2ps2, double gravity_mps2, int floor_points) {
+  const double s = layout.spacing_m;
+  const double H = layout.support_radius_m;
   const KernelSet set = water.kernel_set;
-  const auto n = static_cast<std::size_t>(layers_count);
+  const auto n = std::size_t{layout.layers_count};
   std::vector<double> y(n);
   for (std::size_t k = 0; k < n; ++k) y[k] = (static_cast<double>(k) + 0.5) * s;
-  if (water.gravity_mps2 <= 0) return y;  // nothing presses on the lattice
+  if (gravity_mps2 <= 0) return y;  // nothing presses on the lattice
   constexpr int kMaxIterations = 20'000;
   constexpr double kVelocityKeep = 0.98;  // damps the fall within a few dozen steps
   constexpr double kToleranceOfGravity = 1e-3;
-  const double dt_s = 0.1 * H / std::sqrt(std::max(water.stiffness_m2ps2, water.gravity_mps2 * H));
+  const double dt_s = 0.1 * H / std::sqrt(std::max(stiffness_m2ps2, gravity_mps2 * H));
   // Contribution of a whole layer at the height difference dy: summed over its particles once, then read from a table.
   const std::vector<double> lateral = lateralSquares(s, layersWithin(s, H));
-  const std::vector<double> floor_lateral = lateralSquares(s, water.floor_points / 2);
+  const std::vector<double> floor_lateral = lateralSquares(s, floor_points / 2);
   const HeightTable density_of(H, lateral, [&](double r, double) { return densityKernel(set, r, H); });
   const HeightTable push_of(H, lateral,
                             [&](double r, double dy) { return r > 0 ? pressureSlope(set, r, H) * dy / r : 0.0; });
@@ -215,30 +216,30 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
     return r > 0 ? cubicNorm(H) / H * cubicSlope(r / H) * dy / r : 0.0;
   });
   // The floor's density at a height, and minus its slope.
-  const bool is_flat = water.floor_points == 0;
+  const bool is_flat = floor_points == 0;
   const auto floor_density_of = [&](double height_m) {
-    if (!is_flat) return water.virtual_mass_kg * lattice_density_of(height_m + kVirtualDepthRatio * s);
-    const double u = std::max(1 - height_m / water.flat_floor.reach_m, 0.0);
-    return water.rest_density_kgpm3 * water.flat_floor.share * u * u;
+    if (!is_flat) return layout.virtual_mass_kg * lattice_density_of(height_m + kVirtualDepthRatio * s);
+    const double u = std::max(1 - height_m / layout.wall_reach_m, 0.0);
+    return water.rest_density_kgpm3 * layout.wall_share * u * u;
   };
   const auto floor_push_of = [&](double height_m) {
-    if (!is_flat) return water.virtual_mass_kg * lattice_push_of(height_m + kVirtualDepthRatio * s);
-    const double u = std::max(1 - height_m / water.flat_floor.reach_m, 0.0);
-    return water.rest_density_kgpm3 * water.flat_floor.share * 2 * u / water.flat_floor.reach_m;
+    if (!is_flat) return layout.virtual_mass_kg * lattice_push_of(height_m + kVirtualDepthRatio * s);
+    const double u = std::max(1 - height_m / layout.wall_reach_m, 0.0);
+    return water.rest_density_kgpm3 * layout.wall_share * 2 * u / layout.wall_reach_m;
   };
 
   std::vector<double> v(n, 0.0), pressure(n), density(n);
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     for (std::size_t k = 0; k < n; ++k) {
       double rho = floor_density_of(y[k]);
-      for (std::size_t j = 0; j < n; ++j) rho += water.mass_kg * density_of(std::abs(y[k] - y[j]));
+      for (std::size_t j = 0; j < n; ++j) rho += layout.mass_kg * density_of(std::abs(y[k] - y[j]));
       density[k] = rho;
-      pressure[k] = pressureOf(water.equation_of_state, water.stiffness_m2ps2, water.rest_density_kgpm3, rho);
+      pressure[k] = pressureOf(water.equation_of_state, stiffness_m2ps2, water.rest_density_kgpm3, rho);
       if (!water.cohesion) pressure[k] = std::max(pressure[k], 0.0);
     }
     double worst = 0.0;
     for (std::size_t k = 0; k < n; ++k) {
-      double a = -water.gravity_mps2;
+      double a = -gravity_mps2;
       const double own = pressure[k] / (density[k] * density[k]);
       for (std::size_t j = 0; j < n; ++j) {
         const double dy = y[k] - y[j];
@@ -247,14 +248,14 @@ std::vector<double> restingLayers(const RestingWater& water, int layers_count) {
         const double pair = water.pressure_force == core::PressureForce::kMean
                                 ? (pressure[k] + pressure[j]) / (2 * density[k] * density[j])
                                 : own + pressure[j] / (density[j] * density[j]);
-        a += water.mass_kg * pair * std::copysign(push, dy);
+        a += layout.mass_kg * pair * std::copysign(push, dy);
       }
       a += std::max(own, 0.0) * floor_push_of(y[k]);
       worst = std::max(worst, std::abs(a));
       v[k] = kVelocityKeep * v[k] + dt_s * a;
     }
     for (std::size_t k = 0; k < n; ++k) y[k] = std::max(y[k] + dt_s * v[k], kFloorGapRatio * s);
-    if (worst <= kToleranceOfGravity * water.gravity_mps2) break;
+    if (worst <= kToleranceOfGravity * gravity_mps2) break;
   }
   return y;
 }

@@ -158,7 +158,6 @@ core::Result<void> checkVerticalPeriod(const core::Scene& scene) {
 
 }  // namespace
 
-/// k of the equation of state, for which the stress of settled water is c0^2 (rho - rho0).
 double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
   const double lattice_ratio =
       latticeStressRatio(p.kernel_set, layout.spacing_m, layout.support_radius_m, p.rest_density_kgpm3, layout.mass_kg);
@@ -208,21 +207,13 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   // Position-based water has no stiffness; its layers rest like those of water that is compressed by 1 %.
   const bool is_position_based = p.solver == core::PressureSolver::kPositionBased;
   const double stiffness = is_position_based ? 100 * scene.gravity_mps2 * s * out.layers_count : stiffnessOf(p, out);
-  out.layer_heights_m =
-      restingLayers({.kernel_set = p.kernel_set,
-                     .spacing_m = s,
-                     .support_radius_m = H,
-                     .rest_density_kgpm3 = p.rest_density_kgpm3,
-                     .stiffness_m2ps2 = stiffness,
-                     .gravity_mps2 = scene.gravity_mps2,
-                     .mass_kg = out.mass_kg,
-                     .virtual_mass_kg = out.virtual_mass_kg,
-                     .floor_points = floor_points,
-                     .flat_floor = wall,
-                     .equation_of_state = is_position_based ? core::EquationOfState::kLinear : p.equation_of_state,
-                     .pressure_force = is_position_based ? core::PressureForce::kConserving : p.pressure_force,
-                     .cohesion = p.cohesion && !is_position_based},
-                    static_cast<int>(out.layers_count));
+  core::ParticleScene resting = p;
+  if (is_position_based) {
+    resting.equation_of_state = core::EquationOfState::kLinear;
+    resting.pressure_force = core::PressureForce::kConserving;
+    resting.cohesion = false;
+  }
+  out.layer_heights_m = restingLayers(resting, out, stiffness, scene.gravity_mps2, floor_points);
   if (p.periodic_y && out.layers_count * s < 2 * H) {
     return invalid(fmt::format(
         "particles.layers_count: {} layers of {:.3g} m are less than two support radii of {:.3g} m, and a particle "

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
@@ -44,49 +43,36 @@ struct Parabola {
   }
 };
 
-/// Values of a line of cells, with neighbours that are absent where they are dry or beyond a side.
-class Line {
- public:
-  Line(const double* mean, const double* share, std::int64_t count, bool is_periodic)
-      : mean_(mean), share_(share), count_(count), is_periodic_(is_periodic) {}
-
-  Parabola parabola(std::int64_t i) const {
-    const double v = mean_[i];
-    double left = edge(i - 1), right = edge(i);
-    if (!has(i - 1)) left = v;
-    if (!has(i + 1)) right = v;
-    if ((right - v) * (v - left) <= 0) return {v, 0.0, 0.0};
-    const double rise = right - left;
-    const double bulge = 6 * (v - 0.5 * (left + right));
-    if (rise * bulge > rise * rise) {
-      left = 3 * v - 2 * right;
-    } else if (-rise * rise > rise * bulge) {
-      right = 3 * v - 2 * left;
-    }
-    return {left, right - left, 6 * (v - 0.5 * (left + right))};
-  }
-
- private:
-  bool has(std::int64_t i) const {
-    if (!is_periodic_ && (i < 0 || i >= count_)) return false;
-    return share_[wrapped(i)] > kNoShare;
-  }
-  double at(std::int64_t i) const { return mean_[wrapped(i)]; }
-  std::size_t wrapped(std::int64_t i) const { return static_cast<std::size_t>((i % count_ + count_) % count_); }
-  /// Value at the edge between cells i and i + 1, both wet.
-  double edge(std::int64_t i) const {
-    if (!has(i) || !has(i + 1)) return 0.0;
-    const double a = at(i), b = at(i + 1);
-    if (!has(i - 1) || !has(i + 2)) return 0.5 * (a + b);
-    const double wanted = (7 * (a + b) - at(i - 1) - at(i + 2)) / 12;
+/// The parabola in cell i of a line of cells; neighbours are absent where they are dry or beyond a side.
+Parabola parabolaIn(const double* mean, const double* share, std::int64_t count, bool is_periodic, std::int64_t i) {
+  const auto wrapped = [&](std::int64_t k) { return static_cast<std::size_t>((k % count + count) % count); };
+  const auto at = [&](std::int64_t k) { return mean[wrapped(k)]; };
+  const auto has = [&](std::int64_t k) {
+    if (!is_periodic && (k < 0 || k >= count)) return false;
+    return share[wrapped(k)] > kNoShare;
+  };
+  /// Value at the edge between cells k and k + 1, both wet.
+  const auto edge = [&](std::int64_t k) {
+    if (!has(k) || !has(k + 1)) return 0.0;
+    const double a = at(k), b = at(k + 1);
+    if (!has(k - 1) || !has(k + 2)) return 0.5 * (a + b);
+    const double wanted = (7 * (a + b) - at(k - 1) - at(k + 2)) / 12;
     return std::clamp(wanted, std::min(a, b), std::max(a, b));
+  };
+  const double v = mean[i];
+  double left = edge(i - 1), right = edge(i);
+  if (!has(i - 1)) left = v;
+  if (!has(i + 1)) right = v;
+  if ((right - v) * (v - left) <= 0) return {v, 0.0, 0.0};
+  const double rise = right - left;
+  const double bulge = 6 * (v - 0.5 * (left + right));
+  if (rise * bulge > rise * rise) {
+    left = 3 * v - 2 * right;
+  } else if (-rise * rise > rise * bulge) {
+    right = 3 * v - 2 * left;
   }
-
-  const double* mean_;
-  const double* share_;
-  std::int64_t count_;
-  bool is_periodic_;
-};
+  return {left, right - left, 6 * (v - 0.5 * (left + right))};
+}
 
 /// Resamples along the fast axis and exchanges the axes, so that a second pass treats the other one.
 Field pass(const Field& from, std::uint32_t from_count, std::uint32_t to_count, SampleAxis axis) {
@@ -95,11 +81,12 @@ Field pass(const Field& from, std::uint32_t from_count, std::uint32_t to_count, 
   const double width = static_cast<double>(from_count) / to_count;
   Field out{std::vector<double>(line_count * to_count), std::vector<double>(line_count * to_count)};
   std::vector<Parabola> parabolas(from_count);
+  const bool is_joined = axis.is_periodic || axis.shift_cells != 0.0;
   for (std::size_t z = 0; z < line_count; ++z) {
     const double* const mean = from.mean.data() + z * from_count;
     const double* const share = from.share.data() + z * from_count;
-    const Line line(mean, share, from_count, axis.is_periodic || axis.shift_cells != 0.0);
-    for (std::uint32_t i = 0; i < from_count; ++i) parabolas[i] = share[i] > kNoShare ? line.parabola(i) : Parabola{};
+    for (std::uint32_t i = 0; i < from_count; ++i)
+      parabolas[i] = share[i] > kNoShare ? parabolaIn(mean, share, from_count, is_joined, i) : Parabola{};
     for (std::uint32_t k = 0; k < to_count; ++k) {
       double held = 0.0, wet = 0.0;
       for (const Overlap& part : overlaps[k]) {

@@ -31,9 +31,16 @@ bool disperses(const core::Scene& scene) {
   return scene.wave && scene.wave->dispersion == core::Dispersion::kAiry;
 }
 
+std::uint32_t sidesWith(const core::WaveScene& wave, WaveBoundary boundary) {
+  std::uint32_t bits = 0;
+  for (const WaterSide& each : sidesOf(wave)) {
+    if (each.boundary == boundary) bits |= each.bit;
+  }
+  return bits;
+}
+
 bool isOpen(const core::Scene& scene) {
-  return std::ranges::any_of(sidesOf(*scene.wave),
-                             [](const WaterSide& each) { return each.boundary == WaveBoundary::kAbsorb; });
+  return sidesWith(*scene.wave, WaveBoundary::kAbsorb) != 0;
 }
 
 bool hasMakers(const core::Scene& scene) {
@@ -41,16 +48,9 @@ bool hasMakers(const core::Scene& scene) {
 }
 
 std::uint32_t makerBit(core::Side side) {
-  switch (side) {
-    case core::Side::kMinusX:
-      return MINUS_X_BIT;
-    case core::Side::kMinusZ:
-      return MINUS_Z_BIT;
-    case core::Side::kPlusZ:
-      return PLUS_Z_BIT;
-    default:
-      return PLUS_X_BIT;
-  }
+  const auto sides = sidesOf({});
+  const auto found = std::ranges::find(sides, side, &WaterSide::side);
+  return found != sides.end() ? found->bit : PLUS_X_BIT;
 }
 
 std::uint32_t makerBits(const core::Scene& scene) {

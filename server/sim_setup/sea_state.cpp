@@ -6,8 +6,6 @@
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
 
-#include "distribution.h"
-
 namespace spindrift::sim {
 namespace {
 
@@ -26,28 +24,17 @@ constexpr double kPeakEnhancement = 3.3;
 constexpr double kDevelopedFetch = 15625.0;
 constexpr double kSmallestVariance_m2 = 1e-12;
 
-/// Sides of the water by what waves do there. Periodic sides are in neither set.
-struct Sides {
-  std::uint32_t absorbing = 0;
-  std::uint32_t closed = 0;
-
-  explicit Sides(const core::WaveScene& wave) {
-    for (const WaterSide& each : sidesOf(wave)) {
-      if (each.boundary == core::WaveBoundary::kAbsorb) absorbing |= each.bit;
-      if (each.boundary == core::WaveBoundary::kReflect) closed |= each.bit;
-    }
-  }
-
-  /// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from.
-  /// If all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
-  [[nodiscard]] std::uint32_t of(double direction_x, double direction_z) const {
-    std::uint32_t from = 0;
-    if (direction_x != 0.0) from |= direction_x > 0 ? MINUS_X_BIT : PLUS_X_BIT;
-    if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
-    if ((from & absorbing) == 0) return 0;
-    return (from & closed) == 0 ? absorbing : from & absorbing;
-  }
-};
+/// Returns the sides in whose layers a wave of this direction is present. It enters at the sides that it comes from. If
+/// all of those are open it fills the whole water, so the layers of the other sides let it pass, too.
+std::uint32_t sidesOfWave(const core::WaveScene& water, double direction_x, double direction_z) {
+  const std::uint32_t absorbing = sidesWith(water, core::WaveBoundary::kAbsorb);
+  const std::uint32_t closed = sidesWith(water, core::WaveBoundary::kReflect);
+  std::uint32_t from = 0;
+  if (direction_x != 0.0) from |= direction_x > 0 ? MINUS_X_BIT : PLUS_X_BIT;
+  if (direction_z != 0.0) from |= direction_z > 0 ? MINUS_Z_BIT : PLUS_Z_BIT;
+  if ((from & absorbing) == 0) return 0;
+  return (from & closed) == 0 ? absorbing : from & absorbing;
+}
 
 /// Returns the numbers below kSeaWaveCount in the order of the multiples of the golden ratio (modulo 1, from `begin`):
 /// numbers that follow each other are far apart, and every part of the order has small and large ones.
@@ -95,6 +82,22 @@ double waveNumber(double omega_radps, double gravity_mps2, double depth_m) {
 double jonswapPeak(double ratio, double enhancement) {
   const double width = ratio <= 1 ? 0.07 : 0.09;
   return std::pow(enhancement, std::exp(-0.5 * std::pow((ratio - 1) / width, 2)));
+}
+
+Distribution::Distribution(double from, double to, const std::function<double(double)>& density) : from_(from) {
+  constexpr int kSteps = 4000;
+  step_ = (to - from) / kSteps;
+  sums_.push_back(0.0);
+  for (int k = 0; k < kSteps; ++k) sums_.push_back(sums_.back() + density(from + (k + 0.5) * step_) * step_);
+}
+
+double Distribution::quantile(double share) const {
+  const double wanted = std::clamp(share, 0.0, 1.0) * integral();
+  const auto above = std::ranges::upper_bound(sums_, wanted);
+  if (above == sums_.end()) return from_ + static_cast<double>(sums_.size() - 1) * step_;
+  const auto k = above - sums_.begin() - 1;
+  const double low = sums_[static_cast<std::size_t>(k)];
+  return from_ + (static_cast<double>(k) + (wanted - low) / (*above - low)) * step_;
 }
 
 WindSeaSpectrum WindSeaSpectrum::of(double wind_speed_mps, double fetch_m, double gravity_mps2, double depth_m) {
@@ -161,7 +164,6 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
 
   const Distribution spread(-pi / 2, pi / 2,
                             [](double angle) { return std::pow(std::cos(angle / 2), 2 * kSpreadExponent); });
-  const Sides sides(wave);
   core::SplitMix64 random(scene.seed * 0x9fb21c651e98df25ull + 1);
   const std::vector<int> place = mixedOrder(random.unit());
   for (int n = 0; n < kSeaWaveCount; ++n) {
@@ -186,7 +188,7 @@ SeaState seaState(const core::Scene& scene, const WaveLayout& layout) {
     each.omega_radps = waveFrequency(k, g, d);
     if (!oscillates(each.omega_radps, wave)) continue;
     each.decay_pm = 0.5 * wave.damping_per_s / groupSpeed(k, g, d);
-    each.sides = sides.of(each.kx_radpm, each.kz_radpm);
+    each.sides = sidesOfWave(wave, each.kx_radpm, each.kz_radpm);
     out.waves.push_back(each);
   }
   return out;

@@ -1,4 +1,9 @@
-// The bytes of snapshots and logs. All numbers are little-endian.
+// The names and the bytes of snapshots and logs.
+//
+// Names: NNNNNNNNNNNN.snapshot and NNNNNNNNNNNN.log, twelve digits; NAME.tmp while a file is written; NAME.damaged,
+// NAME.damaged.2, ... for what was set aside.
+//
+// Bytes, all numbers little-endian:
 //
 //   snapshot: start, with the magic "spinsnp2" | payload length u64 | CRC-32C of the payload u32 | room | payload
 //   log:      start, with the magic "spinlog2" | room | records
@@ -21,6 +26,17 @@
 #include <spindrift/core/bytes.h>
 
 namespace spindrift::state {
+
+enum class FileKind { kSnapshot, kLog, kTemporary, kSetAside, kForeign };
+
+struct FileName {
+  FileKind kind = FileKind::kForeign;
+  std::uint64_t generation = 0;  ///< of a snapshot or log; from 1
+};
+
+FileName parseFileName(std::string_view name);
+std::string snapshotName(std::uint64_t generation);
+std::string logName(std::uint64_t generation);
 
 inline constexpr std::size_t kMagicBytes = 8;
 inline constexpr std::size_t kStartBytes = 32;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
-#include <limits>
 #include <system_error>
 
 #include <fcntl.h>
@@ -209,9 +208,8 @@ core::Result<fs::path> nameToSetAside(const fs::path& path) {
     std::error_code error;
     if (fs::symlink_status(name, error).type() == fs::file_type::not_found) return name;
   }
-  return Error{ErrorCode::kUnavailable,
-               fmt::format("there are {} files {}.damaged already: look at them and remove them", kSetAsideMaxCount,
-                           path.string())};
+  return core::unavailable(fmt::format("there are {} files {}.damaged already: look at them and remove them",
+                                       kSetAsideMaxCount, path.string()));
 }
 
 core::Result<fs::path> setAside(const fs::path& path) {

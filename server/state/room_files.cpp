@@ -10,7 +10,6 @@
 #include <spindrift/state/room_files.h>
 
 #include "file_format.h"
-#include "file_names.h"
 #include "posix_file.h"
 #include "room_recovery.h"
 
@@ -67,8 +66,8 @@ core::Result<RoomFiles::Recovered> RoomFiles::recover(std::uint64_t before) try 
   is_recovered_ = true;
   return std::move(found->content);
 } catch (const std::bad_alloc&) {
-  return Error{ErrorCode::kUnavailable, "there is not enough memory to read the files in " + folder_.string() +
-                                            ": snapshots and logs take as much as they have bytes"};
+  return core::unavailable("there is not enough memory to read the files in " + folder_.string() +
+                           ": snapshots and logs take as much as they have bytes");
 }
 
 core::Result<StatePoint> RoomFiles::beginGeneration() {
@@ -128,9 +127,8 @@ core::Result<void> RoomFiles::append(core::ByteView record) {
   const auto header = recordHeader(next_number_, record);
   if (log_bytes_ + header.size() + record.size() > options_.log_max_bytes) {
     is_full_ = true;
-    return Error{ErrorCode::kUnavailable,
-                 fmt::format("the log {} is full at {} of at most {} bytes: a snapshot is due", log_->path().string(),
-                             log_bytes_.load(), options_.log_max_bytes)};
+    return core::unavailable(fmt::format("the log {} is full at {} of at most {} bytes: a snapshot is due",
+                                         log_->path().string(), log_bytes_.load(), options_.log_max_bytes));
   }
   auto written = log_->writeAt(log_bytes_, header, record);
   if (!written) {
@@ -169,10 +167,10 @@ core::Result<void> RoomFiles::flush() {
     return forced;
   }
   if (needed_snapshot_generation_ > snapshot_generation_) {
-    return Error{ErrorCode::kUnavailable,
-                 fmt::format("the disk refused records of {} before: check the disk; a snapshot of generation {} makes "
-                             "up for it",
-                             folder_.string(), needed_snapshot_generation_.load())};
+    return core::unavailable(
+        fmt::format("the disk refused records of {} before: check the disk; a snapshot of generation {} makes "
+                    "up for it",
+                    folder_.string(), needed_snapshot_generation_.load()));
   }
   return {};
 }

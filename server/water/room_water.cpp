@@ -3,13 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/core/text.h>
-#include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/sim_setup/ground.h>
-#include <spindrift/water/recorded_hash.h>
 #include <spindrift/water/room_water.h>
 #include <spindrift/water/water_state.h>
 
@@ -158,7 +155,7 @@ std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {
 
 core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
   const sim::CarriedState carried = sim().carriedState();
-  if (auto why = failure()) return core::Error{core::ErrorCode::kUnavailable, *why};
+  if (auto why = failure()) return core::unavailable(*why);
   // Values may have changed since the building began.
   v1::Scene wanted = next->scene();
   scene::keepParameters(scene(), wanted);

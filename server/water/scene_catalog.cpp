@@ -32,11 +32,7 @@ SceneCatalog::SceneCatalog(fs::path folder, std::optional<v1::Fidelity> fidelity
 }
 
 void SceneCatalog::add(const std::string& name, const fs::path& file) {
-  if (!scene::isSceneName(name)) return;
-  if (!has(name)) {
-    if (names_.size() == kCatalogMaxCount) return;
-    names_.insert(std::ranges::upper_bound(names_, name), name);
-  }
+  if (!scene::isSceneName(name) || (!has(name) && files_.size() == kCatalogMaxCount)) return;
   fs::path& known = files_[name];
   std::error_code ignored;
   if (!fs::equivalent(known, file, ignored)) {  // another water: nothing was measured of it
@@ -52,12 +48,14 @@ const v1::FidelityErrorsOfScene* SceneCatalog::errorsOf(const std::string& name)
   return found == errors_.scenes().end() ? nullptr : &*found;
 }
 
-bool SceneCatalog::has(const std::string& name) const {
-  return std::ranges::binary_search(names_, name);
+std::vector<std::string> SceneCatalog::names() const {
+  std::vector<std::string> out;
+  for (const auto& [name, file] : files_) out.push_back(name);
+  return out;
 }
 
 core::Result<v1::Scene> SceneCatalog::load(const std::string& name, std::optional<v1::Fidelity> fidelity) const {
-  if (!has(name)) return core::Error{core::ErrorCode::kUnavailable, "scene '" + name + "' is not listed"};
+  if (!has(name)) return core::unavailable("scene '" + name + "' is not listed");
   auto scene = scene::loadSceneFile(files_.at(name), fidelity ? fidelity : fidelity_);
   if (scene) scene->set_name(name);
   return scene;

@@ -9,7 +9,7 @@ namespace {
 constexpr int kBuildNiceness = 10;
 
 core::Error shutDown() {
-  return {core::ErrorCode::kUnavailable, "the server shuts down"};
+  return core::unavailable("the server shuts down");
 }
 
 }  // namespace

@@ -2,9 +2,12 @@
 #include <bit>
 #include <cstring>
 #include <optional>
+#include <span>
 #include <tuple>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include <spindrift/scene/scene_rules.h>
 #include <spindrift/water/water_state.h>
@@ -127,6 +130,27 @@ std::optional<sim::ParticleLayout> toLayout(const v1::ParticleLayout& message) {
   return out;
 }
 
+sim::StrokeTool toTool(v1::StrokeTool tool) {
+  if (tool == v1::STROKE_TOOL_RAIN) return sim::StrokeTool::kRain;
+  return tool == v1::STROKE_TOOL_CALM ? sim::StrokeTool::kCalm : sim::StrokeTool::kFinger;
+}
+
+std::uint64_t hashOfVersion0(const sim::StateCopy& state) {
+  std::uint64_t hash = 0xcbf29ce484222325ull;  // 64-bit FNV-1a over bytes
+  const auto add = [&](const auto& values) {
+    for (const std::byte b : std::as_bytes(std::span(values)))
+      hash = (hash ^ static_cast<std::uint64_t>(b)) * 0x100000001b3ull;
+  };
+  add(state.position);
+  add(state.velocity);
+  add(state.elevation_m);
+  add(state.flow_m2ps);
+  add(state.boats);
+  add(state.pool);
+  add(state.elevation_x_units);
+  return hash;
+}
+
 }  // namespace
 
 v1::Side toMessage(core::Side side) {
@@ -137,25 +161,11 @@ v1::Side toMessage(core::Side side) {
 }
 
 v1::StrokeTool toMessage(sim::StrokeTool tool) {
-  switch (tool) {
-    case sim::StrokeTool::kFinger:
-      return v1::STROKE_TOOL_FINGER;
-    case sim::StrokeTool::kRain:
-      return v1::STROKE_TOOL_RAIN;
-    case sim::StrokeTool::kCalm:
-      break;
+  for (const v1::StrokeTool one : {v1::STROKE_TOOL_RAIN, v1::STROKE_TOOL_CALM}) {
+    if (toTool(one) == tool) return one;
   }
-  return v1::STROKE_TOOL_CALM;
+  return v1::STROKE_TOOL_FINGER;
 }
-
-namespace {
-
-sim::StrokeTool toTool(v1::StrokeTool tool) {
-  if (tool == v1::STROKE_TOOL_RAIN) return sim::StrokeTool::kRain;
-  return tool == v1::STROKE_TOOL_CALM ? sim::StrokeTool::kCalm : sim::StrokeTool::kFinger;
-}
-
-}  // namespace
 
 sim::StrokePart toStrokePart(const v1::Stroke& stroke) {
   sim::StrokePart out{.ends = stroke.ends(), .tool = toTool(stroke.tool())};
@@ -242,6 +252,14 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   host.patch_x_m = message.patch_x_m();
   host.patch_z_m = message.patch_z_m();
   return out;
+}
+
+core::Result<std::uint64_t> recordedHash(sim::WaterSim& water, std::uint32_t version) {
+  if (version == 0) return hashOfVersion0(water.copyState());
+  if (version == kStateHashVersion) return water.stateHash();
+  return core::invalid(fmt::format(
+      "its state hashes are of version {}, and this program knows versions up to {}: use the program that wrote them",
+      version, kStateHashVersion));
 }
 
 }  // namespace spindrift::water

@@ -16,7 +16,7 @@
 #include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
 #include <spindrift/codec/stream.h>
-#include <spindrift/core/paths.h>
+#include <spindrift/core/files.h>
 #include <spindrift/gpu/context.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>

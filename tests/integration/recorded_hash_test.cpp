@@ -6,8 +6,8 @@
 
 #include <spindrift/history/replay.h>
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/water/recorded_hash.h>
 #include <spindrift/water/room_water.h>
+#include <spindrift/water/water_state.h>
 
 #include "commands.h"
 #include "temporary_folder.h"

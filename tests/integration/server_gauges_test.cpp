@@ -1,8 +1,7 @@
 // Gauges and the ground of a room, as clients, scripts and scrapers get them.
 #include <boost/json.hpp>
 
-#include <spindrift/script/script_file.h>
-#include <spindrift/script/script_runner.h>
+#include <spindrift/script/script.h>
 #include <spindrift/v1/api.pb.h>
 
 #include "server_fixture.h"

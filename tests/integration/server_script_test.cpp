@@ -1,6 +1,5 @@
 // Scripted clients against a live server: expectations that hold, and reports of those that do not.
-#include <spindrift/script/script_file.h>
-#include <spindrift/script/script_runner.h>
+#include <spindrift/script/script.h>
 
 #include "server_fixture.h"
 

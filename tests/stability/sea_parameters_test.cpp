@@ -15,6 +15,7 @@
 #include <vector>
 
 #include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/parameters.h>
 #include <spindrift/sim_setup/sea_state.h>
 
 #include "parameter_sweep.h"

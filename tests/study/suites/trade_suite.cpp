@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/codec/frame_encoder.h>
-#include <spindrift/core/paths.h>
+#include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/study/known_results.h>

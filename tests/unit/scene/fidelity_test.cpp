@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <spindrift/scene/fidelity.h>
+#include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>
 

@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <spindrift/state/folder_lock.h>
+#include <spindrift/state/folders.h>
 
 #include "temporary_folder.h"
 

@@ -2,7 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <spindrift/state/room_folders.h>
+#include <spindrift/state/folders.h>
 
 #include "temporary_folder.h"
 

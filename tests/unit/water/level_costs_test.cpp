@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/water/level_costs.h>
+#include <spindrift/water/tick_cost.h>
 
 #include "temporary_folder.h"
 
@@ -26,7 +26,7 @@ class LevelCostsOfAFolder : public testing::Test {
     const auto work = workAt(scenes, *now, present);
     EXPECT_TRUE(work) << work.error().message;
     TickCost cost;
-    cost.restart(tick_ms, work->per_tick);
+    cost.restart(tick_ms, *work);
     return LevelCosts(scenes, *now).predict(cost);
   }
 

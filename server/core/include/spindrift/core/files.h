@@ -1,4 +1,5 @@
-// Reading files that people name: with bounds, and errors that say what to do.
+// Reading files that people name: with bounds, and errors that say what to do. Finding those that the program ships
+// with: next to the program in a bundle, or in the source tree above a build tree.
 #pragma once
 
 #include <cstdio>
@@ -21,5 +22,15 @@ Result<FileStream> openFile(const std::filesystem::path& file, const std::string
 /// longer, which ends with `advice`, or UTF-16 or UTF-32.
 Result<std::string> readText(const std::filesystem::path& file, std::size_t max_bytes, const std::string& what,
                              const std::string& advice);
+
+/// Returns the shipped scene of that name ("harbor", "splash"), otherwise the file. kUnavailable names both paths.
+Result<std::filesystem::path> findScene(const std::string& given);
+
+/// Returns the folder of the built web client: share/spindrift/web above the program, or web-client/dist of the source
+/// tree. Empty when neither exists.
+std::filesystem::path findWebRoot();
+
+/// Returns the folder of the shipped scenes; empty when it does not exist.
+std::filesystem::path findSceneFolder();
 
 }  // namespace spindrift::core

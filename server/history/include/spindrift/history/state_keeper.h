@@ -13,7 +13,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/core/worker.h>
-#include <spindrift/state/folder_lock.h>
+#include <spindrift/state/folders.h>
 #include <spindrift/state/room_files.h>
 #include <spindrift/v1/kept_state.pb.h>
 

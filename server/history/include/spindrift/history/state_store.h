@@ -11,7 +11,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/core/worker.h>
 #include <spindrift/history/state_keeper.h>
-#include <spindrift/state/folder_lock.h>
+#include <spindrift/state/folders.h>
 #include <spindrift/state/room_files.h>
 
 namespace spindrift::history {

@@ -33,10 +33,6 @@ std::string fidelityName(v1::Fidelity fidelity);
 /// scales again.
 void applyFidelity(v1::Scene& scene);
 
-/// Gives `to`, the same scene at another level, the present values of the parameters that change while a room runs
-/// (`from`), except those that applyFidelity() chooses. Does not check the result.
-void keepParameters(const v1::Scene& from, v1::Scene& to);
-
 /// A file beside the scenes with their measured errors at the levels, which `./dev study --update` writes.
 inline constexpr const char* kFidelityErrorsFile = "fidelity_errors.txtpb";
 

@@ -2,6 +2,7 @@
 // options.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -31,6 +32,12 @@ inline void addRange(std::vector<FieldIssue>& issues, std::string path, std::str
 inline void addAbsent(std::vector<FieldIssue>& issues, std::string path, std::string message) {
   issues.push_back({v1::REJECT_REASON_ABSENT_PART, std::move(path), std::move(message)});
 }
+
+/// Calls `visit` for every field that is not a message, whether it is set or not, in the message and in the parts of it
+/// that are present: with its part, and with its path, in front of which stands `prefix`.
+using FieldVisitor = std::function<void(const google::protobuf::Message& part,
+                                        const google::protobuf::FieldDescriptor& field, const std::string& path)>;
+void forEachField(const google::protobuf::Message& message, const std::string& prefix, const FieldVisitor& visit);
 
 /// Returns the field's options; null if the field is not a number with a range.
 const v1::ParameterOptions* parameterOptions(const google::protobuf::FieldDescriptor& field);

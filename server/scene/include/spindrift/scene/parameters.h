@@ -25,6 +25,10 @@ std::optional<FieldIssue> checkParameter(const v1::Scene& scene, std::string_vie
 /// Sets the parameter. On error, returns it as checkParameter() does and leaves the scene unchanged.
 std::optional<FieldIssue> setParameter(v1::Scene& scene, std::string_view path, double value);
 
+/// Gives `to`, the same scene at another level of fidelity, the present values of the parameters that change while a
+/// room runs (`from`), except those that applyFidelity() chooses. Does not check the result.
+void keepParameters(const v1::Scene& from, v1::Scene& to);
+
 /// Returns one Markdown table of every number of a scene, including restart-only ones and those of events, for the
 /// reference documentation.
 std::string parameterReferenceMarkdown();

@@ -49,13 +49,9 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
 v1::Scene forClients(const v1::Scene& scene);
 
 /// Fills every field that was left out with its default, in the parts that are present (`stream` always is);
-/// UNSPECIFIED enums become their documented default, seed 0 becomes 1. Idempotent.
+/// UNSPECIFIED enums become their documented default, seed 0 becomes 1. The setting, which tells those who draw the
+/// water where it is, follows from its sides and parts if the scene names none. Idempotent.
 void fillDefaults(v1::Scene& scene);
-
-/// Returns where the water is, for those who draw it; the simulation does not depend on it: the scene's setting, or the
-/// one that follows from its sides and parts if it names none; never unspecified. Precondition: the defaults of the
-/// scene's numbers are filled in.
-v1::Setting settingOf(const v1::Scene& scene);
 
 /// Returns "open sea", ...
 std::string settingName(v1::Setting setting);

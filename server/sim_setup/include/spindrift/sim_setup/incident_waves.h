@@ -2,7 +2,6 @@
 // of the scene; docs/wave_makers.md has the equations.
 #pragma once
 
-#include <cstdint>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -41,11 +40,8 @@ class IncidentWaves {
   [[nodiscard]] double depth_m() const { return depth_m_; }
 
  private:
-  [[nodiscard]] Incident ofComponents(double since_s) const;
-  [[nodiscard]] Incident ofTable(double since_s) const;
-  /// Keeps the components' levels those of the wave itself, as of a simple wave, whose flow follows from its level.
-  void keepLevels(double long_mps);
-  [[nodiscard]] double envelope(double since_s) const;
+  /// Returns what components or table say.
+  [[nodiscard]] Incident linearAt(double since_s) const;
 
   double begin_s_ = 0.0, duration_s_ = 0.0, ramp_s_ = 0.0;
   double depth_m_ = 0.0, gravity_mps2_ = 0.0, absorbing_mps_ = 0.0;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <spindrift/core/scene.h>
+#include <spindrift/sim_setup/derive.h>
 
 namespace spindrift::sim {
 
@@ -69,27 +70,11 @@ double latticeStressRatio(core::KernelSet set, double s, double H, double rho_0,
 /// 20 layers at H = 2 s (`spindrift-study --suite accuracy`, hydrostatic column).
 double settledStressRatio(core::KernelSet set);
 
-/// Input of restingLayers().
-struct RestingWater {
-  core::KernelSet kernel_set = core::KernelSet::kWendlandC2;
-  double spacing_m = 0.0;
-  double support_radius_m = 0.0;
-  double rest_density_kgpm3 = 0.0;
-  double stiffness_m2ps2 = 0.0;
-  double gravity_mps2 = 0.0;
-  double mass_kg = 0.0;
-  double virtual_mass_kg = 0.0;
-  int floor_points = 0;  ///< of the virtual lattice under coupled water; 0 = a flat floor that supports like a wall
-  WallSupport flat_floor = {};
-  core::EquationOfState equation_of_state = core::EquationOfState::kLinear;
-  core::PressureForce pressure_force = core::PressureForce::kConserving;
-  bool cohesion = false;
-};
-
-/// Heights above the floor at which the layers of a square lattice rest: pressure, floor and gravity are in balance
-/// under the solver's own equations. A lattice with other heights settles and stirs the water for many
-/// seconds, because SPH underestimates the density near the free surface, so those layers carry nothing until they are
-/// closer.
-std::vector<double> restingLayers(const RestingWater& water, int layers_count);
+/// Heights above the floor at which the layers of a layout rest: pressure, floor and gravity are in balance under the
+/// solver's own equations. A lattice with other heights settles and stirs the water for many seconds, because SPH
+/// underestimates the density near the free surface, so those layers carry nothing until they are closer.
+/// `floor_points`: of the virtual lattice under coupled water; 0 = a flat floor that supports like a wall.
+std::vector<double> restingLayers(const core::ParticleScene& water, const ParticleLayout& layout,
+                                  double stiffness_m2ps2, double gravity_mps2, int floor_points);
 
 }  // namespace spindrift::sim

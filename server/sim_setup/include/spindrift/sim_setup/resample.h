@@ -1,7 +1,6 @@
 // Moves a field from one grid to another one over the same rectangle, keeping its integral. Pure functions.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>

@@ -16,6 +16,8 @@ struct WaterSide {
 };
 /// Returns the sides in the order -x, +x, -z, +z.
 std::array<WaterSide, 4> sidesOf(const core::WaveScene& wave);
+/// Returns the bits of the sides that have this boundary.
+std::uint32_t sidesWith(const core::WaveScene& wave, core::WaveBoundary boundary);
 
 /// Returns whether shaders need tables: the bed or the sides differ from a flat basin with periodic sides, or with
 /// walls under the 5-point stencil.

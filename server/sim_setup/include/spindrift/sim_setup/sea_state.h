@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include <shared/sea_uniforms.h>
@@ -49,6 +50,20 @@ struct SeaState {
 /// Returns the peak enhancement of JONSWAP (Hasselmann et al. 1973) at a share of the peak's frequency: `enhancement`
 /// at 1, 1 far from it.
 [[nodiscard]] double jonswapPeak(double ratio, double enhancement);
+
+/// A density over an interval, such as a spectrum or a spread of directions: its integral and its quantiles.
+class Distribution {
+ public:
+  Distribution(double from, double to, const std::function<double(double)>& density);
+  [[nodiscard]] double integral() const { return sums_.back(); }
+  /// Returns the value below which a share of the integral lies. Precondition: the integral is positive.
+  [[nodiscard]] double quantile(double share) const;
+
+ private:
+  double from_;
+  double step_ = 0.0;
+  std::vector<double> sums_;
+};
 
 /// JONSWAP spectrum for a wind speed and a fetch (Hasselmann et al. 1973), reduced in shallow water as in the TMA
 /// spectrum (Bouws et al. 1985).

@@ -29,8 +29,9 @@ class SceneCatalog {
   /// not have, and when kCatalogMaxCount are listed.
   void add(const std::string& name, const std::filesystem::path& file);
 
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  [[nodiscard]] bool has(const std::string& name) const;
+  /// Returns the listed names, sorted.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool has(const std::string& name) const { return files_.contains(name); }
   /// Reads the file again, so that edits take effect; the scene gets the listed name. `fidelity` replaces the
   /// catalog's. Errors: kUnavailable for a name that is not listed, otherwise those of the loader.
   [[nodiscard]] core::Result<v1::Scene> load(const std::string& name,
@@ -41,8 +42,7 @@ class SceneCatalog {
 
  private:
   std::optional<v1::Fidelity> fidelity_;
-  std::vector<std::string> names_;  ///< sorted
-  std::map<std::string, std::filesystem::path> files_;
+  std::map<std::string, std::filesystem::path> files_;  ///< by name
   v1::FidelityErrors errors_;
 };
 

@@ -1,8 +1,14 @@
-// Measures the duration of a tick on this device and predicts it for a change.
+// Measures the duration of a tick on this device and predicts it for a change and for every fidelity level.
 #pragma once
 
+#include <vector>
+
+#include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
+#include <spindrift/v1/scene.pb.h>
+#include <spindrift/v1/wire.pb.h>
+#include <spindrift/water/scene_catalog.h>
 
 namespace spindrift::water {
 
@@ -17,6 +23,7 @@ inline constexpr double kSceneTickMax_ms = 250.0;
 struct TickWork {
   double particle_step_count = 0.0;  ///< particles times substeps times passes of the pressure solver
   double wave_step_count = 0.0;      ///< cells times wave steps
+  double tick_s = 0.0;
 };
 [[nodiscard]] TickWork workOf(const core::Scene& scene, const sim::Derived& derived);
 
@@ -46,6 +53,27 @@ class TickCost {
   /// the share of a tick that does not grow with the work.
   double most_ms_ = 0.0;
   TickWork most_work_;
+};
+
+/// Returns the scene `now`, with its present parameters, at another level. Errors: those of SceneCatalog::load().
+core::Result<v1::Scene> sceneAt(const SceneCatalog& scenes, const v1::Scene& now, v1::Fidelity level);
+/// Returns the work of that scene. Errors: those of sceneAt() and sim::derive().
+core::Result<TickWork> workAt(const SceneCatalog& scenes, const v1::Scene& now, v1::Fidelity level);
+
+/// The levels that a listed scene can take, with their work; none for other scenes. Immutable.
+class LevelCosts {
+ public:
+  LevelCosts() = default;
+  /// Reads and derives the scene at every level, which takes too long for the simulation thread.
+  LevelCosts(const SceneCatalog& scenes, const v1::Scene& now);
+
+  /// Returns the levels with the time that each takes, where the scene's ticks take what `cost` has measured.
+  [[nodiscard]] v1::FidelityLevels predict(const TickCost& cost) const;
+
+ private:
+  v1::Fidelity present_ = v1::FIDELITY_UNSPECIFIED;
+  v1::FidelityLevels levels_;    ///< without times
+  std::vector<TickWork> works_;  ///< of each of levels_
 };
 
 }  // namespace spindrift::water

@@ -11,7 +11,7 @@
 #include <spindrift/gpu/device.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/scene.pb.h>
-#include <spindrift/water/level_costs.h>
+#include <spindrift/water/tick_cost.h>
 
 namespace spindrift::water {
 

@@ -1,20 +1,36 @@
 #include <algorithm>
 #include <cerrno>
 #include <system_error>
+#include <utility>
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <spindrift/core/room_name.h>
 #include <spindrift/core/text.h>
-#include <spindrift/state/room_folders.h>
+#include <spindrift/state/folders.h>
 
-#include "file_names.h"
+#include "file_format.h"
 #include "posix_file.h"
 
 namespace spindrift::state {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kPidMaxBytes = 20;
+
+/// Returns "process 123" from the text of a lock file, "another process" if it has none.
+std::string holderOf(const core::Bytes& text) {
+  std::string digits;
+  for (const std::uint8_t byte : text) {
+    if (byte < '0' || byte > '9') break;
+    digits += static_cast<char>(byte);
+  }
+  return digits.empty() ? "another process" : "process " + digits;
+}
 
 /// The name of a room never begins with a dot.
 constexpr std::string_view kRemovedPrefix = ".removed.";
@@ -38,6 +54,27 @@ core::Result<void> removeTree(const fs::path& path) {
 }
 
 }  // namespace
+
+core::Result<FolderLock> lockFolder(const fs::path& folder) {
+  const auto made = makeFolder(folder);
+  if (!made) return made.error();
+  for (const fs::path& parent : *made) {
+    if (auto synced = syncFolder(parent); !synced) return synced.error();
+  }
+  auto file = File::open(folder / "lock", O_RDWR | O_CREAT);
+  if (!file) return file.error();
+  while (::flock(file->descriptor(), LOCK_EX | LOCK_NB) != 0) {
+    if (errno == EINTR) continue;
+    if (errno != EWOULDBLOCK) return systemError("lock", file->path(), errno);
+    const auto text = file->read(kPidMaxBytes);
+    return core::unavailable(fmt::format("the folder {} is in use by {}: end that server, or choose another folder",
+                                         folder.string(), holderOf(text ? *text : core::Bytes())));
+  }
+  const std::string pid = std::to_string(::getpid()) + "\n";
+  if (auto cut = file->resize(0); !cut) return cut.error();
+  if (auto written = file->writeAt(0, core::viewOf(pid)); !written) return written.error();
+  return FolderLock(std::make_shared<const File>(*std::move(file)));
+}
 
 core::Result<fs::path> roomFolder(const fs::path& folder, const std::string& name) {
   if (core::isRoomName(name)) return roomsOf(folder) / name;

@@ -1,14 +1,25 @@
-// Runs a script's steps one after another against a server and reports the results.
+// Scripts (proto/spindrift/v1/script.proto): read, checked as far as possible before a client connects, and run against
+// a server, one step after another.
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include <spindrift/core/result.h>
 #include <spindrift/net/client.h>
 #include <spindrift/v1/script.pb.h>
 
 namespace spindrift::script {
+
+inline constexpr int kScriptClientMaxCount = 256;
+inline constexpr int kScriptStepMaxCount = 10'000;
+
+/// Loads a script. Errors: kUnavailable for a file that cannot be read, kInvalidInput with `FILE:LINE:COLUMN: what` or
+/// `FILE: steps[3]: what`. The result has at least one client, and every step names one.
+core::Result<v1::Script> loadScript(const std::filesystem::path& file);
+core::Result<v1::Script> parseScript(const std::string& text, const std::string& label);
 
 struct StepReport {
   int index = 0;  ///< of the script's steps
