@@ -342,11 +342,7 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
           ? room->admit(command)
           : wire::CommandRejection{
                 .command_id = command.id(), .reason = v1::REJECT_REASON_BUSY, .field = "", .message = access_.busy()};
-  if (rejection) {
-    counters_.rejected(rejection->reason);
-    access_.audit().rejected(command, *rejection);
-    commandRejected(command, *rejection);
-  }
+  if (rejection) commandRejected(command, *rejection);
 }
 
 net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
@@ -366,6 +362,8 @@ void RestApi::commandApplied(const rooms::Command& command, std::uint64_t tick, 
 }
 
 void RestApi::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
+  counters_.rejected(rejection.reason);
+  access_.audit().rejected(command, rejection);
   if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
 }
 

@@ -1,4 +1,3 @@
-#include <spindrift/service/drain.h>
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
@@ -40,7 +39,7 @@ WaterServer::~WaterServer() {
 }
 
 void WaterServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
-  gateway_->drain(beginDrain(*network_, closes_in, go_to));
+  gateway_->drain(*network_, closes_in, go_to);
 }
 
 void WaterServer::stop() {

@@ -45,7 +45,8 @@ class RestApi {
   void answer(const net::HttpRequest& request, net::HttpResponder respond,
               const std::optional<access::Grant>& decided = std::nullopt);
 
-  /// Reports the outcome of a request's command, by its request_id.
+  /// Reports the outcome of a request's command, by its request_id. A rejection is counted and entered into the audit
+  /// log.
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
 
