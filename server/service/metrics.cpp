@@ -251,11 +251,12 @@ void writeCommands(Page& page, const CommandCounters& commands) {
 void writeAccess(Page& page, const AccessControl& access) {
   page.head("person_busy_total", "counter", "Commands rejected because one person sent too many, over all sessions.");
   page.sample("", access.people().refusedCount());
-  if (!access.audit().isOn()) return;
+  const access::AuditFile* const file = access.audit().file();
+  if (!file) return;
   page.head("audit_lines_total", "counter", "Lines written to the audit log.");
-  page.sample("", access.audit().writtenCount());
+  page.sample("", file->writtenCount());
   page.head("audit_lost_total", "counter", "Lines of the audit log that could not be written.");
-  page.sample("", access.audit().lostCount());
+  page.sample("", file->lostCount());
   page.head("audit_left_out_total", "counter", "Refusals that the rate of the audit log left out.");
   page.sample("", access.audit().leftOutCount());
 }

@@ -35,9 +35,8 @@ class Audit {
   /// Notes that a token was refused; as many lines as the rate allows.
   void refused(const core::SenderDetails& who, const std::string& why);
 
-  [[nodiscard]] bool isOn() const { return file_ != nullptr; }
-  [[nodiscard]] std::uint64_t writtenCount() const { return file_ ? file_->writtenCount() : 0; }
-  [[nodiscard]] std::uint64_t lostCount() const { return file_ ? file_->lostCount() : 0; }
+  /// Returns null without an audit log.
+  [[nodiscard]] access::AuditFile* file() const { return file_.get(); }
   /// Lines that the rate left out since the start.
   [[nodiscard]] std::uint64_t leftOutCount() const { return left_out_count_; }
 

@@ -44,9 +44,7 @@ class WaterServer {
   /// Returns whether, after stop(), water of a room that was being opened is still built. The destructor waits for it.
   [[nodiscard]] bool isBuilding() const { return simulation_->isBuilding(); }
 
-  /// Calls net::Server::reloadCertificate().
-  void reloadCertificate() { network_->reloadCertificate(); }
-
+  [[nodiscard]] net::Server& network() { return *network_; }
   [[nodiscard]] std::uint16_t port() const { return port_; }
   /// Returns the real-time factor of the default room over the last second.
   [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
