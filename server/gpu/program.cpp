@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <bit>
 #include <cassert>
 
 #include <glad/gl.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/overloaded.h>
 #include <spindrift/gpu/embedded_shader.h>
 #include <spindrift/gpu/program.h>
 
@@ -14,17 +14,10 @@ namespace spindrift::gpu {
 namespace {
 
 void apply(GLuint program, const UniformValue& value) {
-  switch (value.type) {
-    case UniformValue::Type::kUint:
-      glProgramUniform1ui(program, value.location, value.bits);
-      break;
-    case UniformValue::Type::kInt:
-      glProgramUniform1i(program, value.location, std::bit_cast<std::int32_t>(value.bits));
-      break;
-    case UniformValue::Type::kFloat:
-      glProgramUniform1f(program, value.location, std::bit_cast<float>(value.bits));
-      break;
-  }
+  std::visit(core::Overloaded{[&](std::uint32_t number) { glProgramUniform1ui(program, value.location, number); },
+                              [&](std::int32_t number) { glProgramUniform1i(program, value.location, number); },
+                              [&](float number) { glProgramUniform1f(program, value.location, number); }},
+             value.number);
 }
 
 UniformValue* findLocation(std::vector<UniformValue>& values, std::int32_t location) {
@@ -109,8 +102,10 @@ void Program::prepare(const Buffer* arguments) {
   followReload();
   // Replace the values of the other Program that shares the compiled one; uniforms never set here become zero.
   if (compiled_->uniforms_of != handle_) {
-    for (const UniformValue& value : compiled_->touched) {
-      if (!findLocation(uniforms_, value.location)) apply(compiled_->id, {value.name, value.location, value.type, 0});
+    for (UniformValue value : compiled_->touched) {
+      if (findLocation(uniforms_, value.location)) continue;
+      std::visit([](auto& number) { number = 0; }, value.number);
+      apply(compiled_->id, value);
     }
     for (const UniformValue& value : uniforms_) apply(compiled_->id, value);
     compiled_->uniforms_of = handle_;
@@ -134,26 +129,15 @@ std::int32_t Program::location(std::string_view name) {
   return found;
 }
 
-void Program::setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits) {
+void Program::setUniform(std::string_view name, UniformValue::Number number) {
   followReload();
   const std::int32_t at = location(name);
   if (at < 0) return;
   UniformValue* value = findLocation(uniforms_, at);
-  if (!value) value = &uniforms_.emplace_back(UniformValue{std::string(name), at, type, bits});
-  value->type = type;
-  value->bits = bits;
+  if (!value) value = &uniforms_.emplace_back(UniformValue{std::string(name), at, number});
+  value->number = number;
   if (!findLocation(compiled_->touched, at)) compiled_->touched.push_back(*value);
   if (compiled_->uniforms_of == handle_) apply(compiled_->id, *value);
-}
-
-void Program::setUniform(std::string_view name, std::uint32_t value) {
-  setUniform(name, UniformValue::Type::kUint, value);
-}
-void Program::setUniform(std::string_view name, std::int32_t value) {
-  setUniform(name, UniformValue::Type::kInt, std::bit_cast<std::uint32_t>(value));
-}
-void Program::setUniform(std::string_view name, float value) {
-  setUniform(name, UniformValue::Type::kFloat, std::bit_cast<std::uint32_t>(value));
 }
 
 std::map<std::string, BlockLayout> Program::blocks() const {

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -29,11 +30,10 @@ struct BlockLayout {
 
 /// A plain uniform in OpenGL's types.
 struct UniformValue {
-  enum class Type { kUint, kInt, kFloat };
+  using Number = std::variant<std::uint32_t, std::int32_t, float>;
   std::string name;
   std::int32_t location = -1;
-  Type type = Type::kUint;
-  std::uint32_t bits = 0;
+  Number number;
 };
 
 struct CompiledProgram;
@@ -63,9 +63,7 @@ class Program {
 
   /// Sets a plain uniform. A uniform that the compiler removed is ignored. A name that the shader's text does not
   /// contain is a bug of the caller: asserted in debug builds, otherwise logged once and counted.
-  void setUniform(std::string_view name, std::uint32_t value);
-  void setUniform(std::string_view name, std::int32_t value);
-  void setUniform(std::string_view name, float value);
+  void setUniform(std::string_view name, UniformValue::Number number);
 
   /// Returns the blocks by the name after `uniform` or `buffer`; blocks that the shader does not use may be missing.
   /// For tests that compare shaders/shared with the driver's layout.
@@ -77,7 +75,6 @@ class Program {
     void operator()(Context* ctx) const;
   };
   [[nodiscard]] std::int32_t location(std::string_view name);
-  void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
   /// Looks up the uniform locations again after the shader was recompiled.
   void followReload();
   /// Prepares the program, its uniforms and the memory that it reads for a dispatch.
