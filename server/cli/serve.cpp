@@ -108,7 +108,7 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
 void leaveBuilds(service::WaterServer& server) {
   constexpr std::chrono::seconds kPatience{2};
   constexpr std::chrono::milliseconds kLook{10};
-  for (const auto end = std::chrono::steady_clock::now() + kPatience; server.isBuilding();) {
+  for (const auto end = std::chrono::steady_clock::now() + kPatience; server.simulation().isBuilding();) {
     if (std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(kLook);
       continue;
@@ -168,7 +168,7 @@ int serve(ServeOptions options) {
   (*server)->stop();
   if (node) node->release();
   node.reset();  // it uses the server
-  for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
+  for (const std::string& line : (*server)->simulation().summary()) spdlog::info("{}", line);
   logNetwork((*server)->networkStats());
   leaveBuilds(**server);
   return 0;

@@ -5,7 +5,7 @@
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/digest.h>
 #include <spindrift/service/access_control.h>
-#include <spindrift/wire/server_message.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::service {
 namespace {

@@ -1,4 +1,3 @@
-#include <spindrift/core/monotonic.h>
 #include <spindrift/service/gateway.h>
 #include <spindrift/service/state_topics.h>
 #include <spindrift/service/stream_index.h>
@@ -45,8 +44,9 @@ Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsS
                  std::function<void()> on_drain)
     : access_(std::move(access)),
       sessions_(rules, access_, counters_),
-      rest_(access_, counters_, sources,
-            {[this](const rooms::Room& room) { sessions_.dismiss(room.name()); }, std::move(on_drain)}) {}
+      rest_(
+          access_, counters_, sources, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },
+          std::move(on_drain)) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;

@@ -100,8 +100,13 @@ unsigned httpStatusOf(v1::RejectReason reason) {
   }
 }
 
-RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests)
-    : access_(access), counters_(counters), sources_(sources), requests_(std::move(requests)) {}
+RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
+                 std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain)
+    : access_(access),
+      counters_(counters),
+      sources_(sources),
+      dismiss_(std::move(dismiss)),
+      on_drain_(std::move(on_drain)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond,
                      const std::optional<access::Grant>& decided) {
@@ -294,11 +299,11 @@ void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
   if (call.request.method != "POST") return respond(wrongMethod("POST"));
   if (!call.isOperator() || call.grant.rooms)
     return respond(problem(403, "ending the server takes the role of operator in all rooms"));
-  if (!requests_.drain) return respond(problem(409, "this server is part of another program, which has to end it"));
+  if (!on_drain_) return respond(problem(409, "this server is part of another program, which has to end it"));
   if (!call.request.body.empty()) return respond(bodyIsNotEmpty());
   access_.audit().request("drain_asked", call.details(""), call.grant.role, "", "");
   // Once: a client may repeat a request whose answer was lost, and a second signal would end the wait for the clients.
-  if (!is_draining_.exchange(true)) requests_.drain();
+  if (!is_draining_.exchange(true)) on_drain_();
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 
@@ -307,12 +312,11 @@ void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
   const auto report = [this, who = call.details(call.path[1]), role = call.grant.role](const std::string& error) {
     access_.audit().request("room_closed", who, role, "", error);
   };
-  rooms_->closeRoom(call.path[1], requests_.dismiss,
-                    [report, respond = std::move(respond)](const core::Result<void>& closed) {
-                      report(closed ? "" : closed.error().message);
-                      if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
-                      respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
-                    });
+  rooms_->closeRoom(call.path[1], dismiss_, [report, respond = std::move(respond)](const core::Result<void>& closed) {
+    report(closed ? "" : closed.error().message);
+    if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
+    respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
+  });
 }
 
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {

@@ -30,7 +30,6 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   self->network_ = *std::move(network);
   self->sources_.network = self->network_.get();
   self->simulation_->run();
-  self->port_ = self->network_->port();
   return self;
 }
 

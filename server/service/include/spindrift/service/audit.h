@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -10,7 +9,6 @@
 #include <string_view>
 
 #include <spindrift/access/audit_log.h>
-#include <spindrift/access/grant.h>
 #include <spindrift/core/token_bucket.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/wire/client_message.h>
