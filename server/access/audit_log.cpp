@@ -39,7 +39,7 @@ std::string auditLine(const AuditEvent& event, std::chrono::system_clock::time_p
   };
   out["time"] = core::rfc3339(now);
   text("event", event.event);
-  text("room", event.room);
+  text("room", event.who.room);
   text("kind", event.kind);
   if (!event.content.empty()) {
     boost::system::error_code error;
@@ -52,11 +52,11 @@ std::string auditLine(const AuditEvent& event, std::chrono::system_clock::time_p
   text("message", event.message);
   number("tick", event.tick, event.has_tick);
   text("role", event.role);
-  text("subject", event.subject);
-  text("name", event.name);
+  text("subject", event.who.subject);
+  text("name", event.who.name);
   number("person_id", event.person_id, event.person_id != 0);
   number("session_id", event.session_id, event.session_id != 0);
-  text("peer", event.peer);
+  text("peer", event.who.peer);
   number("left_out", event.left_out_count, event.left_out_count != 0);
   return boost::json::serialize(out) + "\n";
 }

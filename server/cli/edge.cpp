@@ -3,8 +3,8 @@
 
 #include <spindrift/cluster/edge_server.h>
 
+#include "access_options.h"
 #include "front.h"
-#include "operator_link.h"
 
 namespace spindrift::cli {
 namespace {
@@ -18,22 +18,15 @@ int runEdge(FrontOptions options) {
   makeOperatorToken(options);
   auto access = accessOptions(options);
   if (!access) return fail(access.error());
-  const auto audit_file = access->audit_file;
   cluster::EdgeOptions edge_options;
   edge_options.node = nodeOptions(options, false);
   edge_options.network = networkOptions(options);
   edge_options.access = *std::move(access);
-  const bool has_page = !edge_options.network.web_root.empty();
   auto edge = cluster::EdgeServer::start(std::move(edge_options));
   if (!edge) return fail(edge.error());
   runUntilSignal(options, signals,
-                 {.port = (*edge)->port(),
-                  .has_page = has_page,
+                 {.network = (*edge)->network(),
                   .access = (*edge)->access(),
-                  .audit_file = audit_file.get(),
-                  .reload_certificate = [&] { (*edge)->reloadCertificate(); },
-                  .leave = [] {},
-                  .session_count = [&] { return (*edge)->networkStats().open_session_count; },
                   .drain = [&](std::chrono::milliseconds closes_in) { (*edge)->drain(closes_in, options.drain_to); }});
   (*edge)->stop();
   logNetwork((*edge)->networkStats());

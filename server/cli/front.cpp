@@ -14,9 +14,8 @@
 
 #include <spindrift/core/files.h>
 
-#include "access_files.h"
+#include "access_options.h"
 #include "config_file.h"
-#include "operator_link.h"
 
 namespace spindrift::cli {
 namespace {
@@ -24,8 +23,8 @@ namespace {
 using core::ErrorCode;
 
 void reload(const FrontOptions& options, const RunningServer& server) {
-  server.reload_certificate();
-  if (server.audit_file != nullptr) server.audit_file->reopen();
+  server.network.reloadCertificate();
+  if (access::AuditFile* const audit = server.access.audit().file()) audit->reopen();
   auto access = loadAccess(options);
   if (!access) {
     spdlog::error("SIGHUP: tokens and keys stay as they were: {}", access.error().message);
@@ -41,13 +40,14 @@ void drain(const FrontOptions& options, const StopSignals& signals, const Runnin
   constexpr timespec kLook{.tv_sec = 0, .tv_nsec = 20'000'000};
   const auto duration =
       std::chrono::milliseconds(static_cast<std::chrono::milliseconds::rep>(std::ceil(options.drain_s * 1e3)));
-  const std::uint64_t count = server.session_count();
+  const auto countSessions = [&] { return server.network.stats().open_session_count; };
+  const std::uint64_t count = countSessions();
   if (duration.count() == 0 || count == 0) return;
   spdlog::info("draining: {} sessions have {:g} s to go{}", count, options.drain_s,
                options.drain_to.empty() ? "" : " to " + options.drain_to);
   server.drain(duration);
   for (const auto end = Clock::now() + duration; Clock::now() < end;) {
-    if (server.session_count() == 0) return;
+    if (countSessions() == 0) return;
     const int signal = sigtimedwait(&signals.set, nullptr, &kLook);
     if (signal == SIGINT || signal == SIGTERM) return spdlog::info("draining ends: a second signal");
   }
@@ -100,14 +100,14 @@ StopSignals::StopSignals() {
 }
 
 void runUntilSignal(const FrontOptions& options, const StopSignals& signals, const RunningServer& server) {
-  if (!server.has_page)
+  if (networkOptions(options).web_root.empty())
     spdlog::warn("the web client is not built: no page is served; run ./dev build, or give --web-root");
   warnIfOpenToAll(options);
-  sayReady(options, server.port);
+  sayReady(options, server.network.port());
   int signal = 0;
   for (sigwait(&signals.set, &signal); signal == SIGHUP; sigwait(&signals.set, &signal)) reload(options, server);
   spdlog::info("{}: closing", signal == SIGINT ? "interrupted" : "terminated");
-  server.leave();
+  if (server.leave) server.leave();
   drain(options, signals, server);
 }
 

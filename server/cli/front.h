@@ -3,7 +3,6 @@
 
 #include <chrono>
 #include <csignal>
-#include <cstdint>
 #include <functional>
 #include <memory>
 
@@ -20,8 +19,8 @@ namespace spindrift::cli {
 /// Reads tokens and keys, and opens the audit log.
 core::Result<service::AccessOptions> accessOptions(const FrontOptions& options);
 
-/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that
-/// runUntilSignal() receives them.
+/// Blocks SIGINT, SIGTERM and SIGHUP in this thread and in those that it starts, so that runUntilSignal() receives
+/// them.
 struct StopSignals {
   StopSignals();
   sigset_t set{};
@@ -32,14 +31,10 @@ void endThisProcess();
 
 /// A server that has started, as runUntilSignal() needs it.
 struct RunningServer {
-  std::uint16_t port = 0;
-  bool has_page = false;
+  net::Server& network;
   service::AccessControl& access;
-  access::AuditFile* audit_file;
-  std::function<void()> reload_certificate;
-  std::function<void()> leave;  ///< before the clients are told to go
-  std::function<std::uint64_t()> session_count;
   std::function<void(std::chrono::milliseconds)> drain;  ///< tells the clients
+  std::function<void()> leave{};                         ///< before the clients are told to go
 };
 
 /// Says that the server is ready and waits for SIGINT or SIGTERM. For each SIGHUP before, reads the certificate and the

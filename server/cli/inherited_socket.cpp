@@ -24,10 +24,6 @@ std::string takeVariable(const char* name) {
   return text;
 }
 
-core::Error refused(const std::string& message) {
-  return core::invalid(message);
-}
-
 }  // namespace
 
 core::Result<std::optional<InheritedSocket>> takeInheritedSocket() {
@@ -37,13 +33,13 @@ core::Result<std::optional<InheritedSocket>> takeInheritedSocket() {
   takeVariable("LISTEN_FDNAMES");
   const std::string count = takeVariable("LISTEN_FDS");
   if (count != "1") {
-    return refused(fmt::format(
+    return core::invalid(fmt::format(
         "LISTEN_FDS is \"{}\": the server takes exactly 1 listening socket; give the socket unit one ListenStream",
         count));
   }
   const auto unfit = [](const std::string& why) {
-    return refused(fmt::format("LISTEN_FDS: descriptor {} {}: pass a TCP socket that listens (ListenStream=PORT)",
-                               kFirstDescriptor, why));
+    return core::invalid(fmt::format("LISTEN_FDS: descriptor {} {}: pass a TCP socket that listens (ListenStream=PORT)",
+                                     kFirstDescriptor, why));
   };
   int is_listening = 0;
   socklen_t size_bytes = sizeof is_listening;

@@ -31,23 +31,6 @@ class MessageText final : public spdlog::custom_flag_formatter {
 bool writes_json = false;
 std::string program_name = "spindrift";
 
-/// Returns `text` with U+FFFD in place of each byte that belongs to no UTF-8 sequence.
-std::string toValidUtf8(std::string_view text) {
-  std::string valid;
-  valid.reserve(text.size());
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t length = core::utf8SequenceLength(text, at);
-    if (length == 0) {
-      valid += "\xEF\xBF\xBD";
-      ++at;
-      continue;
-    }
-    valid.append(text.substr(at, length));
-    at += length;
-  }
-  return valid;
-}
-
 }  // namespace
 
 void JsonLogFormatter::format(const spdlog::details::log_msg& message, spdlog::memory_buf_t& line) {
@@ -56,7 +39,7 @@ void JsonLogFormatter::format(const spdlog::details::log_msg& message, spdlog::m
       {"time", core::rfc3339(message.time)},
       {"level", std::string_view(level.data(), level.size())},
       {"thread", message.thread_id},
-      {"message", toValidUtf8({message.payload.data(), message.payload.size()})},
+      {"message", core::toValidUtf8({message.payload.data(), message.payload.size()})},
   };
   const std::string text = boost::json::serialize(object) + "\n";  // escapes quotes and control characters
   line.append(text.data(), text.data() + text.size());

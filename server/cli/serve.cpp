@@ -17,9 +17,9 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
 
+#include "access_options.h"
 #include "front.h"
 #include "inherited_socket.h"
-#include "operator_link.h"
 
 namespace spindrift::cli {
 namespace {
@@ -105,16 +105,16 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
 
 /// Ends the program if a room's water is still being built a while after the end of everything else. A build cannot be
 /// interrupted, and at its low priority it takes minutes on a busy machine; nothing of it is kept anyway.
-void leaveBuilds(const service::WaterServer& server, access::AuditFile* audit_file) {
+void leaveBuilds(service::WaterServer& server) {
   constexpr std::chrono::seconds kPatience{2};
   constexpr std::chrono::milliseconds kLook{10};
-  for (const auto end = std::chrono::steady_clock::now() + kPatience; server.isBuilding();) {
+  for (const auto end = std::chrono::steady_clock::now() + kPatience; server.simulation().isBuilding();) {
     if (std::chrono::steady_clock::now() < end) {
       std::this_thread::sleep_for(kLook);
       continue;
     }
     spdlog::warn("the water of a room was still being built: the program ends without it");
-    if (audit_file != nullptr) audit_file->finish();
+    if (access::AuditFile* const audit = server.gateway().access().audit().file()) audit->finish();
     spdlog::shutdown();
     std::fflush(nullptr);
     std::_Exit(0);  // the thread that builds still uses what exit() would destroy
@@ -143,8 +143,6 @@ int serve(ServeOptions options) {
   auto server_options = serverOptions(options, node.get());
   if (!server_options) return fail(server_options.error());
   if (*inherited) server_options->network.listening_socket = (*inherited)->descriptor;
-  const auto audit_file = server_options->access.audit_file;
-  const bool has_page = !server_options->network.web_root.empty();
   auto server = service::WaterServer::start(*std::move(server_options));
   if (!server) return fail(server.error());
   if (node) {
@@ -159,25 +157,20 @@ int serve(ServeOptions options) {
 
   if (const std::string device = (*server)->simulation().deviceLine(); !device.empty())
     spdlog::info("simulation runs on {}", device);
-  runUntilSignal(
-      options, signals,
-      {.port = (*server)->port(),
-       .has_page = has_page,
-       .access = (*server)->gateway().access(),
-       .audit_file = audit_file.get(),
-       .reload_certificate = [&] { (*server)->reloadCertificate(); },
-       .leave =
-           [&] {
-             if (node) node->leave();
-           },
-       .session_count = [&] { return (*server)->networkStats().open_session_count; },
-       .drain = [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); }});
+  runUntilSignal(options, signals,
+                 {.network = (*server)->network(),
+                  .access = (*server)->gateway().access(),
+                  .drain = [&](std::chrono::milliseconds closes_in) { (*server)->drain(closes_in, options.drain_to); },
+                  .leave =
+                      [&] {
+                        if (node) node->leave();
+                      }});
   (*server)->stop();
   if (node) node->release();
   node.reset();  // it uses the server
-  for (const std::string& line : (*server)->summary()) spdlog::info("{}", line);
+  for (const std::string& line : (*server)->simulation().summary()) spdlog::info("{}", line);
   logNetwork((*server)->networkStats());
-  leaveBuilds(**server, audit_file.get());
+  leaveBuilds(**server);
   return 0;
 }
 

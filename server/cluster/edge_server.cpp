@@ -1,7 +1,6 @@
 #include <utility>
 
 #include <spindrift/cluster/edge_server.h>
-#include <spindrift/service/drain.h>
 
 namespace spindrift::cluster {
 namespace {
@@ -31,7 +30,7 @@ EdgeServer::~EdgeServer() {
 
 void EdgeServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
   is_draining_ = true;
-  sessions_.drain(service::beginDrain(*network_, closes_in, go_to));
+  sessions_.drain(*network_, closes_in, go_to);
 }
 
 void EdgeServer::stop() {

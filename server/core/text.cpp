@@ -83,6 +83,16 @@ char32_t codePoint(std::string_view text, std::size_t at, std::size_t length) {
 
 }  // namespace
 
+std::string toValidUtf8(std::string_view text) {
+  std::string valid;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t length = utf8SequenceLength(text, at);
+    valid += length == 0 ? "\xEF\xBF\xBD" : text.substr(at, length);
+    at += std::max<std::size_t>(length, 1);
+  }
+  return valid;
+}
+
 std::string cleanText(std::string_view text, std::size_t max_bytes) {
   std::string clean;
   for (std::size_t at = 0; at < text.size();) {

@@ -179,8 +179,7 @@ core::Error refused(const Context& ctx, std::string_view shader_path, const char
 
 std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id) {
   std::map<std::string, BlockLayout> out;
-  addBlocks(program_id, false, out);
-  addBlocks(program_id, true, out);
+  for (const bool is_storage : {false, true}) addBlocks(program_id, is_storage, out);
   return out;
 }
 
@@ -251,9 +250,7 @@ void CompiledProgram::become(CompiledProgram& fresh) {
   std::swap(uses, fresh.uses);
   std::swap(files, fresh.files);
   locations.clear();
-  touched.clear();
   uniforms_of = 0;
-  ++generation;
 }
 
 CompiledProgram::~CompiledProgram() {

@@ -11,7 +11,6 @@
 #include <set>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/program.h>
@@ -33,16 +32,15 @@ struct CompiledProgram {
   void become(CompiledProgram& fresh);
 
   std::uint32_t id = 0;
-  std::uint32_t generation = 0;  ///< incremented by become(), which changes the uniform locations
   std::array<std::uint32_t, 3> group_size = {1, 1, 1};
   std::set<std::string> files;  ///< source files; empty for an embedded shader
   std::map<std::string, std::int32_t, std::less<>> locations;
   ProgramUses uses;
 
-  /// Plain uniforms are state of the OpenGL program: the Program (handle_) whose values it holds now, and all locations
+  /// Plain uniforms are state of the OpenGL program: the Program (handle_) whose values it holds now, and zeros for all
   /// that were ever set.
   std::uint64_t uniforms_of = 0;
-  std::vector<UniformValue> touched;
+  UniformValues touched;
 };
 
 /// Returns the linked program's uniform and storage blocks by the name after `uniform` or `buffer`, without those that

@@ -12,7 +12,6 @@
 
 #include "access_tracker.h"
 #include "compiled_program.h"
-#include "device_probe.h"
 #include "device_selection.h"
 #include "egl_display.h"
 #include "shader_folder.h"
@@ -63,17 +62,14 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
 }
 
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice, const Checks& checks) {
-  core::Result<Selection> chosen = selectDevice(egl::candidates(), choice, openUsable, egl::close, Machine::real());
+  auto chosen = selectDevice(egl::candidates(), choice, egl::openUsable, egl::close, Machine::real());
   if (!chosen) return chosen.error();
-  return std::unique_ptr<Context>(
-      new Context(chosen->handles, std::move(chosen->info), std::move(chosen->why), checks, choice.shader_folder));
+  return std::unique_ptr<Context>(new Context(*std::move(chosen), checks, choice.shader_folder));
 }
 
-Context::Context(const egl::Handles& handles, DeviceInfo device, std::string why, const Checks& checks,
-                 const std::string& shader_folder)
-    : egl_(std::make_unique<egl::Handles>(handles)),
-      device_(std::move(device)),
-      why_(std::move(why)),
+Context::Context(egl::Attempt chosen, const Checks& checks, const std::string& shader_folder)
+    : egl_(std::make_unique<egl::Handles>(*chosen.handles)),
+      device_(std::move(chosen.info)),
       checks_(checks),
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),

@@ -7,7 +7,6 @@
 #include <spindrift/gpu/device.h>
 #include <spindrift/gpu/embedded_shader.h>
 
-#include "device_probe.h"
 #include "device_selection.h"
 #include "egl_display.h"
 
@@ -52,17 +51,12 @@ core::Result<DeviceChoice> parseDeviceChoice(std::string_view text) {
                        std::to_string(kMaxIndex) + ", a path or a UUID; see `spindrift info`");
 }
 
-std::vector<DeviceInfo> listDevices() {
-  const egl::CurrentGuard guard;
-  return describeDevices(egl::candidates(), openUsable, egl::close);
-}
-
 GpuInfo collectInfo(const DeviceChoice& choice) {
   const egl::CurrentGuard guard;
   GpuInfo info;
   // Without a display EGL may refuse the query; an old libEGL has no client version.
   if (const char* version = eglQueryString(EGL_NO_DISPLAY, EGL_VERSION)) info.egl_client_version = version;
-  info.devices = listDevices();
+  info.devices = describeDevices(egl::candidates(), egl::openUsable, egl::close);
   if (const auto context = Context::create(choice)) {
     info.chosen = (*context)->device();
     info.why = (*context)->why();

@@ -1,5 +1,4 @@
-#include "device_probe.h"
-
+// Tests whether a device really does what the program needs.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -51,8 +50,9 @@ std::string compile(GLuint& program) {
   return "does not compile: " + (said.empty() ? "the driver does not say why" : said);
 }
 
-}  // namespace
-
+/// Runs shaders/device/probe.comp in the current context and checks its result: storage and texel reads, a uniform
+/// block, shared memory with a barrier, atomics and an indirect dispatch. Returns an empty string on success, otherwise
+/// one line.
 std::string runProbe() {
   clearOldErrors();
   Objects objects;
@@ -105,8 +105,10 @@ std::string runProbe() {
   return {};
 }
 
-egl::Attempt openUsable(const egl::Candidate& candidate) {
-  egl::Attempt attempt = egl::open(candidate);
+}  // namespace
+
+egl::Attempt egl::openUsable(const Candidate& candidate) {
+  Attempt attempt = open(candidate);
   if (!attempt.handles) {
     const std::string advice =
         fileAdvice(candidate.render_file.empty() ? candidate.drm_file : candidate.render_file, Machine::real());
@@ -119,7 +121,7 @@ egl::Attempt openUsable(const egl::Candidate& candidate) {
     if (!problem.empty()) problem = "the probe program " + problem;
   }
   if (problem.empty()) return attempt;
-  egl::close(*attempt.handles);
+  close(*attempt.handles);
   attempt.handles.reset();
   attempt.info.problem = std::move(problem);
   return attempt;

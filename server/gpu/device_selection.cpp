@@ -135,8 +135,8 @@ void mergeDuplicates(std::vector<egl::Candidate>& candidates) {
   }
 }
 
-core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
-                                     const OpenDevice& open, const CloseDevice& close, const Machine& machine) {
+core::Result<egl::Attempt> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
+                                        const OpenDevice& open, const CloseDevice& close, const Machine& machine) {
   using Kind = DeviceChoice::Kind;
   int hardware_count = 0;
   for (const egl::Candidate& candidate : candidates) hardware_count = std::max(hardware_count, candidate.index + 1);
@@ -157,10 +157,10 @@ core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidat
       info.problem = "picks " + info.name + "; set LIBGL_ALWAYS_SOFTWARE=1";
     }
     if (attempt.handles) {
-      std::string why = label(info) + ": " + whyChosen(info, choice.kind, hardware_count);
-      if (!failures.empty()) why += "; not used: " + failures;
+      info.why = label(info) + ": " + whyChosen(info, choice.kind, hardware_count);
+      if (!failures.empty()) info.why += "; not used: " + failures;
       info.advice = adviceAfter(info, choice.kind, hardware_count, machine);
-      return Selection{*attempt.handles, std::move(info), std::move(why)};
+      return attempt;
     }
     if (!failures.empty()) failures += ", ";
     failures += label(info) + ": " + info.problem;

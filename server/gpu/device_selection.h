@@ -24,12 +24,6 @@ struct Machine {
 /// Returns what keeps this process from a device's file, and what to do; empty if nothing does.
 std::string fileAdvice(const std::string& file, const Machine& machine);
 
-struct Selection {
-  egl::Handles handles;
-  DeviceInfo info;
-  std::string why;  ///< one line
-};
-
 /// Opens a device and checks everything that the program needs of it.
 using OpenDevice = std::function<egl::Attempt(const egl::Candidate&)>;
 /// Reverses a successful OpenDevice.
@@ -41,8 +35,8 @@ void mergeDuplicates(std::vector<egl::Candidate>& candidates);
 
 /// Tries the candidates that `choice` allows, in order, until one works. Error kNoDevice lists all that were tried and
 /// why each was not used.
-core::Result<Selection> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
-                                     const OpenDevice& open, const CloseDevice& close, const Machine& machine);
+core::Result<egl::Attempt> selectDevice(const std::vector<egl::Candidate>& candidates, const DeviceChoice& choice,
+                                        const OpenDevice& open, const CloseDevice& close, const Machine& machine);
 
 /// Returns one entry per piece of hardware, in the order of their indices: the candidate that works, otherwise the
 /// first one; then one entry for software.

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <EGL/eglext.h>
+#include <fmt/format.h>
 #include <glad/gl.h>
 
 #include "device_needs.h"
@@ -88,17 +89,12 @@ std::string deviceUuid(EGLDeviceEXT device, const std::string& extensions) {
   using QueryBinary = EGLBoolean (*)(EGLDeviceEXT, EGLint, EGLint, void*, EGLint*);
   if (!hasWord(extensions, "EGL_EXT_device_persistent_id")) return {};
   const auto query = reinterpret_cast<QueryBinary>(eglGetProcAddress("eglQueryDeviceBinaryEXT"));
-  std::array<char, 16> uuid{};
+  std::array<unsigned char, 16> uuid{};
   EGLint size_bytes = 0;
   if (!query || !query(device, kDeviceUuid, uuid.size(), uuid.data(), &size_bytes)) return {};
   if (size_bytes != static_cast<EGLint>(uuid.size())) return {};
-  std::string out;
-  for (const char byte : uuid) {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    if (out.size() == 8 || out.size() == 13 || out.size() == 18 || out.size() == 23) out += '-';
-    out += kDigits[static_cast<unsigned char>(byte) >> 4];
-    out += kDigits[static_cast<unsigned char>(byte) & 0xF];
-  }
+  std::string out = fmt::format("{:02x}", fmt::join(uuid, ""));
+  for (const std::size_t at : {8, 13, 18, 23}) out.insert(at, 1, '-');
   return out;
 }
 

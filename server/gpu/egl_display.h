@@ -41,6 +41,10 @@ std::vector<Candidate> candidates();
 /// describes the device. After a failure no context is current.
 Attempt open(const Candidate& candidate);
 
+/// Calls open(), compares the device's limits with the program's needs, then compiles and runs a small program. On
+/// failure the context is closed and `info.problem` holds the reason, and what to do where that can be told.
+Attempt openUsable(const Candidate& candidate);
+
 /// Destroys the context; unbinds it first when it is current here. The display stays initialised: EGL gives the same
 /// display to every caller that asks for the device, and eglTerminate would end it for all of them.
 void close(const Handles& handles);

@@ -24,9 +24,6 @@ PassTimers::~PassTimers() {
   }
 }
 
-PassTimers::Scope::Scope(PassTimers& timers, std::size_t name_index)
-    : timers_(timers), query_index_(timers.openQuery(name_index)) {}
-
 PassTimers::Scope::~Scope() {
   if (query_index_ == kNoQuery) return;
   Query& query = timers_.queries_[query_index_];
@@ -40,24 +37,18 @@ std::vector<PassCost> PassTimers::take() {
   std::vector<PassCost> out;
   for (PassCost& cost : costs_) {
     if (cost.scope_count == 0) continue;
-    cost.mean_ms = cost.total_ms / static_cast<double>(cost.scope_count);
     out.push_back(cost);
     cost = PassCost{.name = std::move(cost.name)};
   }
   return out;
 }
 
-std::size_t PassTimers::nameIndex(std::string_view name) {
-  // There are few names: a linear search is cheaper than a map.
-  const auto found =
-      std::find_if(costs_.begin(), costs_.end(), [&](const PassCost& cost) { return cost.name == name; });
-  if (found != costs_.end()) return static_cast<std::size_t>(found - costs_.begin());
-  costs_.push_back(PassCost{.name = std::string(name)});
-  return costs_.size() - 1;
-}
-
-std::size_t PassTimers::openQuery(std::size_t name_index) {
+std::size_t PassTimers::openQuery(std::string_view name) {
   assert(ctx_.isOwnedHere());
+  // There are few names: a linear search is cheaper than a map.
+  const auto known = std::ranges::find(costs_, name, &PassCost::name);
+  const auto name_index = static_cast<std::size_t>(known - costs_.begin());
+  if (known == costs_.end()) costs_.push_back(PassCost{.name = std::string(name)});
   if (queries_[next_query_].in_use) collect();
   if (queries_[next_query_].in_use) {
     ++dropped_count_;

@@ -1,10 +1,10 @@
 #include <algorithm>
-#include <bit>
 #include <cassert>
 
 #include <glad/gl.h>
 #include <spdlog/spdlog.h>
 
+#include <spindrift/core/overloaded.h>
 #include <spindrift/gpu/embedded_shader.h>
 #include <spindrift/gpu/program.h>
 
@@ -13,23 +13,11 @@
 namespace spindrift::gpu {
 namespace {
 
-void apply(GLuint program, const UniformValue& value) {
-  switch (value.type) {
-    case UniformValue::Type::kUint:
-      glProgramUniform1ui(program, value.location, value.bits);
-      break;
-    case UniformValue::Type::kInt:
-      glProgramUniform1i(program, value.location, std::bit_cast<std::int32_t>(value.bits));
-      break;
-    case UniformValue::Type::kFloat:
-      glProgramUniform1f(program, value.location, std::bit_cast<float>(value.bits));
-      break;
-  }
-}
-
-UniformValue* findLocation(std::vector<UniformValue>& values, std::int32_t location) {
-  const auto found = std::ranges::find(values, location, &UniformValue::location);
-  return found != values.end() ? &*found : nullptr;
+void apply(GLuint program, GLint location, UniformValue value) {
+  std::visit(core::Overloaded{[&](std::uint32_t number) { glProgramUniform1ui(program, location, number); },
+                              [&](std::int32_t number) { glProgramUniform1i(program, location, number); },
+                              [&](float number) { glProgramUniform1f(program, location, number); }},
+             value);
 }
 
 }  // namespace
@@ -41,7 +29,6 @@ core::Result<Program> Program::create(Context& ctx, std::string_view shader_path
   Program program;
   program.path_ = shader_path;
   program.compiled_ = *std::move(compiled);
-  program.generation_ = program.compiled_->generation;
   program.handle_ = ctx.programs().newHandle();
   program.ctx_.reset(&ctx);
   ++ctx.ledgerEntry().program_count;
@@ -95,24 +82,13 @@ void Program::dispatchIndirect(const Buffer& arguments, std::size_t offset_bytes
   ++ctx_->ledgerEntry().dispatch_count;
 }
 
-void Program::followReload() {
-  if (generation_ == compiled_->generation) return;
-  generation_ = compiled_->generation;
-  for (UniformValue& value : uniforms_) value.location = location(value.name);
-  std::erase_if(uniforms_, [](const UniformValue& value) { return value.location < 0; });
-  for (const UniformValue& value : uniforms_) {
-    if (!findLocation(compiled_->touched, value.location)) compiled_->touched.push_back(value);
-  }
-}
-
 void Program::prepare(const Buffer* arguments) {
-  followReload();
   // Replace the values of the other Program that shares the compiled one; uniforms never set here become zero.
   if (compiled_->uniforms_of != handle_) {
-    for (const UniformValue& value : compiled_->touched) {
-      if (!findLocation(uniforms_, value.location)) apply(compiled_->id, {value.name, value.location, value.type, 0});
+    for (const auto& [name, zero] : compiled_->touched) {
+      const auto own = uniforms_.find(name);
+      apply(compiled_->id, location(name), own == uniforms_.end() ? zero : own->second);
     }
-    for (const UniformValue& value : uniforms_) apply(compiled_->id, value);
     compiled_->uniforms_of = handle_;
   }
   ctx_->beforeDispatch(compiled_->uses, arguments ? arguments->access() : nullptr);
@@ -134,26 +110,13 @@ std::int32_t Program::location(std::string_view name) {
   return found;
 }
 
-void Program::setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits) {
-  followReload();
+void Program::setUniform(std::string_view name, UniformValue value) {
   const std::int32_t at = location(name);
   if (at < 0) return;
-  UniformValue* value = findLocation(uniforms_, at);
-  if (!value) value = &uniforms_.emplace_back(UniformValue{std::string(name), at, type, bits});
-  value->type = type;
-  value->bits = bits;
-  if (!findLocation(compiled_->touched, at)) compiled_->touched.push_back(*value);
-  if (compiled_->uniforms_of == handle_) apply(compiled_->id, *value);
-}
-
-void Program::setUniform(std::string_view name, std::uint32_t value) {
-  setUniform(name, UniformValue::Type::kUint, value);
-}
-void Program::setUniform(std::string_view name, std::int32_t value) {
-  setUniform(name, UniformValue::Type::kInt, std::bit_cast<std::uint32_t>(value));
-}
-void Program::setUniform(std::string_view name, float value) {
-  setUniform(name, UniformValue::Type::kFloat, std::bit_cast<std::uint32_t>(value));
+  uniforms_.insert_or_assign(std::string(name), value);
+  if (compiled_->uniforms_of == handle_) apply(compiled_->id, at, value);
+  std::visit([](auto& number) { number = 0; }, value);
+  compiled_->touched.insert_or_assign(std::string(name), value);
 }
 
 std::map<std::string, BlockLayout> Program::blocks() const {

@@ -33,14 +33,6 @@ struct ReadbackRing::State {
   const std::byte* mapped = nullptr;
 };
 
-ReadbackRing::Slot::Slot(std::shared_ptr<State> state, std::size_t index, std::uint64_t tag,
-                         std::span<const std::byte> bytes)
-    : state_(std::move(state)), index_(index), tag_(tag), bytes_(bytes) {}
-
-ReadbackRing::Slot::~Slot() {
-  state_->free(index_);
-}
-
 std::span<const std::uint32_t> ReadbackRing::Slot::words() const {
   // Slots start at multiples of 64 bytes, so the words are aligned.
   return {reinterpret_cast<const std::uint32_t*>(bytes_.data()), bytes_.size() / 4};
@@ -155,8 +147,11 @@ std::vector<std::shared_ptr<const ReadbackRing::Slot>> ReadbackRing::wait(std::c
       continue;
     }
     const std::byte* const start = state_->mapped + flight->index * state_->stride_bytes;
-    out.push_back(std::shared_ptr<const Slot>(
-        new Slot(state_, flight->index, flight->tag, std::span(start, flight->used_bytes))));
+    out.push_back({new Slot(flight->tag, std::span(start, flight->used_bytes)),
+                   [state = state_, index = flight->index](const Slot* slot) {
+                     delete slot;
+                     state->free(index);
+                   }});
   }
   in_flight_.erase(in_flight_.begin(), flight);
   return out;

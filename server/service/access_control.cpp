@@ -1,21 +1,30 @@
+#include <algorithm>
+
 #include <fmt/format.h>
 
-#include <spindrift/access/room_token.h>
+#include <spindrift/access/base64url.h>
+#include <spindrift/access/digest.h>
 #include <spindrift/service/access_control.h>
-#include <spindrift/wire/server_message.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::service {
 namespace {
 
-/// What the files of a room say; tokens that no server can have made are left out.
-std::vector<access::RoomToken> tokensOf(const v1::RoomAccess& kept) {
-  std::vector<access::RoomToken> out;
-  for (const v1::KeptToken& one : kept.tokens()) {
-    const auto role = wire::fromWire(one.role());
-    access::RoomToken token{.role = role.value_or(core::Role::kViewer), .salt = one.salt()};
-    if (!role || one.digest().size() != token.digest.size()) continue;
-    std::copy(one.digest().begin(), one.digest().end(), token.digest.begin());
-    out.push_back(std::move(token));
+/// Returns what a token that was made for the room allows; nullopt for another token. Compares with all of them, in
+/// constant time each.
+std::optional<access::Grant> grantOf(std::string_view token, const RoomTokens& room) {
+  std::optional<access::Grant> out;
+  int number = 0;
+  for (const v1::KeptToken& kept : room.tokens.tokens()) {
+    const auto role = wire::fromWire(kept.role());
+    access::Digest digest{};
+    if (!role || kept.digest().size() != digest.size()) continue;  // no server can have made it
+    std::copy(kept.digest().begin(), kept.digest().end(), digest.begin());
+    ++number;
+    if (!access::isEqual(access::digestOf(kept.salt(), token), digest)) continue;
+    out = access::Grant{.role = *role,
+                        .subject = fmt::format("token {} of room {}", number, room.room),
+                        .rooms = std::vector<std::string>{room.room}};
   }
   return out;
 }
@@ -23,21 +32,16 @@ std::vector<access::RoomToken> tokensOf(const v1::RoomAccess& kept) {
 }  // namespace
 
 AccessControl::AccessControl(AccessOptions options)
-    : access_(std::move(options.access)),
+    : access_(std::make_shared<const access::Access>(std::move(options.access))),
       people_(options.person_commands_per_s, 2.0 * options.person_commands_per_s),
       audit_(std::move(options.audit_file)) {}
 
 core::Result<access::Grant> AccessControl::resolve(std::string_view token, const std::vector<RoomTokens>& rooms,
                                                    std::chrono::system_clock::time_point now) const {
-  auto grant = access_.get()->resolve(token, now);
+  auto grant = present()->resolve(token, now);
   if (grant || grant.error().message != access::kUnknownToken) return grant;
   for (const RoomTokens& room : rooms) {
-    const std::vector<access::RoomToken> known = tokensOf(room.tokens);
-    if (const auto number = access::findRoomToken(token, known)) {
-      return access::Grant{.role = known[*number].role,
-                           .subject = fmt::format("token {} of room {}", *number + 1, room.room),
-                           .rooms = std::vector<std::string>{room.room}};
-    }
+    if (auto made = grantOf(token, room)) return *std::move(made);
   }
   return grant;
 }
@@ -46,10 +50,21 @@ core::Result<std::optional<access::Grant>> AccessControl::resolveForwarded(
     std::string_view authorization, std::chrono::system_clock::time_point now) const {
   const auto token = access::Access::bearerToken(authorization);
   if (!token) return token.error();
-  auto grant = access_.get()->resolve(*token, now);
+  auto grant = present()->resolve(*token, now);
   if (grant) return std::optional(*std::move(grant));
   if (grant.error().message == access::kUnknownToken) return std::optional<access::Grant>();
   return grant.error();
+}
+
+void AccessControl::replace(access::Access access) {
+  auto next = std::make_shared<const access::Access>(std::move(access));
+  const std::lock_guard lock(mutex_);
+  access_ = std::move(next);
+}
+
+std::shared_ptr<const access::Access> AccessControl::present() const {
+  const std::lock_guard lock(mutex_);
+  return access_;
 }
 
 bool AccessControl::takeCommand(const std::string& person) {
@@ -63,21 +78,24 @@ std::string AccessControl::busy() const {
 }
 
 core::Result<MadeTokens> makeTokens(const v1::CreateRoom& wanted) {
+  constexpr int kMaxCount = 16;
+  constexpr std::size_t kTokenBytes = 32;  // 43 characters, which cannot be guessed
+  constexpr std::size_t kSaltBytes = 16;
   const auto refuse = [](std::string why) { return core::invalid("tokens: " + std::move(why)); };
-  if (static_cast<std::size_t>(wanted.tokens_size()) > access::kRoomTokenMaxCount)
-    return refuse(fmt::format("{} are asked for; at most {}", wanted.tokens_size(), access::kRoomTokenMaxCount));
+  if (wanted.tokens_size() > kMaxCount)
+    return refuse(fmt::format("{} are asked for; at most {}", wanted.tokens_size(), kMaxCount));
   MadeTokens out;
   for (const int number : wanted.tokens()) {
     const auto role = wire::fromWire(static_cast<v1::Role>(number));
     if (!role) return refuse("write ROLE_VIEWER, ROLE_PLAYER or ROLE_OPERATOR for each");
-    const access::NewRoomToken made = access::makeRoomToken(*role);
-    v1::KeptToken& kept = *out.kept.add_tokens();
-    kept.set_role(wire::toWire(*role));
-    kept.set_salt(made.kept.salt);
-    kept.set_digest(made.kept.digest.data(), made.kept.digest.size());
     v1::RoomToken& shown = *out.shown.Add();
     shown.set_role(wire::toWire(*role));
-    shown.set_token(made.token);
+    shown.set_token(access::toBase64Url(access::randomBytes(kTokenBytes)));
+    v1::KeptToken& kept = *out.kept.add_tokens();
+    kept.set_role(shown.role());
+    kept.set_salt(access::randomBytes(kSaltBytes));
+    const access::Digest digest = access::digestOf(kept.salt(), shown.token());
+    kept.set_digest(digest.data(), digest.size());
   }
   return out;
 }

@@ -48,15 +48,12 @@ void Audit::command(const rooms::Command& command, access::AuditEvent event) {
   if (!sender.details || !action) return;  // the room's own
   const bool is_operator = sender.role >= core::Role::kOperator;
   if (!isOperatorsCommand(command.message) && !(is_operator && concernsBoatsOfOthers(command.message))) return;
-  event.room = sender.details->room;
   event.kind = action->name();
   event.content = wire::toJson(command.message.GetReflection()->GetMessage(command.message, action));
+  event.who = *sender.details;
   event.role = core::roleName(sender.role);
-  event.subject = sender.details->subject;
-  event.name = sender.details->name;
   event.person_id = sender.person_id;
   event.session_id = sender.session_id;
-  event.peer = sender.details->peer;
   // A flood of operators' commands ends here as BUSY. A stroke is 30 messages per second.
   const bool is_frequent =
       !is_operator || command.message.has_stroke() || event.reason == nameOf(v1::REJECT_REASON_BUSY);
@@ -70,13 +67,11 @@ void Audit::request(std::string_view event, const core::SenderDetails& who, core
                     const std::string& error) {
   if (!file_) return;
   access::AuditEvent line{.event = event,
-                          .room = who.room,
                           .content = std::move(content),
                           .outcome = error.empty() ? "applied" : "rejected",
                           .message = error,
-                          .role = core::roleName(role),
-                          .subject = who.subject,
-                          .peer = who.peer};
+                          .who = who,
+                          .role = core::roleName(role)};
   if (role >= core::Role::kOperator)
     write(line);
   else
@@ -85,12 +80,7 @@ void Audit::request(std::string_view event, const core::SenderDetails& who, core
 
 void Audit::refused(const core::SenderDetails& who, const std::string& why) {
   if (!file_) return;
-  writeRarely({.event = "refused",
-               .room = who.room,
-               .message = why,
-               .subject = who.subject,
-               .name = who.name,
-               .peer = who.peer});
+  writeRarely({.event = "refused", .message = why, .who = who});
 }
 
 void Audit::write(const access::AuditEvent& event) {

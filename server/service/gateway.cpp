@@ -1,4 +1,3 @@
-#include <spindrift/core/monotonic.h>
 #include <spindrift/service/gateway.h>
 #include <spindrift/service/state_topics.h>
 #include <spindrift/service/stream_index.h>
@@ -45,8 +44,9 @@ Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsS
                  std::function<void()> on_drain)
     : access_(std::move(access)),
       sessions_(rules, access_, counters_),
-      rest_(access_, counters_, sources,
-            {[this](const rooms::Room& room) { sessions_.dismiss(room.name()); }, std::move(on_drain)}) {}
+      rest_(
+          access_, counters_, sources, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },
+          std::move(on_drain)) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
@@ -77,9 +77,9 @@ void Gateway::sessionOpened(net::SessionId session, const std::string& room, con
   sessions_.refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 
-void Gateway::drain(const v1::Draining& draining) {
+void Gateway::drain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to) {
   rest_.drain();
-  sessions_.drain(draining);
+  sessions_.drain(network, closes_in, go_to);
 }
 
 // Reports of rooms
@@ -150,11 +150,7 @@ void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, 
 }
 
 void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
-  if (command.sender.request_id != 0) {
-    counters_.rejected(rejection.reason());
-    access_.audit().rejected(command, rejection);
-    return rest_.commandRejected(command, rejection);
-  }
+  if (command.sender.request_id != 0) return rest_.commandRejected(command, rejection);
   if (cluster_.audience && cluster_.audience->commandRejected(command, rejection)) {
     counters_.rejected(rejection.reason());
     return access_.audit().rejected(command, rejection);

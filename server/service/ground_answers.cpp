@@ -6,6 +6,7 @@
 #include <spindrift/service/ground_answers.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/ground.h>
+#include <spindrift/v1/api.pb.h>
 
 namespace spindrift::service {
 namespace {
@@ -15,8 +16,8 @@ constexpr double kLargestStep = 32767.0;
 /// Rooms whose answers are kept; a server with more computes some anew.
 constexpr std::size_t kKeptMaxCount = 64;
 
-}  // namespace
-
+/// Returns the ground of a scene with a wave: one height per cell, without obstacles. Errors of rounding: at most half
+/// of `quantum_m`, which is a 32,767th of the largest height or depth and at least 0.1 mm.
 v1::Ground groundOf(const core::Scene& scene) {
   const core::WaveCells water = core::waveCellsOf(*scene.wave);
   const auto [count_x, count_z] = water.count;
@@ -46,6 +47,8 @@ v1::Ground groundOf(const core::Scene& scene) {
   }
   return out;
 }
+
+}  // namespace
 
 std::shared_ptr<const std::string> GroundAnswers::of(const std::shared_ptr<const rooms::Room>& room) {
   const auto snapshot = room->snapshot();

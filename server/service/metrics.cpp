@@ -23,6 +23,12 @@ class Page {
     text_ += labels.empty() ? fmt::format("spindrift_{} {}\n", name_, value)
                             : fmt::format("spindrift_{}{{{}}} {}\n", name_, labels, value);
   }
+  /// The only sample of a name, without labels.
+  template <typename Number>
+  void one(const char* name, const char* type, const char* help, Number value) {
+    head(name, type, help);
+    sample("", value);
+  }
   /// A sample whose name is that of head() and an ending, as those of a histogram.
   template <typename Number>
   void part(const char* ending, const std::string& labels, Number value) {
@@ -157,40 +163,37 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
 }
 
 void writeNetwork(Page& page, const net::ServerStats& stats) {
-  const auto one = [&](const char* name, const char* type, const char* help, std::uint64_t value) {
-    page.head(name, type, help);
-    page.sample("", value);
-  };
-  one("sessions", "gauge", "WebSocket sessions open now.", stats.open_session_count);
-  one("sessions_accepted_total", "counter", "WebSocket sessions since the start.", stats.accepted_session_count);
-  one("connections", "gauge", "TCP connections open now, those of sessions included.", stats.open_connection_count);
-  one("connections_max", "gauge", "TCP connections that may be open at a time.", stats.connection_max_count);
-  one("failed_accepts_total", "counter", "Times that the system had no descriptor or memory for a new connection.",
-      stats.failed_accept_count);
-  one("silent_sessions_total", "counter", "Sessions cut off because nothing came from them, not even pongs.",
-      stats.silent_session_count);
-  one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
-  one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
-  one("session_writes_total", "counter", "Writes to sessions, of one or more messages each.", stats.write_count);
-  one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
-      stats.dropped_frame_count);
-  one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",
-      stats.evicted_session_count);
-  one("lowered_levels_total", "counter", "Times a session was given a lower level of detail.",
-      stats.lowered_level_count);
-  one("raised_levels_total", "counter", "Times a session was given a higher level of detail again.",
-      stats.raised_level_count);
-  one("delayed_messages_total", "counter", "Messages that waited for the rate of their address.",
-      stats.delayed_message_count);
-  one("control_queue", "gauge", "Control messages that wait to be sent, over all sessions.",
-      stats.waiting_control_count);
-  one("frame_queue", "gauge", "Layer frames that wait to be sent, over all sessions.", stats.waiting_frame_count);
-  one("tls_handshakes_total", "counter", "TLS handshakes that were completed.", stats.tls_handshake_count);
-  one("tls_handshakes_failed_total", "counter", "Connections to the TLS port that came to no session of TLS.",
-      stats.failed_tls_handshake_count);
-  one("tls_reloads_total", "counter", "Times that a changed certificate was taken over.", stats.tls_reload_count);
-  one("tls_reloads_failed_total", "counter", "Times that a changed certificate could not be used.",
-      stats.failed_tls_reload_count);
+  page.one("sessions", "gauge", "WebSocket sessions open now.", stats.open_session_count);
+  page.one("sessions_accepted_total", "counter", "WebSocket sessions since the start.", stats.accepted_session_count);
+  page.one("connections", "gauge", "TCP connections open now, those of sessions included.",
+           stats.open_connection_count);
+  page.one("connections_max", "gauge", "TCP connections that may be open at a time.", stats.connection_max_count);
+  page.one("failed_accepts_total", "counter", "Times that the system had no descriptor or memory for a new connection.",
+           stats.failed_accept_count);
+  page.one("silent_sessions_total", "counter", "Sessions cut off because nothing came from them, not even pongs.",
+           stats.silent_session_count);
+  page.one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
+  page.one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
+  page.one("session_writes_total", "counter", "Writes to sessions, of one or more messages each.", stats.write_count);
+  page.one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
+           stats.dropped_frame_count);
+  page.one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",
+           stats.evicted_session_count);
+  page.one("lowered_levels_total", "counter", "Times a session was given a lower level of detail.",
+           stats.lowered_level_count);
+  page.one("raised_levels_total", "counter", "Times a session was given a higher level of detail again.",
+           stats.raised_level_count);
+  page.one("delayed_messages_total", "counter", "Messages that waited for the rate of their address.",
+           stats.delayed_message_count);
+  page.one("control_queue", "gauge", "Control messages that wait to be sent, over all sessions.",
+           stats.waiting_control_count);
+  page.one("frame_queue", "gauge", "Layer frames that wait to be sent, over all sessions.", stats.waiting_frame_count);
+  page.one("tls_handshakes_total", "counter", "TLS handshakes that were completed.", stats.tls_handshake_count);
+  page.one("tls_handshakes_failed_total", "counter", "Connections to the TLS port that came to no session of TLS.",
+           stats.failed_tls_handshake_count);
+  page.one("tls_reloads_total", "counter", "Times that a changed certificate was taken over.", stats.tls_reload_count);
+  page.one("tls_reloads_failed_total", "counter", "Times that a changed certificate could not be used.",
+           stats.failed_tls_reload_count);
   page.head("tls_certificate_expires_seconds", "gauge", "Time until the certificate expires; only with TLS.");
   if (stats.certificate_expires) {
     const auto left = *stats.certificate_expires - std::chrono::system_clock::now();
@@ -212,8 +215,7 @@ void writeFaults(Page& page, const rooms::SimulationThread& rooms) {
         std::pair("device", ErrorCode::kNoDevice), std::pair("scene", ErrorCode::kInvalidInput)}) {
     page.sample(metricLabel("cause", cause), rooms.waterFailureCount(code));
   }
-  page.head("clock_steps_total", "counter", "Times that the system's clock was set.");
-  page.sample("", rooms.clockStepCount());
+  page.one("clock_steps_total", "counter", "Times that the system's clock was set.", rooms.clockStepCount());
 }
 
 void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
@@ -239,8 +241,7 @@ void writeEncoder(Page& page, const rooms::EncoderThread& encoder) {
 }
 
 void writeCommands(Page& page, const CommandCounters& commands) {
-  page.head("commands_applied_total", "counter", "Commands carried out.");
-  page.sample("", commands.appliedCount());
+  page.one("commands_applied_total", "counter", "Commands carried out.", commands.appliedCount());
   page.head("commands_rejected_total", "counter", "Commands not carried out, by reason.");
   for (int k = v1::RejectReason_MIN + 1; k < v1::RejectReason_ARRAYSIZE; ++k) {
     const auto reason = static_cast<v1::RejectReason>(k);
@@ -249,33 +250,23 @@ void writeCommands(Page& page, const CommandCounters& commands) {
 }
 
 void writeAccess(Page& page, const AccessControl& access) {
-  page.head("person_busy_total", "counter", "Commands rejected because one person sent too many, over all sessions.");
-  page.sample("", access.people().refusedCount());
-  if (!access.audit().isOn()) return;
-  page.head("audit_lines_total", "counter", "Lines written to the audit log.");
-  page.sample("", access.audit().writtenCount());
-  page.head("audit_lost_total", "counter", "Lines of the audit log that could not be written.");
-  page.sample("", access.audit().lostCount());
-  page.head("audit_left_out_total", "counter", "Refusals that the rate of the audit log left out.");
-  page.sample("", access.audit().leftOutCount());
+  page.one("person_busy_total", "counter", "Commands rejected because one person sent too many, over all sessions.",
+           access.people().refusedCount());
+  const access::AuditFile* const file = access.audit().file();
+  if (!file) return;
+  page.one("audit_lines_total", "counter", "Lines written to the audit log.", file->writtenCount());
+  page.one("audit_lost_total", "counter", "Lines of the audit log that could not be written.", file->lostCount());
+  page.one("audit_left_out_total", "counter", "Refusals that the rate of the audit log left out.",
+           access.audit().leftOutCount());
 }
 
 }  // namespace
 
 std::string metricLabel(std::string_view name, std::string_view value) {
   std::string out = std::string(name) + "=\"";
-  for (std::size_t at = 0; at < value.size();) {
-    const std::size_t length = core::utf8SequenceLength(value, at);
-    const std::string_view character = value.substr(at, length);
-    if (length == 0)
-      out += "\xEF\xBF\xBD";
-    else if (character == "\n")
-      out += "\\n";
-    else if (character == "\"" || character == "\\")
-      (out += '\\') += character;
-    else
-      out += character;
-    at += length == 0 ? 1 : length;
+  for (const char c : core::toValidUtf8(value)) {
+    if (c == '"' || c == '\\' || c == '\n') out += '\\';
+    out += c == '\n' ? 'n' : c;
   }
   return out += '"';
 }
@@ -293,8 +284,7 @@ std::string metricsText(const net::ServerStats& network, const CommandCounters& 
 
 std::string metric(const char* name, const char* type, const char* help, double value) {
   Page page;
-  page.head(name, type, help);
-  page.sample("", value);
+  page.one(name, type, help, value);
   return page.take();
 }
 

@@ -100,8 +100,13 @@ unsigned httpStatusOf(v1::RejectReason reason) {
   }
 }
 
-RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests)
-    : access_(access), counters_(counters), sources_(sources), requests_(std::move(requests)) {}
+RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
+                 std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain)
+    : access_(access),
+      counters_(counters),
+      sources_(sources),
+      dismiss_(std::move(dismiss)),
+      on_drain_(std::move(on_drain)) {}
 
 void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond,
                      const std::optional<access::Grant>& decided) {
@@ -294,11 +299,11 @@ void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
   if (call.request.method != "POST") return respond(wrongMethod("POST"));
   if (!call.isOperator() || call.grant.rooms)
     return respond(problem(403, "ending the server takes the role of operator in all rooms"));
-  if (!requests_.drain) return respond(problem(409, "this server is part of another program, which has to end it"));
+  if (!on_drain_) return respond(problem(409, "this server is part of another program, which has to end it"));
   if (!call.request.body.empty()) return respond(bodyIsNotEmpty());
   access_.audit().request("drain_asked", call.details(""), call.grant.role, "", "");
   // Once: a client may repeat a request whose answer was lost, and a second signal would end the wait for the clients.
-  if (!is_draining_.exchange(true)) requests_.drain();
+  if (!is_draining_.exchange(true)) on_drain_();
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 
@@ -307,12 +312,11 @@ void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
   const auto report = [this, who = call.details(call.path[1]), role = call.grant.role](const std::string& error) {
     access_.audit().request("room_closed", who, role, "", error);
   };
-  rooms_->closeRoom(call.path[1], requests_.dismiss,
-                    [report, respond = std::move(respond)](const core::Result<void>& closed) {
-                      report(closed ? "" : closed.error().message);
-                      if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
-                      respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
-                    });
+  rooms_->closeRoom(call.path[1], dismiss_, [report, respond = std::move(respond)](const core::Result<void>& closed) {
+    report(closed ? "" : closed.error().message);
+    if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
+    respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
+  });
 }
 
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {
@@ -340,11 +344,7 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
   const auto rejection = access_.takeCommand(call.grant.is_person ? call.grant.subject : "")
                              ? room->admit(command)
                              : wire::rejection(v1::REJECT_REASON_BUSY, "", access_.busy(), command.id());
-  if (rejection) {
-    counters_.rejected(rejection->reason());
-    access_.audit().rejected(command, *rejection);
-    commandRejected(command, *rejection);
-  }
+  if (rejection) commandRejected(command, *rejection);
 }
 
 net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
@@ -364,6 +364,8 @@ void RestApi::commandApplied(const rooms::Command& command, std::uint64_t tick, 
 }
 
 void RestApi::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
+  counters_.rejected(rejection.reason());
+  access_.audit().rejected(command, rejection);
   if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
 }
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -115,7 +117,18 @@ void Sessions::dismiss(const std::string& room, net::CloseCode code, const std::
   for (const net::SessionId session : members) refuse(session, code, why);
 }
 
-void Sessions::drain(const v1::Draining& draining) {
+void Sessions::drain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to) {
+  /// A server that is started again can take this many clients per second: handshake, greeting and keyframes.
+  constexpr double kReturnsPerS = 200.0;
+  constexpr double kRestart_s = 1.0;  // shortest time in which a server comes back
+  const double closes_in_s = std::chrono::duration<double>(closes_in).count();
+  const double spread_s = static_cast<double>(network.stats().open_session_count) / kReturnsPerS;
+  v1::Draining draining;
+  draining.set_closes_in_s(closes_in_s);
+  draining.set_go_to(go_to);
+  draining.set_reconnect_after_min_s(go_to.empty() ? closes_in_s + kRestart_s : 0.0);
+  draining.set_reconnect_after_max_s(go_to.empty() ? closes_in_s + kRestart_s + std::max(0.5, spread_s) : closes_in_s);
+  network.drain(std::chrono::seconds(static_cast<std::int64_t>(std::ceil(closes_in_s + kRestart_s))));
   const core::SharedBytes message = wire::draining(draining);
   const std::lock_guard lock(mutex_);
   for (const auto& [session, state] : sessions_) {

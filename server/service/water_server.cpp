@@ -1,4 +1,3 @@
-#include <spindrift/service/drain.h>
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
@@ -31,7 +30,6 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   self->network_ = *std::move(network);
   self->sources_.network = self->network_.get();
   self->simulation_->run();
-  self->port_ = self->network_->port();
   return self;
 }
 
@@ -40,7 +38,7 @@ WaterServer::~WaterServer() {
 }
 
 void WaterServer::drain(std::chrono::milliseconds closes_in, const std::string& go_to) {
-  gateway_->drain(beginDrain(*network_, closes_in, go_to));
+  gateway_->drain(*network_, closes_in, go_to);
 }
 
 void WaterServer::stop() {

@@ -185,7 +185,7 @@ core::Result<FanoutRow> measureServer(const v1::Scene& scene, const gpu::DeviceC
       [&] {
         out.after = (*server)->networkStats();
         out.resident_grown_mb = resident_mb() - begin_mb;
-        out.real_time_factor = (*server)->realTimeFactor();
+        out.real_time_factor = (*server)->simulation().find("")->vitals()->diagnostics.real_time_factor;
       });
   return out;
 }

@@ -32,9 +32,9 @@ struct StepResult {
   std::uint32_t substeps_count = 0;
   double tick_ms = 0.0;
   double substep_ms = 0.0;
-  double particle_us = 0.0;       ///< grid + sph passes, per particle and substep
-  double real_time_factor = 0.0;  ///< of the simulation alone
-  std::vector<gpu::PassCost> passes;
+  double particle_us = 0.0;           ///< grid + sph passes, per particle and substep
+  double real_time_factor = 0.0;      ///< of the simulation alone
+  std::vector<gpu::PassCost> passes;  ///< total_ms: per tick
 };
 
 /// The scene, its parts alone, and, if the number of particles is fixed, the thesis's numbers.
@@ -106,13 +106,13 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
     if (r.particle_count > 0 && d.uniforms.pool_capacity_count == 0 && (pass.name == "grid" || pass.name == "sph"))
       r.particle_us += pass.total_ms * 1e3 / ticks / d.substeps_count / r.particle_count;
   }
-  for (gpu::PassCost& pass : r.passes) pass.mean_ms = pass.total_ms / ticks;
+  for (gpu::PassCost& pass : r.passes) pass.total_ms /= ticks;
   return r;
 }
 
 boost::json::object toJson(const StepResult& r) {
   boost::json::object passes;
-  for (const gpu::PassCost& pass : r.passes) passes[pass.name] = pass.mean_ms;
+  for (const gpu::PassCost& pass : r.passes) passes[pass.name] = pass.total_ms;
   return {{"name", r.name},
           {"particle_count", r.particle_count},
           {"neighbours_count", r.neighbours_count},
@@ -128,7 +128,7 @@ void print(std::FILE* out, const StepResult& r) {
   fmt::print(out, "{:<18} {:>9} {:>8} {:>9.3f} {:>9.3f} {:>11} {:>6.2f}  ", r.name, r.particle_count, r.substeps_count,
              r.tick_ms, r.substep_ms, r.particle_us > 0 ? fmt::format("{:.3f}", r.particle_us) : "-",
              r.real_time_factor);
-  for (const gpu::PassCost& pass : r.passes) fmt::print(out, " {} {:.2f}", pass.name, pass.mean_ms);
+  for (const gpu::PassCost& pass : r.passes) fmt::print(out, " {} {:.2f}", pass.name, pass.total_ms);
   fmt::print(out, "\n");
 }
 

@@ -132,7 +132,7 @@ TEST_F(Rooms, StopClosesEveryClientAndThePort) {
     EXPECT_EQ(one.ws().closeCode(), 1001);
   }
   stopped.get();
-  EXPECT_EQ(server().summary().size(), 2u);
+  EXPECT_EQ(server().simulation().summary().size(), 2u);
   EXPECT_FALSE(WsClient().connect("127.0.0.1", port));
   server().stop();  // a second call does no harm
 }

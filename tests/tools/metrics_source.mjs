@@ -38,8 +38,9 @@ export function readMetrics(source = readFileSync(join(repository, "server/servi
       if (!type) throw new Error(`metrics.cpp: ${match[1]} has no page.head(name, …)`);
       writers.set(match[1], { type: type[1], labels: labelsIn(code) });
     }
-    // Calls of them, and of page.head itself, whose samples follow.
-    const calls = [...rest.matchAll(/\b(page\.head|\w+)\(\s*"([a-z_]+)",\s*"([^"]*)"/g)].filter(
+    // Calls of them, of page.one, and of page.head itself, whose samples follow.
+    writers.set("page.one", { labels: [] });
+    const calls = [...rest.matchAll(/\b(page\.(?:head|one)|\w+)\(\s*"([a-z_]+)",\s*"([^"]*)"/g)].filter(
       ([, writer]) => writer === "page.head" || writers.has(writer),
     );
     calls.forEach((call, index) => {

@@ -114,15 +114,6 @@ TEST(Access, TokensOverTheLimitAreRefused) {
   EXPECT_THAT(refusal("player " + std::string(kTokenMaxBytes + 1, 'a')), HasSubstr("at most 8192"));
 }
 
-TEST(LiveAccess, CanBeReplacedWhileItIsUsed) {
-  LiveAccess live(parsed("player aaaaaaaaaaaaaaaa"));
-  const auto before = live.get();
-  live.set(parsed("player bbbbbbbbbbbbbbbb"));
-  EXPECT_TRUE(before->resolve("aaaaaaaaaaaaaaaa", kNow));
-  EXPECT_FALSE(live.get()->resolve("aaaaaaaaaaaaaaaa", kNow));
-  EXPECT_TRUE(live.get()->resolve("bbbbbbbbbbbbbbbb", kNow));
-}
-
 TEST(Access, ReadsABearerHeader) {
   EXPECT_EQ(*Access::bearerToken(""), "");
   EXPECT_EQ(*Access::bearerToken("Bearer abc"), "abc");

@@ -31,19 +31,17 @@ std::vector<std::string> linesOf(const std::filesystem::path& file) {
 }
 
 TEST(AuditLine, SaysWhoDidWhatWhereAndWhen) {
-  const auto line = objectOf(auditLine({.event = "command",
-                                        .room = "main",
-                                        .kind = "set_parameter",
-                                        .content = R"({"path":"wave.depth_m","value":1.5})",
-                                        .outcome = "applied",
-                                        .tick = 0,
-                                        .has_tick = true,
-                                        .role = "operator",
-                                        .subject = "ada",
-                                        .name = "Ada",
-                                        .person_id = 3,
-                                        .peer = "127.0.0.1:5000"},
-                                       kTime));
+  const auto line =
+      objectOf(auditLine({.event = "command",
+                          .kind = "set_parameter",
+                          .content = R"({"path":"wave.depth_m","value":1.5})",
+                          .outcome = "applied",
+                          .tick = 0,
+                          .has_tick = true,
+                          .who = {.room = "main", .subject = "ada", .name = "Ada", .peer = "127.0.0.1:5000"},
+                          .role = "operator",
+                          .person_id = 3},
+                         kTime));
   EXPECT_EQ(line.at("time").as_string(), "2027-01-15T08:00:00.123Z");
   EXPECT_EQ(line.at("content").at("value").as_double(), 1.5);
   EXPECT_EQ(line.at("tick").as_int64(), 0);
@@ -55,7 +53,7 @@ TEST(AuditLine, SaysWhoDidWhatWhereAndWhen) {
 TEST(AuditLine, NoTextCanEndALineOrForgeAField) {
   const std::string evil = "Ada\",\"role\":\"operator\"}\n{\"event\":\"room_closed\"\x1b[2J\u202E\xFF";
   const std::string text = auditLine(
-      {.event = "command", .room = evil, .message = evil, .subject = evil, .name = evil, .peer = evil}, kTime);
+      {.event = "command", .message = evil, .who = {.room = evil, .subject = evil, .name = evil, .peer = evil}}, kTime);
   EXPECT_EQ(std::ranges::count(text, '\n'), 1);
   EXPECT_EQ(text.find('\x1b'), std::string::npos);
   const auto line = objectOf(text);

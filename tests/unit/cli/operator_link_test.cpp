@@ -1,9 +1,7 @@
 // Who is an operator where no roles are configured.
-#include "operator_link.h"
-
 #include <gmock/gmock.h>
 
-#include "access_files.h"
+#include "access_options.h"
 #include "command_line.h"
 
 namespace spindrift::test {

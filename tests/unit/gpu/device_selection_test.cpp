@@ -50,7 +50,7 @@ class Selecting : public testing::Test {
     }
     return attempt;
   }
-  core::Result<Selection> select(const DeviceChoice& choice = {}) {
+  core::Result<egl::Attempt> select(const DeviceChoice& choice = {}) {
     const Machine machine{.variable =
                               [this](const std::string& name) {
                                 const auto found = variables.find(name);
@@ -83,9 +83,10 @@ TEST_F(Selecting, AutoTakesTheNextDeviceWhenTheProbeFails) {
   const auto selected = select();
   ASSERT_TRUE(selected);
   EXPECT_EQ(selected->info.index, 1);
-  EXPECT_THAT(selected->why, AllOf(HasSubstr("device 1 (GPU at card1): first hardware device"),
-                                   HasSubstr("not used: device 0 (GPU at card0): the probe program does not compile"),
-                                   Not(HasSubstr("\n"))));
+  EXPECT_THAT(
+      selected->info.why,
+      AllOf(HasSubstr("device 1 (GPU at card1): first hardware device"),
+            HasSubstr("not used: device 0 (GPU at card0): the probe program does not compile"), Not(HasSubstr("\n"))));
   EXPECT_EQ(open_count, 1);
 }
 
@@ -95,7 +96,7 @@ TEST_F(Selecting, AutoFallsBackToSoftwareWithTheReason) {
   const auto selected = select();
   ASSERT_TRUE(selected);
   EXPECT_TRUE(selected->info.is_software);
-  EXPECT_THAT(selected->why, HasSubstr("software, because no hardware device works; not used: device 0"));
+  EXPECT_THAT(selected->info.why, HasSubstr("software, because no hardware device works; not used: device 0"));
 }
 
 TEST_F(Selecting, AutoAdvisesWhereHardwareIsNotUsed) {

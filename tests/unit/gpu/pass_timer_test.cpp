@@ -59,7 +59,6 @@ TEST_F(PassTimersTest, SumOfScopesStaysWithinTheOuterScope) {
   EXPECT_EQ(costs[2].scope_count, 1u);
   EXPECT_GT(costs[1].total_ms, 0.0);
   EXPECT_GT(costs[2].total_ms, 0.0);
-  EXPECT_DOUBLE_EQ(costs[1].mean_ms, costs[1].total_ms / 3);
   // All three are timestamps of the device, so that no other clock has to agree.
   EXPECT_LE(costs[1].total_ms + costs[2].total_ms, costs[0].total_ms + 1e-9);
   EXPECT_EQ(timers.droppedCount(), 0u);

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <chrono>
-#include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -59,25 +57,5 @@ std::string otherRoom(std::string_view room);
 
 /// Error of a token that nothing here knows: another list of tokens may know it.
 inline constexpr std::string_view kUnknownToken = "this server does not know that token";
-
-/// The access control of a running server: can be replaced, when files of tokens and keys are read again. Any thread.
-class LiveAccess {
- public:
-  explicit LiveAccess(Access access) : now_(std::make_shared<const Access>(std::move(access))) {}
-
-  [[nodiscard]] std::shared_ptr<const Access> get() const {
-    const std::lock_guard lock(mutex_);
-    return now_;
-  }
-  void set(Access access) {
-    auto next = std::make_shared<const Access>(std::move(access));
-    const std::lock_guard lock(mutex_);
-    now_ = std::move(next);
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::shared_ptr<const Access> now_;
-};
 
 }  // namespace spindrift::access

@@ -14,13 +14,13 @@
 #include <thread>
 
 #include <spindrift/core/result.h>
+#include <spindrift/core/sender.h>
 
 namespace spindrift::access {
 
 /// One event. Fields that are empty or 0 are left out of the line.
 struct AuditEvent {
-  std::string_view event;  ///< "command", "room_opened", "room_closed", "snapshot_asked", "refused"
-  std::string room{};
+  std::string_view event;      ///< "command", "room_opened", "room_closed", "snapshot_asked", "refused"
   std::string_view kind{};     ///< "set_parameter"; of "command"
   std::string content{};       ///< JSON object: the fields of the command or of the request
   std::string_view outcome{};  ///< "applied", "rejected"
@@ -28,12 +28,10 @@ struct AuditEvent {
   std::string message{};       ///< one line: why
   std::uint64_t tick = 0;      ///< at which it was applied
   bool has_tick = false;
+  core::SenderDetails who{};
   std::string_view role{};
-  std::string subject{};  ///< Grant::subject
-  std::string name{};     ///< what the person is called in the room
   std::uint32_t person_id = 0;
   std::uint64_t session_id = 0;
-  std::string peer{};                ///< address and port
   std::uint64_t left_out_count = 0;  ///< events of this kind that the rate limit left out before this one
 };
 

@@ -28,8 +28,7 @@ class EdgeServer final : public net::Application {
 
   /// Does for an edge what WaterServer::drain() does.
   void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
-  /// Calls net::Server::reloadCertificate().
-  void reloadCertificate() { network_->reloadCertificate(); }
+  [[nodiscard]] net::Server& network() { return *network_; }
   /// Closes the sessions with 1001. Idempotent.
   void stop();
   [[nodiscard]] service::AccessControl& access() { return access_; }

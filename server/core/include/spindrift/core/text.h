@@ -25,6 +25,9 @@ std::string rfc3339(std::chrono::system_clock::time_point time);
 /// Returns the length in bytes of the UTF-8 sequence that starts at `text[at]`; 0 where none is valid.
 std::size_t utf8SequenceLength(std::string_view text, std::size_t at);
 
+/// Returns `text` with U+FFFD in place of each byte that belongs to no UTF-8 sequence.
+std::string toValidUtf8(std::string_view text);
+
 /// Returns `text` without invalid UTF-8 and without characters that change how surrounding text looks: control
 /// characters, line separators, and direction controls (Unicode TR 36, section 2.2). Cut at a character boundary to at
 /// most `max_bytes`.

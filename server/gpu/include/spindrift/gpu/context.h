@@ -20,8 +20,9 @@
 namespace spindrift::gpu {
 
 namespace egl {
+struct Attempt;
 struct Handles;
-}
+}  // namespace egl
 class AccessTracker;
 struct BufferAccess;
 class ProgramCache;
@@ -108,7 +109,7 @@ class Context {
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
   [[nodiscard]] const DeviceLimits& limits() const { return device_.limits; }
   /// Returns one line: which device was chosen and why.
-  [[nodiscard]] const std::string& why() const { return why_; }
+  [[nodiscard]] const std::string& why() const { return device_.why; }
 
   /// Makes earlier shader writes visible to the kinds of access named in `readers`. The caller issues the barriers
   /// between passes. Buffer and ReadbackRing issue those around upload, download, clear and copy where they are needed.
@@ -181,13 +182,11 @@ class Context {
     std::function<bool()> in_use;
   };
 
-  Context(const egl::Handles& handles, DeviceInfo device, std::string why, const Checks& checks,
-          const std::string& shader_folder);
+  Context(egl::Attempt chosen, const Checks& checks, const std::string& shader_folder);
   void issue(Barrier readers);
 
   std::unique_ptr<egl::Handles> egl_;
   DeviceInfo device_;
-  std::string why_;
   Checks checks_;
   std::atomic<bool> is_lost_{false};
   std::atomic<std::uint64_t> debug_error_count_{0};

@@ -17,7 +17,7 @@ struct DeviceChoice {
   enum class Kind {
     kAuto,      ///< the first hardware device that meets the program's needs and passes a probe, otherwise software
     kSoftware,  ///< Mesa's software rasteriser
-    kIndex,     ///< the hardware device with this index in listDevices()
+    kIndex,     ///< the hardware device with this index in GpuInfo::devices
     kName,      ///< the hardware device with this DRM file or UUID
   };
   Kind kind = Kind::kAuto;
@@ -61,20 +61,18 @@ struct DeviceInfo {
   bool is_software = false;
   bool tells_of_resets = false;  ///< the driver reports device resets; see Context::isLost()
   std::string problem;           ///< empty: the device works; otherwise the reason in one line
+  std::string why;               ///< of the chosen device, in one line; else empty
   std::string advice;            ///< of the chosen device: why it is not the hardware, and what to do; else empty
   DeviceLimits limits;
 };
 
-/// Tries and describes every EGL device: hardware in EGL's order, each device once even if several vendor libraries
-/// list it, then one software rasteriser. Devices that cannot make an OpenGL 4.5 core context, are below the program's
-/// needs or fail a small probe program are listed with `problem` set. Leaves the calling thread's current context
-/// unchanged.
-std::vector<DeviceInfo> listDevices();
-
 /// The devices as `spindrift info` prints them.
 struct GpuInfo {
-  std::string egl_client_version;    ///< libEGL's client version without a display; empty when not available
-  std::vector<DeviceInfo> devices;   ///< listDevices()
+  std::string egl_client_version;  ///< libEGL's client version without a display; empty when not available
+  /// Every EGL device: hardware in EGL's order, each device once even if several vendor libraries list it, then one
+  /// software rasteriser. Devices that cannot make an OpenGL 4.5 core context, are below the program's needs or fail a
+  /// small probe program have `problem` set.
+  std::vector<DeviceInfo> devices;
   std::optional<DeviceInfo> chosen;  ///< the device that `choice` selects; none when nothing works
   std::string why;                   ///< Context::why(), or the error when nothing works
   std::size_t shader_count = 0;      ///< entry points embedded in the program

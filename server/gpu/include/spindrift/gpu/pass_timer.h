@@ -14,7 +14,6 @@ namespace spindrift::gpu {
 /// Cost of one name since the last take().
 struct PassCost {
   std::string name;
-  double mean_ms = 0.0;           ///< per scope; multiply by the scopes per tick to get the time per tick
   double total_ms = 0.0;          ///< of the scopes whose result has arrived
   std::uint64_t scope_count = 0;  ///< scopes whose result has arrived
 };
@@ -40,15 +39,15 @@ class PassTimers {
 
    private:
     friend class PassTimers;
-    Scope(PassTimers& timers, std::size_t name_index);
+    Scope(PassTimers& timers, std::size_t query_index) : timers_(timers), query_index_(query_index) {}
     PassTimers& timers_;
     std::size_t query_index_;
   };
 
   /// Measures the commands submitted until the scope ends, under `name`.
-  Scope scope(std::string_view name) { return Scope(*this, nameIndex(name)); }
+  Scope scope(std::string_view name) { return Scope(*this, openQuery(name)); }
 
-  /// Returns means since the last take(), in the order in which names first appeared; names without a new result are
+  /// Returns costs since the last take(), in the order in which names first appeared; names without a new result are
   /// left out.
   [[nodiscard]] std::vector<PassCost> take();
   /// Returns the number of scopes that were not measured because the ring was full.
@@ -64,8 +63,7 @@ class PassTimers {
     bool is_closed = false;
   };
 
-  std::size_t nameIndex(std::string_view name);
-  std::size_t openQuery(std::size_t name_index);
+  std::size_t openQuery(std::string_view name);
   void collect();
 
   Context& ctx_;

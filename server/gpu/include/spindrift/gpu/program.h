@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <spindrift/core/result.h>
@@ -27,14 +28,9 @@ struct BlockLayout {
   std::map<std::string, std::uint32_t> offsets;  ///< member -> offset in bytes; arrays as "name[0]"
 };
 
-/// A plain uniform in OpenGL's types.
-struct UniformValue {
-  enum class Type { kUint, kInt, kFloat };
-  std::string name;
-  std::int32_t location = -1;
-  Type type = Type::kUint;
-  std::uint32_t bits = 0;
-};
+/// Value of a plain uniform in OpenGL's types.
+using UniformValue = std::variant<std::uint32_t, std::int32_t, float>;
+using UniformValues = std::map<std::string, UniformValue, std::less<>>;  ///< by name
 
 struct CompiledProgram;
 
@@ -63,9 +59,7 @@ class Program {
 
   /// Sets a plain uniform. A uniform that the compiler removed is ignored. A name that the shader's text does not
   /// contain is a bug of the caller: asserted in debug builds, otherwise logged once and counted.
-  void setUniform(std::string_view name, std::uint32_t value);
-  void setUniform(std::string_view name, std::int32_t value);
-  void setUniform(std::string_view name, float value);
+  void setUniform(std::string_view name, UniformValue value);
 
   /// Returns the blocks by the name after `uniform` or `buffer`; blocks that the shader does not use may be missing.
   /// For tests that compare shaders/shared with the driver's layout.
@@ -77,18 +71,14 @@ class Program {
     void operator()(Context* ctx) const;
   };
   [[nodiscard]] std::int32_t location(std::string_view name);
-  void setUniform(std::string_view name, UniformValue::Type type, std::uint32_t bits);
-  /// Looks up the uniform locations again after the shader was recompiled.
-  void followReload();
   /// Prepares the program, its uniforms and the memory that it reads for a dispatch.
   void prepare(const Buffer* arguments);
 
   std::unique_ptr<Context, Uncount> ctx_;  ///< not owned
   std::string path_;
   std::shared_ptr<CompiledProgram> compiled_;
-  std::uint64_t handle_ = 0;      ///< unique among the Programs of the context
-  std::uint32_t generation_ = 0;  ///< generation of `compiled_` for which `uniforms_` were located
-  std::vector<UniformValue> uniforms_;
+  std::uint64_t handle_ = 0;  ///< unique among the Programs of the context
+  UniformValues uniforms_;
 };
 
 }  // namespace spindrift::gpu

@@ -27,9 +27,7 @@ class ReadbackRing {
   /// A finished slot with the copied data, readable while a reference exists. Dropping it makes no OpenGL call.
   class Slot {
    public:
-    ~Slot();
-    Slot(const Slot&) = delete;
-    Slot& operator=(const Slot&) = delete;
+    Slot(std::uint64_t tag, std::span<const std::byte> bytes) : tag_(tag), bytes_(bytes) {}
 
     [[nodiscard]] std::uint64_t tag() const { return tag_; }
     /// Bytes of the slot up to the end of the last copied range.
@@ -38,10 +36,6 @@ class ReadbackRing {
     [[nodiscard]] std::span<const std::uint32_t> words() const;
 
    private:
-    friend class ReadbackRing;
-    Slot(std::shared_ptr<State> state, std::size_t index, std::uint64_t tag, std::span<const std::byte> bytes);
-    std::shared_ptr<State> state_;
-    std::size_t index_;
     std::uint64_t tag_;
     std::span<const std::byte> bytes_;
   };

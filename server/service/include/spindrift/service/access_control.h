@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,7 +12,6 @@
 
 #include <spindrift/access/access.h>
 #include <spindrift/access/person_limits.h>
-#include <spindrift/access/room_token.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/service/audit.h>
 #include <spindrift/v1/api.pb.h>
@@ -45,7 +45,7 @@ class AccessControl {
   [[nodiscard]] core::Result<std::optional<access::Grant>> resolveForwarded(
       std::string_view authorization, std::chrono::system_clock::time_point now) const;
   /// Replaces the server's tokens and keys. Sessions that are open keep what they have.
-  void replace(access::Access access) { access_.set(std::move(access)); }
+  void replace(access::Access access);
 
   /// Takes a command from the budget of the person; true for guests and shared tokens, which have none. The line that
   /// says why not is busy().
@@ -57,7 +57,10 @@ class AccessControl {
   [[nodiscard]] const Audit& audit() const { return audit_; }
 
  private:
-  access::LiveAccess access_;
+  [[nodiscard]] std::shared_ptr<const access::Access> present() const;
+
+  mutable std::mutex mutex_;
+  std::shared_ptr<const access::Access> access_;
   access::PersonLimits people_;
   Audit audit_;
 };

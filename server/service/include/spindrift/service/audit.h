@@ -2,7 +2,6 @@
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -10,7 +9,6 @@
 #include <string_view>
 
 #include <spindrift/access/audit_log.h>
-#include <spindrift/access/grant.h>
 #include <spindrift/core/token_bucket.h>
 #include <spindrift/rooms/command.h>
 #include <spindrift/wire/client_message.h>
@@ -35,9 +33,8 @@ class Audit {
   /// Notes that a token was refused; as many lines as the rate allows.
   void refused(const core::SenderDetails& who, const std::string& why);
 
-  [[nodiscard]] bool isOn() const { return file_ != nullptr; }
-  [[nodiscard]] std::uint64_t writtenCount() const { return file_ ? file_->writtenCount() : 0; }
-  [[nodiscard]] std::uint64_t lostCount() const { return file_ ? file_->lostCount() : 0; }
+  /// Returns null without an audit log.
+  [[nodiscard]] access::AuditFile* file() const { return file_.get(); }
   /// Lines that the rate left out since the start.
   [[nodiscard]] std::uint64_t leftOutCount() const { return left_out_count_; }
 

@@ -32,8 +32,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   [[nodiscard]] Sessions& sessions() { return sessions_; }
   [[nodiscard]] RestApi& rest() { return rest_; }
 
-  /// Tells every client that knows the message, and refuses new rooms from now on. /readyz answers 503.
-  void drain(const v1::Draining& draining);
+  /// Does what Sessions::drain() does, and refuses new rooms from now on. /readyz answers 503.
+  void drain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to);
 
   void serverStarts(net::Hub& served) override { sessions_.serve(served); }
   core::Result<void> acceptSession(const std::string& room) override;

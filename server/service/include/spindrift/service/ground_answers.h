@@ -5,18 +5,11 @@
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <string>
 
-#include <spindrift/core/scene.h>
 #include <spindrift/rooms/room.h>
-#include <spindrift/v1/api.pb.h>
 
 namespace spindrift::service {
-
-/// Returns the ground of a scene with a wave: one height per cell, without obstacles. Errors of rounding: at most half
-/// of `quantum_m`, which is a 32,767th of the largest height or depth and at least 0.1 mm.
-v1::Ground groundOf(const core::Scene& scene);
 
 /// Any thread.
 class GroundAnswers {

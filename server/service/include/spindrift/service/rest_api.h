@@ -26,13 +26,10 @@ unsigned httpStatusOf(v1::RejectReason reason);
 
 class RestApi {
  public:
-  /// Requests to the server around it.
-  struct Requests {
-    std::function<void(const rooms::Room&)> dismiss;  ///< closes a room's sessions before the room closes
-    std::function<void()> drain{};                    ///< ends the server, called once; empty: refused
-  };
-  /// All references must outlive it.
-  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Requests requests);
+  /// All references must outlive it. `dismiss`: closes a room's sessions before the room closes. `on_drain`: ends the
+  /// server, called once; empty: refused.
+  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
+          std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain);
 
   /// Sets the rooms; call it before the network starts.
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
@@ -45,7 +42,8 @@ class RestApi {
   void answer(const net::HttpRequest& request, net::HttpResponder respond,
               const std::optional<access::Grant>& decided = std::nullopt);
 
-  /// Reports the outcome of a request's command, by its request_id.
+  /// Reports the outcome of a request's command, by its request_id. A rejection is counted and entered into the audit
+  /// log.
   void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
 
@@ -77,7 +75,8 @@ class RestApi {
   AccessControl& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
-  const Requests requests_;
+  const std::function<void(const rooms::Room&)> dismiss_;
+  const std::function<void()> on_drain_;
   std::atomic<bool> is_draining_{false};
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   ClusterHooks cluster_;                      ///< set before any request arrives

@@ -58,8 +58,10 @@ class Sessions {
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Closes a session in whose place another connection continues.
   void displace(net::SessionId session);
-  /// Tells every client that knows the message.
-  void drain(const v1::Draining& draining);
+  /// Prepares the end of the process: `network` refuses new sessions from now on. Tells every client that knows the
+  /// message when its session is closed, where to go (empty: back here), and within which time to come, spread so that
+  /// they do not come all at once.
+  void drain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Tells the client why, and closes.
   void refuse(net::SessionId session, net::CloseCode code, const std::string& why);
 

@@ -41,21 +41,13 @@ class WaterServer {
   void drain(std::chrono::milliseconds closes_in, const std::string& go_to);
   /// Closes the sessions with 1001, then ends the simulation. Idempotent.
   void stop();
-  /// Returns whether, after stop(), water of a room that was being opened is still built. The destructor waits for it.
-  [[nodiscard]] bool isBuilding() const { return simulation_->isBuilding(); }
 
-  /// Calls net::Server::reloadCertificate().
-  void reloadCertificate() { network_->reloadCertificate(); }
-
-  [[nodiscard]] std::uint16_t port() const { return port_; }
-  /// Returns the real-time factor of the default room over the last second.
-  [[nodiscard]] double realTimeFactor() const { return simulation_->find("")->vitals()->diagnostics.real_time_factor; }
+  [[nodiscard]] net::Server& network() { return *network_; }
+  [[nodiscard]] std::uint16_t port() const { return network_->port(); }
   [[nodiscard]] Gateway& gateway() { return *gateway_; }
   [[nodiscard]] rooms::SimulationThread& simulation() { return *simulation_; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
-  /// Returns one line per room; filled by stop().
-  [[nodiscard]] const std::vector<std::string>& summary() const { return simulation_->summary(); }
 
  private:
   WaterServer() = default;
@@ -65,7 +57,6 @@ class WaterServer {
   std::unique_ptr<rooms::EncoderThread> encoder_;
   std::unique_ptr<rooms::SimulationThread> simulation_;
   std::unique_ptr<net::Server> network_;
-  std::uint16_t port_ = 0;
 };
 
 }  // namespace spindrift::service

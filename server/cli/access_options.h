@@ -1,8 +1,12 @@
-// Who is the operator of a server that others can reach and for which no roles are configured.
+// Who may, from the options of `serve` and the files that they name; and who is the operator of a server that others
+// can reach and for which no roles are configured.
 #pragma once
 
 #include <cstdint>
 #include <string>
+
+#include <spindrift/access/access.h>
+#include <spindrift/core/result.h>
 
 #include "serve_options.h"
 
@@ -14,6 +18,11 @@ bool isReachable(const FrontOptions& options);
 /// Makes a token for the person who starts the server, if others can reach it and neither tokens, keys nor a role of
 /// guests are given; loadAccess() then makes guests players. Call it once, before loadAccess().
 void makeOperatorToken(FrontOptions& options);
+
+/// Reads tokens (from the file or the environment, or FrontOptions::operator_token), keys for JWTs, and the role of
+/// clients without a token. Errors name the option or the file and the line, never a token or a secret. May be called
+/// again to read changed files.
+core::Result<access::Access> loadAccess(const FrontOptions& options);
 
 /// Returns the lines for standard output at the start: the URL of the page, and if makeOperatorToken() made a token, a
 /// link with it. Browsers do not send the fragment of a link to anybody.
