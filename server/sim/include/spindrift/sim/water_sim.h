@@ -218,8 +218,7 @@ class WaterSim {
   void stirParticles();
   void sampleSurface();
   void breakWaves();
-  void moveBoats();
-  void moveFloaters();
+  void moveBodies();
   void emitParticles(std::uint32_t substep);
   void leadSurface(std::uint32_t substep);
   void movePatch();

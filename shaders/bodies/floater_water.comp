@@ -1,0 +1,213 @@
+// What the water, gravity and a hand do to every floater: its acceleration for the next tick. One group per floater, an invocation
+// per sample of its volume.
+// Reads SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
+// With phi = elevation + head, the level of the water if nothing pressed on it, each sample feels
+//   buoyancy   rho (-g dphi/dx, g, -g dphi/dz) of the volume of it that is under phi
+//   drag       rho Cd A |u| u / 2 along each axis of the floater, u relative to the water, A its area across that axis
+// and the whole, near the surface, the damping of the waves that it makes. It carries along the water around it: half of
+// what it displaces (Lamb 1932, for a sphere). Waves by pressure: bodies/floater_press.comp.
+// The forces are those a part of a tick later (kLead), where a step of contacts that moves first and accelerates then neither feeds nor
+// damps an oscillation: with n steps per tick (n - 1) / 2n of a tick.
+#include "bodies/floater.glsl"
+#include "shared/fixed_point.h"
+#if VARIED && NONLINEAR
+#include "common/terrain_texels.glsl"
+#endif
+
+layout(local_size_x = FLOATER_SAMPLES) in;
+
+layout(std430, binding = FLOATERS) restrict buffer Floaters { vec4 floaters[]; };
+layout(binding = SURFACE) uniform samplerBuffer surface_texels;
+layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
+layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+uniform float lead_s;
+
+const float kAddedMass = 0.5;         // of the displaced mass
+const float kWaveDamping = 0.12;      // of critical, at half immersion
+const float kDentRate_per_s = 4.0;    // how fast the dent follows the immersion
+const float kHandRate_per_s = 8.0;    // of the spring of a hand
+const float kHandMax_mps2 = 60.0;
+const float kHandTurn_per_s = 6.0;
+
+/// Sums over the samples: immersed share; buoyancy [m^4/s^2], its moment; drag, its moment; velocity of the water; level.
+struct WaterSums {
+  vec4 buoyancy;  // w: immersed share
+  vec3 moment;
+  vec4 drag;      // w: level at the middle
+  vec3 drag_moment;
+  vec3 water_mps;
+};
+shared vec4 share_buoyancy[FLOATER_SAMPLES], share_drag[FLOATER_SAMPLES];
+shared vec3 share_moment[FLOATER_SAMPLES], share_drag_moment[FLOATER_SAMPLES], share_water[FLOATER_SAMPLES];
+
+/// A sample of the volume: position from the middle along its axes [m]; half its extents there.
+vec3 sampleAt(Floater b, int k, out vec3 half_m) {
+  if (b.shape == FLOATER_SPHERE) {
+    half_m = b.half_m;
+    return vec3(0.0);
+  }
+  if (b.shape == FLOATER_BOX) {
+    half_m = 0.25 * b.half_m;
+    return (vec3(k & 3, (k >> 2) & 3, k >> 4) * 0.5 - 0.75) * b.half_m;
+  }
+  // 16 columns of equal area, 4 in the inner half of the radius and 12 around; at the radii that give its moments of area.
+  const int column = k & 15;
+  const bool is_inner = column < 4;
+  const float angle = is_inner ? 1.57079633 * (float(column) + 0.5) : 0.52359878 * float(column - 4);
+  const vec2 across = (is_inner ? 0.35355339 : 0.79056942) * vec2(cos(angle), sin(angle));
+  const float along = 0.5 * float(k >> 4) - 0.75;
+  half_m = 0.25 * b.half_m;
+  return (b.shape == FLOATER_CYLINDER_X ? vec3(along, across) : vec3(across.x, along, across.y)) * b.half_m;
+}
+
+/// Share of a sphere below a level at a height over its middle, in radii.
+float capShare(float height) {
+  const float d = clamp(height + 1.0, 0.0, 2.0);
+  return 0.25 * d * d * (3.0 - d);
+}
+
+int levelCell(ivec2 cell) {
+  const ivec2 n = waveCounts();
+  return waveNeighbourX(cell.x, n.x) + n.x * waveNeighbourZ(cell.y, n.y);
+}
+
+/// Level without pressure [m], and whether there is water.
+vec2 levelAt(int i) {
+  const float eta_m = texelFetch(surface_texels, i).x;
+#if VARIED && NONLINEAR
+  const bool is_wet = eta_m > -texelFetch(terrain, i).w + 1e-4;
+#else
+  const bool is_wet = true;
+#endif
+  return is_wet ? vec2(eta_m + ELEVATION_UNIT_M * float(texelFetch(pressure_head, i).x), 1.0) : vec2(eta_m, 0.0);
+}
+
+/// Level, its slopes along x and z, and the share of water around a position; the water's velocity. Bilinear between cells.
+vec4 waterAt(vec2 xz, out vec3 water_mps) {
+  const vec2 u = clamp((xz + waveHalf_m()) / sim.wave_cell_m - 0.5, vec2(-1.0), vec2(waveCounts()));
+  const ivec2 c = ivec2(floor(u));
+  const vec2 t = u - vec2(c);
+  const int a = levelCell(c), b = levelCell(c + ivec2(1, 0)), d = levelCell(c + ivec2(0, 1)), e = levelCell(c + ivec2(1, 1));
+  const vec2 la = levelAt(a), lb = levelAt(b), ld = levelAt(d), le = levelAt(e);
+  const vec2 level = mix(mix(la, lb, t.x), mix(ld, le, t.x), t.y);
+  const vec2 slope = vec2(mix(lb.x - la.x, le.x - ld.x, t.y), mix(ld.x - la.x, le.x - lb.x, t.x)) / sim.wave_cell_m;
+  const vec2 flow_mps = mix(mix(texelFetch(flow_texels, a).xy, texelFetch(flow_texels, b).xy, t.x),
+                            mix(texelFetch(flow_texels, d).xy, texelFetch(flow_texels, e).xy, t.x), t.y);
+  water_mps = vec3(flow_mps.x, texelFetch(surface_texels, t.x < 0.5 ? a : b).y, flow_mps.y);
+  return vec4(level.x, level.y > 0.99 ? slope : vec2(0.0), level.y);
+}
+
+WaterSums sampled(Floater b, int k, float g) {
+  vec3 half_m;
+  const float volume_m3 = volumeOf(b);
+  const float part_m3 = b.shape == FLOATER_SPHERE ? volume_m3 : volume_m3 / float(FLOATER_SAMPLES);
+  const vec3 own_m = sampleAt(b, k, half_m) - vec3(0.0, b.ballast_m, 0.0);
+  const vec3 r = rotated(b.rotation, own_m);
+  vec3 water_mps;
+  const vec4 water = waterAt(b.centre_m.xz + r.xz, water_mps);
+  const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
+  const float extent_m = dot(abs(upright), half_m);
+  const float height_m = water.x - (b.centre_m.y + r.y);
+  float under = b.shape == FLOATER_SPHERE ? capShare(height_m / half_m.x) : clamp(0.5 + 0.5 * height_m / extent_m, 0.0, 1.0);
+  under *= water.w;
+
+  WaterSums sums;
+  const vec3 buoyancy = part_m3 * under * g * vec3(-water.y, 1.0, -water.z);
+  sums.buoyancy = vec4(buoyancy, under * part_m3 / volume_m3);
+  sums.moment = cross(r, buoyancy);
+  const vec3 u = rotatedBack(b.rotation, b.velocity_mps + cross(b.spin_radps, r) - water_mps);
+  vec3 drag;  // along its axes, over the density of water [m^4/s^2]
+  if (b.shape == FLOATER_SPHERE) {
+    drag = -0.5 * 0.47 * 3.14159265 * half_m.x * half_m.x * length(u) * u;
+  } else {
+    const float drag_coefficient = b.shape == FLOATER_BOX ? 1.05 : 0.85;
+    const vec3 area_m2 = 4.0 * b.half_m.yxx * b.half_m.zzy;
+    drag = -0.5 * drag_coefficient * (part_m3 / volume_m3) * area_m2 * abs(u) * u;
+  }
+  drag *= under;
+  sums.drag = vec4(rotated(b.rotation, drag), water.x * part_m3 / volume_m3);
+  sums.drag_moment = cross(r, sums.drag.xyz);
+  sums.water_mps = under * water_mps * (part_m3 / volume_m3);
+  return sums;
+}
+
+WaterSums totalOf(WaterSums own) {
+  const uint k = gl_LocalInvocationID.x;
+  share_buoyancy[k] = own.buoyancy;
+  share_moment[k] = own.moment;
+  share_drag[k] = own.drag;
+  share_drag_moment[k] = own.drag_moment;
+  share_water[k] = own.water_mps;
+  for (uint reach = FLOATER_SAMPLES / 2u; reach > 0u; reach >>= 1) {
+    barrier();
+    if (k < reach) {
+      share_buoyancy[k] += share_buoyancy[k + reach];
+      share_moment[k] += share_moment[k + reach];
+      share_drag[k] += share_drag[k + reach];
+      share_drag_moment[k] += share_drag_moment[k + reach];
+      share_water[k] += share_water[k + reach];
+    }
+  }
+  barrier();
+  return WaterSums(share_buoyancy[0], share_moment[0], share_drag[0], share_drag_moment[0], share_water[0]);
+}
+
+/// Shortens a resistance so that it stops what it acts on in a tick, and does not reverse it.
+vec3 stopping(vec3 resistance_mps2, vec3 relative_mps) {
+  return resistance_mps2 / (1.0 + sim.tick_s * length(resistance_mps2) / max(length(relative_mps), 1e-6));
+}
+
+void main() {
+  const uint own = gl_WorkGroupID.x;
+  const int k = int(gl_LocalInvocationID.x);
+  const uint at = own * FLOATER_TEXELS;
+  vec4 t[FLOATER_TEXELS];
+  for (uint i = 0u; i < FLOATER_TEXELS; ++i) t[i] = floaters[at + i];
+  Floater b = unpackFloater(t);
+  if (b.age_s < 0.0) return;
+  const float g = sim.gravity_mps2;
+  WaterSums share = WaterSums(vec4(0.0), vec3(0.0), vec4(0.0), vec3(0.0), vec3(0.0));
+  if (k == 0 || b.shape != FLOATER_SPHERE) share = sampled(drifted(b, lead_s), k, g);
+  const WaterSums sums = totalOf(share);
+  if (k > 0) return;
+
+  const float volume_m3 = volumeOf(b);
+  const float immersed = sums.buoyancy.w;
+  const float level_m = sums.drag.w;
+  const float mass_m3 = b.density_ratio * volume_m3;  // over the density of water
+  const float carried = 1.0 + kAddedMass * immersed / b.density_ratio;
+  // As in the implicit midpoint rule, so that a light floater is stable with any tick.
+  const float height_m = 2.0 * min(b.half_m.x, min(b.half_m.y, b.half_m.z));
+  const float bob2_ps2 = g / (min(b.density_ratio, 1.0) * height_m * carried);
+  const float yields = 1.0 + 0.25 * bob2_ps2 * sim.tick_s * sim.tick_s * immersed;
+  const vec3 water_mps = sums.water_mps / max(immersed, 1e-6);
+  const vec3 relative_mps = b.velocity_mps - water_mps;
+  const float at_surface = 4.0 * immersed * (1.0 - immersed);
+  const float damping_per_s = 2.0 * kWaveDamping * sqrt(bob2_ps2) * at_surface;
+  const vec3 drag_mps2 = stopping(sums.drag.xyz / (mass_m3 * carried) - damping_per_s * relative_mps, relative_mps);
+  b.acceleration_mps2 = sums.buoyancy.xyz / (mass_m3 * carried * yields) + drag_mps2 - vec3(0.0, g / carried, 0.0) * mix(1.0, 1.0 / yields, immersed);
+  const vec3 drag_radps2 = stopping(spinOf(b, sums.drag_moment) / (mass_m3 * carried) - damping_per_s * b.spin_radps, b.spin_radps);
+  b.spin_up_radps2 = spinOf(b, sums.moment) / (mass_m3 * carried * yields) + drag_radps2;
+
+  if (b.hold.w > 0.0) {
+    vec2 way_m = acrossSides(b.hold.xz - b.centre_m.xz);
+    const vec3 pull_m = vec3(way_m.x, level_m + b.hold.y - middleOf(b).y, way_m.y);
+    b.acceleration_mps2 = kHandRate_per_s * (kHandRate_per_s * pull_m - 2.0 * b.velocity_mps);
+    b.acceleration_mps2 *= min(1.0, kHandMax_mps2 / max(length(b.acceleration_mps2), 1e-6));
+    b.spin_up_radps2.y = 0.0;
+    b.spin_up_radps2 += kHandTurn_per_s * (vec3(0.0, -b.turn_radps, 0.0) - b.spin_radps);
+    b.hold.w = max(b.hold.w - sim.tick_s, 0.0);
+  }
+
+  // The dent fades as the floater sinks below the surface.
+  const float top_m = middleOf(b).y + dot(abs(rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0))), b.half_m);
+  const float open = clamp(1.0 - (level_m - top_m) / (2.0 * height_m), 0.0, 1.0);
+  const float displaced = min(immersed / min(b.density_ratio, 1.0), 1.0) * open;
+  b.dent = mix(displaced, b.dent, exp(-kDentRate_per_s * sim.tick_s));
+  b.impact_m3 = clamp(drag_mps2.y * carried * mass_m3 / max(g, 1e-3), -volume_m3, volume_m3) * open;
+  floaters[at + 3u] = vec4(b.spin_radps, b.dent);
+  floaters[at + 5u].z = b.impact_m3;
+  floaters[at + 6u] = b.hold;
+  floaters[at + 7u] = vec4(b.acceleration_mps2, b.turn_radps);
+  floaters[at + 8u] = vec4(b.spin_up_radps2, 0.0);
+}

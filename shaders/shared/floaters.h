@@ -1,0 +1,32 @@
+// Floaters: FLOATER_TEXELS texels each in FLOATERS, one slot per object. A floater's own axes: x along its length, y up as
+// it stands, z across; the origin is its centre of mass.
+//   0  x, y, z of the centre of mass [m], age [s] (negative: the slot is free)
+//   1  rotation from its own axes to those of the water: unit quaternion x, y, z, w
+//   2  velocity [m/s], id
+//   3  angular velocity [rad/s], dent: share of its displacement at rest with which it presses on the water [0..1]
+//   4  half extents along its axes [m], shape (FLOATER_BOX ...) + 8 * kind (v1::FloaterKind)
+//   5  density over the water's, centre of mass above the middle [m], volume of the pressure of its impact [m^3], size [m]
+//   6  where it is held: x, lift over the water, z [m], how much longer [s] (0: nobody holds it)
+//   7  acceleration by gravity, water and hold [m/s^2], turn by who holds it [rad/s]
+//   8  angular acceleration likewise [rad/s^2], 0
+#ifndef SPINDRIFT_SHARED_FLOATERS_H
+#define SPINDRIFT_SHARED_FLOATERS_H
+
+#define FLOATER_TEXELS 9
+#define FLOATER_BOX 0
+#define FLOATER_SPHERE 1
+#define FLOATER_CYLINDER_X 2
+#define FLOATER_CYLINDER_Y 3
+// How long a hold lasts after the last command. [s]
+#define FLOATER_HOLD_S 0.5f
+// Samples of volume of a floater, and lanes of the passes over its points of contact.
+#define FLOATER_SAMPLES 64
+#define FLOATER_POINTS 32
+// Neighbours that a floater can touch in a tick. They are listed in FLOATER_NEAR, after their number.
+#define FLOATER_NEAR_MAX 31
+// Of the velocity that floaters give to boats: 2^-20 m/s.
+#define BOAT_PUSH_UNITS 1048576.0f
+// Squares of the water that list which floaters are there, per axis; one bit per slot in each.
+#define FLOATER_TILES_PER_AXIS 16
+
+#endif
