@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <span>
+#include <tuple>
 
 #include <fmt/format.h>
 #include <shared/bindings.h>
@@ -15,14 +15,14 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr float kNobody = -1.0f;
+constexpr float kFreeSlot = -1.0f;
 /// The device stores ids as 32-bit floats, which are exact for whole numbers up to this one.
 constexpr std::uint32_t kIdMax = 1u << 24;
 /// A step of contacts lasts at most this long, unless a tick would have too many.
 constexpr double kContactStep_s = 0.0042;
 constexpr int kContactSteps = 4, kMaxContactSteps = 16;
 
-using State = std::array<float, std::size_t{FLOATER_TEXELS} * 4>;
+using FloaterState = std::array<float, std::size_t{FLOATER_TEXELS} * 4>;
 
 /// Shape and mass of a kind of size 1.
 struct Kind {
@@ -54,13 +54,13 @@ Kind kindOf(core::FloaterKind kind) {
   return {FLOATER_BOX, {0.5, 0.5, 0.5}, 0.4, -0.35};
 }
 
-State startingState(const core::Floater& floater, std::uint32_t floater_id) {
+FloaterState startingFloater(const core::Floater& floater, std::uint32_t floater_id) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const Kind kind = kindOf(floater.kind);
   const double ballast_m =
       std::clamp(kind.ballast_ratio + floater.ballast_ratio, -1.0, 1.0) * kind.half[1] * floater.size_m;
   const double half_turn_rad = -0.5 * floater.heading_deg * std::numbers::pi / 180.0;
-  State s{};
+  FloaterState s{};
   s[0] = f(floater.x_m);
   s[1] = f(floater.y_m + ballast_m);
   s[2] = f(floater.z_m);
@@ -74,7 +74,7 @@ State startingState(const core::Floater& floater, std::uint32_t floater_id) {
   s[19] = f(kind.shape + 8 * (static_cast<int>(floater.kind) + 1));
   s[20] = f(floater.density_ratio > 0 ? floater.density_ratio : kind.density_ratio);
   s[21] = f(ballast_m);
-  s[23] = f(floater.size_m);
+  s[22] = f(floater.size_m);
   return s;
 }
 
@@ -109,14 +109,14 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
 }
 
 void Floaters::reset(const core::Scene& scene) {
-  std::vector<State> states(places_.size());
-  for (State& state : states) state[3] = kNobody;
+  std::vector<FloaterState> states(places_.size());
+  for (FloaterState& state : states) state[3] = kFreeSlot;
   std::ranges::fill(places_, FloaterPlace{});
   std::uint32_t floater_id = 1;
   // The constructor has checked that there are enough slots.
   for (std::size_t at = 0; at < scene.floaters->floaters.size(); ++at, ++floater_id) {
     places_[at] = {floater_id, scene.floaters->floaters[at]};
-    states[at] = startingState(places_[at].floater, floater_id);
+    states[at] = startingFloater(places_[at].floater, floater_id);
   }
   next_id_ = std::max(next_id_, floater_id);
   state_.upload(states);
@@ -159,7 +159,7 @@ core::Result<std::uint32_t> Floaters::spawn(const core::Floater& floater) {
 
 void Floaters::put(std::size_t slot, std::uint32_t floater_id, const core::Floater& floater) {
   places_[slot] = {floater_id, floater};
-  state_.upload(startingState(floater, floater_id), slot * sizeof(State));
+  state_.upload(startingFloater(floater, floater_id), slot * sizeof(FloaterState));
 }
 
 core::Result<void> Floaters::hold(const FloaterHold& hold) {
@@ -168,17 +168,17 @@ core::Result<void> Floaters::hold(const FloaterHold& hold) {
   const auto f = [](double v) { return static_cast<float>(v); };
   const std::array<float, 4> pull{f(hold.x_m), f(hold.lift_m), f(hold.z_m), hold.ends ? 0.0f : FLOATER_HOLD_S};
   constexpr std::size_t kTexelBytes = 4 * sizeof(float);
-  state_.upload(pull, *at * sizeof(State) + 6 * kTexelBytes);
-  state_.uploadValue(f(hold.turn_radps), *at * sizeof(State) + 7 * kTexelBytes + 3 * sizeof(float));
+  state_.upload(pull, *at * sizeof(FloaterState) + 6 * kTexelBytes);
+  state_.uploadValue(f(hold.turn_radps), *at * sizeof(FloaterState) + 7 * kTexelBytes + 3 * sizeof(float));
   return {};
 }
 
 core::Result<void> Floaters::remove(std::uint32_t floater_id) {
   if (floater_id == 0) {
     std::ranges::fill(places_, FloaterPlace{});
-    state_.upload(std::vector<State>(places_.size(), [] {
-      State free{};
-      free[3] = kNobody;
+    state_.upload(std::vector<FloaterState>(places_.size(), [] {
+      FloaterState free{};
+      free[3] = kFreeSlot;
       return free;
     }()));
     countSlots();
@@ -187,7 +187,7 @@ core::Result<void> Floaters::remove(std::uint32_t floater_id) {
   const auto at = find(floater_id);
   if (!at) return at.error();
   places_[*at] = {};
-  state_.uploadValue(kNobody, *at * sizeof(State) + 3 * sizeof(float));
+  state_.uploadValue(kFreeSlot, *at * sizeof(FloaterState) + 3 * sizeof(float));
   countSlots();
   return {};
 }

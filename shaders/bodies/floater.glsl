@@ -19,7 +19,6 @@ struct Floater {
   int shape;
   float density_ratio;
   float ballast_m;
-  float impact_m3;
   vec4 hold;
   vec3 acceleration_mps2;
   float turn_radps;
@@ -27,7 +26,7 @@ struct Floater {
 };
 
 Floater unpackFloater(vec4 t[FLOATER_TEXELS]) {
-  return Floater(t[0].xyz, t[0].w, t[1], t[2].xyz, t[2].w, t[3].xyz, t[3].w, t[4].xyz, int(t[4].w) & 7, t[5].x, t[5].y, t[5].z, t[6],
+  return Floater(t[0].xyz, t[0].w, t[1], t[2].xyz, t[2].w, t[3].xyz, t[3].w, t[4].xyz, int(t[4].w) & 7, t[5].x, t[5].y, t[6],
                  t[7].xyz, t[7].w, t[8].xyz);
 }
 

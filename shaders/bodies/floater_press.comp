@@ -1,5 +1,4 @@
-// Pressure of the floaters on the water: with the weight of the water that each displaces, and with the force of its impact. One
-// group per floater.
+// Pressure of the floaters on the water: the weight of the water that each displaces. One group per floater.
 // Reads FLOATERS. Adds to PRESSURE_HEAD [nx x nz, units] (cleared before).
 // The pressure is a Gaussian with the second moments of the floater's volume, and at least kLeastCells wide, so that the grid
 // carries it; its integral is exact up to its cut. The floater presses where it will be in the middle of the next tick.
@@ -19,8 +18,7 @@ void main() {
   vec4 t[FLOATER_TEXELS];
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(gl_WorkGroupID.x) * FLOATER_TEXELS + k);
   Floater b = unpackFloater(t);
-  const float volume_m3 = volumeOf(b);
-  const float pressing_m3 = b.dent * min(b.density_ratio, 1.0) * volume_m3 + b.impact_m3;
+  const float pressing_m3 = b.dent * min(b.density_ratio, 1.0) * volumeOf(b);
   if (b.age_s < 0.0 || pressing_m3 == 0.0) return;
   b = drifted(b, 0.5 * (sim.tick_s - sim.wave_dt_s));
   // Second moments over x and z: half extents squared over 3 for a box, and so on.
@@ -37,7 +35,7 @@ void main() {
   }
   const float determinant = xx * zz - xz * xz;
   const float highest_m = kHighestHead * sim.wave_depth_m;
-  const float peak_m = clamp(pressing_m3 / (6.2831853 * sqrt(determinant)), -highest_m, highest_m);
+  const float peak_m = min(pressing_m3 / (6.2831853 * sqrt(determinant)), highest_m);
   const ivec2 n = waveCounts();
   const ivec2 across = min(2 * ivec2(ceil(kReach * sqrt(vec2(xx, zz)) / cell_m)) + 1, n);
   const vec2 middle = clamp((middleOf(b).xz + waveHalf_m()) / cell_m, vec2(-1e6), vec2(1e6));

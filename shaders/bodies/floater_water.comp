@@ -24,7 +24,8 @@ uniform float lead_s;
 
 const float kAddedMass = 0.5;         // of the displaced mass
 const float kWaveDamping = 0.12;      // of critical, at half immersion
-const float kDentRate_per_s = 4.0;    // how fast the dent follows the immersion
+const float kDentRate_per_s = 4.0;    // how fast the dent follows the immersion; a dent that follows late feeds an oscillation, so that
+const float kSteadyShare = 1.5;       // it is the whole from this part of the immersion at rest on
 const float kHandRate_per_s = 8.0;    // of the spring of a hand
 const float kHandMax_mps2 = 60.0;
 const float kHandTurn_per_s = 6.0;
@@ -40,7 +41,9 @@ struct WaterSums {
 shared vec4 share_buoyancy[FLOATER_SAMPLES], share_drag[FLOATER_SAMPLES];
 shared vec3 share_moment[FLOATER_SAMPLES], share_drag_moment[FLOATER_SAMPLES], share_water[FLOATER_SAMPLES];
 
-/// A sample of the volume: position from the middle along its axes [m]; half its extents there.
+/// A sample of the volume: position from the middle along its axes [m]; half its extents there. Four samples in a row lie kApart
+/// further apart than the middles of quarters, which gives them the moment of area of the whole.
+const float kApart = 1.0327956;  // sqrt(16 / 15)
 vec3 sampleAt(Floater b, int k, out vec3 half_m) {
   if (b.shape == FLOATER_SPHERE) {
     half_m = b.half_m;
@@ -48,7 +51,7 @@ vec3 sampleAt(Floater b, int k, out vec3 half_m) {
   }
   if (b.shape == FLOATER_BOX) {
     half_m = 0.25 * b.half_m;
-    return (vec3(k & 3, (k >> 2) & 3, k >> 4) * 0.5 - 0.75) * b.half_m;
+    return vec3(kApart, 1.0, kApart) * (vec3(k & 3, (k >> 2) & 3, k >> 4) * 0.5 - 0.75) * b.half_m;
   }
   // 16 columns of equal area, 4 in the inner half of the radius and 12 around; at the radii that give its moments of area.
   const int column = k & 15;
@@ -57,7 +60,7 @@ vec3 sampleAt(Floater b, int k, out vec3 half_m) {
   const vec2 across = (is_inner ? 0.35355339 : 0.79056942) * vec2(cos(angle), sin(angle));
   const float along = 0.5 * float(k >> 4) - 0.75;
   half_m = 0.25 * b.half_m;
-  return (b.shape == FLOATER_CYLINDER_X ? vec3(along, across) : vec3(across.x, along, across.y)) * b.half_m;
+  return (b.shape == FLOATER_CYLINDER_X ? vec3(kApart * along, across) : vec3(across.x, along, across.y)) * b.half_m;
 }
 
 /// Share of a sphere below a level at a height over its middle, in radii.
@@ -201,12 +204,10 @@ void main() {
 
   // The dent fades as the floater sinks below the surface.
   const float top_m = middleOf(b).y + dot(abs(rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0))), b.half_m);
-  const float open = clamp(1.0 - (level_m - top_m) / (2.0 * height_m), 0.0, 1.0);
-  const float displaced = min(immersed / min(b.density_ratio, 1.0), 1.0) * open;
+  const float open = clamp(1.0 - (level_m - top_m) / height_m, 0.0, 1.0);
+  const float displaced = min(kSteadyShare * immersed / min(b.density_ratio, 1.0), 1.0) * open;
   b.dent = mix(displaced, b.dent, exp(-kDentRate_per_s * sim.tick_s));
-  b.impact_m3 = clamp(drag_mps2.y * carried * mass_m3 / max(g, 1e-3), -volume_m3, volume_m3) * open;
   floaters[at + 3u] = vec4(b.spin_radps, b.dent);
-  floaters[at + 5u].z = b.impact_m3;
   floaters[at + 6u] = b.hold;
   floaters[at + 7u] = vec4(b.acceleration_mps2, b.turn_radps);
   floaters[at + 8u] = vec4(b.spin_up_radps2, 0.0);

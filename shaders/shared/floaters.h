@@ -5,7 +5,7 @@
 //   2  velocity [m/s], id
 //   3  angular velocity [rad/s], dent: share of its displacement at rest with which it presses on the water [0..1]
 //   4  half extents along its axes [m], shape (FLOATER_BOX ...) + 8 * kind (v1::FloaterKind)
-//   5  density over the water's, centre of mass above the middle [m], volume of the pressure of its impact [m^3], size [m]
+//   5  density over the water's, centre of mass above the middle [m], size [m], 0
 //   6  where it is held: x, lift over the water, z [m], how much longer [s] (0: nobody holds it)
 //   7  acceleration by gravity, water and hold [m/s^2], turn by who holds it [rad/s]
 //   8  angular acceleration likewise [rad/s^2], 0

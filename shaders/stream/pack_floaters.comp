@@ -21,7 +21,7 @@ void pack(uint slot, uint at) {
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
   const Floater b = unpackFloater(t);
   const vec3 middle_m = middleOf(b);
-  const uint size_cm = uint(clamp(round(100.0 * t[5].w), 0.0, 65535.0));
+  const uint size_cm = uint(clamp(round(100.0 * t[5].z), 0.0, 65535.0));
   packed_words[at] = uint(b.id);
   packed_words[at + 1u] = millimetres(middle_m.x);
   packed_words[at + 2u] = millimetres(middle_m.y);
