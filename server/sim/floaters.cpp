@@ -90,11 +90,12 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
       tile_words_count_(static_cast<std::uint32_t>((places_.size() + 31) / 32)),
       state_(create.texels("floaters", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
       next_(create.scratch("floaters next", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
+      reach_(create.scratch("floater places", places_.size(), gpu::TexelFormat::kRGBA32F)),
       tiles_(create.buffer("floater tiles",
                            std::size_t{FLOATER_TILES_PER_AXIS} * FLOATER_TILES_PER_AXIS * tile_words_count_ * 4,
                            gpu::BufferContent::kScratch)),
-      near_(create.buffer("floater neighbours", places_.size() * (FLOATER_NEAR_MAX + 1) * 4,
-                          gpu::BufferContent::kScratch)),
+      near_(create.buffer("floater neighbours", places_.size() * FLOATER_NEAR_WORDS * 4, gpu::BufferContent::kScratch)),
+      touching_(create.buffer("floaters that touch", (FLOATER_TOUCHING_FIRST + places_.size()) * 4)),
       mark_tiles_(create.pass("bodies/floater_tiles.comp")),
       find_near_(create.pass("bodies/floater_near.comp")),
       contacts_(create.pass("bodies/floater_contacts.comp")),
@@ -217,19 +218,26 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
   }
   state_.bindTexel(FLOATERS);
   tiles_.clear();
+  touching_.clearRange(0, 0, 4);
+  touching_.clearRange(1, 4, 8);
+  touching_.bindStorage(FLOATER_TOUCHING);
+  reach_.bindStorage(FLOATER_PLACES);
   tiles_.bindStorage(FLOATER_TILES);
   near_.bindStorage(FLOATER_NEAR);
   for (Pass* pass : {&mark_tiles_, &find_near_}) pass->setUniform("tile_words_count", tile_words_count_);
   mark_tiles_.setUniform("slot_count", slot_count_);
   mark_tiles_.run(slot_count_);
+  reach_.bindTexel(FLOATER_PLACES);
   find_near_.runGroups(slot_count_);
+  contacts_.barrier(gpu::Barrier::kIndirect);
   const int steps = contactSteps(tick_s);
   contacts_.setUniform("step_s", static_cast<float>(tick_s / steps));
   for (int step = 0; step < steps; ++step) {
     const auto& [from, to] = step % 2 == 0 ? std::tie(state_, next_) : std::tie(next_, state_);
     from.bindTexel(FLOATERS);
     to.bindStorage(FLOATERS_NEXT);
-    contacts_.runGroups(slot_count_);
+    contacts_.dispatchIndirect(touching_);
+    contacts_.barrier();
   }
 }
 
@@ -238,6 +246,7 @@ void Floaters::feel(double tick_s, Wave& wave) {
   wave.bindSurface();
   wave.bindTerrain();
   wave.pressureHead().bindTexel(PRESSURE_HEAD);
+  near_.bindStorage(FLOATER_NEAR);
   state_.bindStorage(FLOATERS);
   const int steps = contactSteps(tick_s);
   water_.setUniform("lead_s", static_cast<float>(tick_s * (steps - 1) / (2.0 * steps)));

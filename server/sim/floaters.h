@@ -56,8 +56,8 @@ class Floaters {
   std::uint32_t slot_count_ = 0;  ///< slots to look at: all floaters are below
   std::uint32_t next_id_ = 1;     ///< never decreases
   std::uint32_t tile_words_count_;
-  gpu::TexelBuffer state_, next_;
-  gpu::Buffer tiles_, near_;
+  gpu::TexelBuffer state_, next_, reach_;
+  gpu::Buffer tiles_, near_, touching_;
   Pass mark_tiles_, find_near_, contacts_, water_, press_;
 };
 

@@ -69,10 +69,13 @@ vec3 middleOf(Floater b) { return b.centre_m - rotated(b.rotation, vec3(0.0, b.b
 /// Radius of a sphere about the centre of mass that contains it. [m]
 float reachOf(Floater b) { return (b.shape == FLOATER_SPHERE ? b.half_m.x : length(b.half_m)) + abs(b.ballast_m); }
 
+vec3 limited(vec3 v, float highest) { return v * min(1.0, highest / max(length(v), 1e-9)); }
+
 /// The floater after it has moved with its velocities for some time: its angular momentum stays, whatever its shape.
 Floater drifted(Floater b, float duration_s) {
   const vec3 momentum = angularMomentumOf(b);
   b.centre_m += duration_s * b.velocity_mps;
+  b.centre_m.xz = acrossSides(b.centre_m.xz);
   b.rotation = turned(b.rotation, b.spin_radps, duration_s);
   b.spin_radps = spinOf(b, momentum);
   return b;

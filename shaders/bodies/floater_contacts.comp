@@ -1,6 +1,6 @@
-// A part of a tick of every floater: it moves, and the points at which it touches push it back. One group per floater, an
-// invocation per point.
-// Reads FLOATERS, FLOATER_NEAR, TERRAIN, BOATS. Writes FLOATERS_NEXT; adds to BOAT_PUSH.
+// A part of a tick of every floater that can touch something: the points at which it does push it back, and it moves. One group per
+// floater, an invocation per point.
+// Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Writes FLOATERS_NEXT; adds to BOAT_PUSH.
 // Contacts are springs and dampers between a point of one floater and the surface of another, pulling never, with Coulomb friction. All
 // act at once, on the state before; both floaters of a pair compute the same impulse, so that momentum stays. The factors
 // are those of a contact in units of the mass m that it moves and of the step h: an impulse of m (STIFFNESS overlap / h + DAMPING
@@ -18,6 +18,7 @@ layout(local_size_x = FLOATER_POINTS) in;
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = FLOATERS_NEXT) restrict writeonly buffer FloatersNext { vec4 floaters_next[]; };
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
+layout(std430, binding = FLOATER_TOUCHING) restrict readonly buffer FloaterTouching { uint touching[]; };
 #if HULLS
 layout(binding = BOATS) uniform samplerBuffer boats;
 layout(std430, binding = BOAT_PUSH) restrict buffer BoatPush { int boat_push[]; };
@@ -30,8 +31,6 @@ const float kFriction = 0.5;          // of wood on wood
 const float kShareFrom = 3.0;         // neighbours from which on they share the impulse
 const float kRestSpeed_mps = 0.03;    // slower than this, a floater that is touched comes to rest
 const float kRestKept = 0.9;
-const float kMaxSpeed_mps = 25.0;
-const float kMaxSpin_radps = 25.0;
 
 shared vec3 sum_velocity[FLOATER_POINTS], sum_spin[FLOATER_POINTS];
 shared uint touches;
@@ -40,13 +39,6 @@ Floater floaterAt(uint slot) {
   vec4 t[FLOATER_TEXELS];
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
   return unpackFloater(t);
-}
-
-/// The floater at the end of the step, as far as no contact changes it.
-Floater moved(Floater b) {
-  b.velocity_mps += step_s * b.acceleration_mps2;
-  b.spin_radps += step_s * b.spin_up_radps2;
-  return drifted(b, step_s);
 }
 
 /// Change of velocity and of spin.
@@ -168,57 +160,50 @@ void meetBoats(inout Push push, Floater b, int k) {
 }
 #endif
 
-vec3 limited(vec3 v, float highest) { return v * min(1.0, highest / max(length(v), 1e-9)); }
-
 void main() {
-  const uint own = gl_WorkGroupID.x;
+  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_WorkGroupID.x];
   const int point = int(gl_LocalInvocationID.x);
-  const Floater before = floaterAt(own);
-  if (before.age_s < 0.0) {
-    if (point < FLOATER_TEXELS) floaters_next[own * FLOATER_TEXELS + point] = texelFetch(floaters, int(own) * FLOATER_TEXELS + point);
-    return;
-  }
+  const Floater b = floaterAt(own);
   if (point == 0) touches = 0u;
   barrier();
-  Floater b = moved(before);
   Push push = Push(vec3(0.0), vec3(0.0));
-  const uint list = own * uint(FLOATER_NEAR_MAX + 1);
-  const uint near_count = near[list];
+  const uint list = own * FLOATER_NEAR_WORDS;
+  const uint near_count = near[list] & (FLOATER_GROUNDED - 1u);
   for (uint k = 0u; k < near_count; ++k) {
     const uint other = near[list + 1u + k];
-    const uint crowd = max(near_count, near[other * uint(FLOATER_NEAR_MAX + 1)]);
-    meetFloater(push, b, moved(floaterAt(other)), point, min(1.0, kShareFrom / float(crowd)));
+    const uint crowd = max(near_count, near[other * FLOATER_NEAR_WORDS] & (FLOATER_GROUNDED - 1u));
+    meetFloater(push, b, floaterAt(other), point, min(1.0, kShareFrom / float(crowd)));
   }
-  meetGround(push, b, point);
+  if (near[list] >= FLOATER_GROUNDED) {
+    meetGround(push, b, point);
 #if HULLS
-  meetBoats(push, b, point);
+    meetBoats(push, b, point);
 #endif
+  }
   sum_velocity[point] = push.velocity_mps;
   sum_spin[point] = push.spin_radps;
   barrier();
   if (point > 0) return;
-  vec3 velocity_mps = b.velocity_mps;
-  vec3 spin_radps = b.spin_radps;
+  vec3 velocity_mps = b.velocity_mps + step_s * b.acceleration_mps2;
+  vec3 spin_radps = b.spin_radps + step_s * b.spin_up_radps2;
   for (int k = 0; k < FLOATER_POINTS; ++k) {
     velocity_mps += sum_velocity[k];
     spin_radps += sum_spin[k];
   }
-  if (touches > 0u && before.hold.w <= 0.0) {
+  if (touches > 0u && b.hold.w <= 0.0) {
     const float fastest_mps = max(length(velocity_mps), reachOf(b) * length(spin_radps));
     const float kept = fastest_mps < kRestSpeed_mps ? kRestKept : 1.0;
     velocity_mps *= kept;
     spin_radps *= kept;
   }
-  b.velocity_mps = limited(velocity_mps, kMaxSpeed_mps);
-  b.spin_radps = limited(spin_radps, kMaxSpin_radps);
-  // It goes on with its new velocities.
-  b.centre_m = before.centre_m + step_s * b.velocity_mps;
-  b.centre_m.xz = acrossSides(b.centre_m.xz);
-  b.rotation = turned(before.rotation, b.spin_radps, step_s);
+  Floater after = b;
+  after.velocity_mps = limited(velocity_mps, FLOATER_MAX_MPS);
+  after.spin_radps = limited(spin_radps, FLOATER_MAX_RADPS);
+  after = drifted(after, step_s);
   const uint at = own * FLOATER_TEXELS;
-  floaters_next[at] = vec4(b.centre_m, b.age_s + step_s);
-  floaters_next[at + 1u] = b.rotation;
-  floaters_next[at + 2u] = vec4(b.velocity_mps, b.id);
-  floaters_next[at + 3u] = vec4(b.spin_radps, b.dent);
+  floaters_next[at] = vec4(after.centre_m, b.age_s + step_s);
+  floaters_next[at + 1u] = after.rotation;
+  floaters_next[at + 2u] = vec4(after.velocity_mps, b.id);
+  floaters_next[at + 3u] = vec4(after.spin_radps, b.dent);
   for (uint k = 4u; k < FLOATER_TEXELS; ++k) floaters_next[at + k] = texelFetch(floaters, int(at + k));
 }

@@ -1,20 +1,60 @@
-// Lists for each floater those that it can touch in this tick, by their slots. One group per floater, an invocation per word of
-// a tile.
-// Reads FLOATERS, FLOATER_TILES (bodies/floater_tiles.comp). Writes FLOATER_NEAR: per slot the number, then the slots.
-// Two floaters list each other, unless one has more than FLOATER_NEAR_MAX neighbours: it keeps those of the lowest slots.
-#include "bodies/floater_reach.glsl"
+// Lists for each floater what it can touch in this tick. One group per slot, an invocation per word of a tile.
+// Reads FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR, and adds to FLOATER_TOUCHING
+// (cleared before) the slots of those that can touch something, in any order.
+// Two floaters list each other, unless one has more neighbours than words: it keeps those of the lowest slots.
+#include "bodies/floater_tiles.glsl"
+#if VARIED
+#include "common/terrain.glsl"
+#endif
+#if HULLS
+#include "bodies/boat.glsl"
+#endif
 
 layout(local_size_x = 32) in;
 
+layout(binding = FLOATER_PLACES) uniform samplerBuffer places;
 layout(std430, binding = FLOATER_TILES) restrict readonly buffer FloaterTiles { uint tiles[]; };
 layout(std430, binding = FLOATER_NEAR) restrict writeonly buffer FloaterNear { uint near[]; };
+layout(std430, binding = FLOATER_TOUCHING) restrict buffer FloaterTouching { uint touching[]; };
+#if HULLS
+layout(binding = BOATS) uniform samplerBuffer boats;
+#endif
 
 shared uint near_count[32];
+
+/// Whether it can touch the bed, a rock, a side or a boat.
+bool isGrounded(vec4 place) {
+  const vec2 inside_m = waveHalf_m() - abs(place.xz);
+#if !WAVE_PERIODIC_X
+  if (inside_m.x < place.w) return true;
+#endif
+#if !WAVE_PERIODIC_Z
+  if (inside_m.y < place.w) return true;
+#endif
+#if VARIED
+  const vec4 t = terrainAt(place.xz);
+  // The bed rises at most as steeply as this within its reach.
+  const float steepest = 1.0;
+  if (t.x < place.w || place.y - place.w * (1.0 + steepest) < -t.w) return true;
+#else
+  if (place.y - place.w < -sim.wave_depth_m) return true;
+#endif
+#if HULLS
+  for (int slot = 0; slot < int(boat_place_count); ++slot) {
+    if (texelFetch(boats, slot * BOAT_TEXELS + 1).z < 0.0) continue;
+    vec3 d = texelFetch(boats, slot * BOAT_TEXELS).xyz - place.xyz;
+    d.xz = acrossSides(d.xz);
+    const float reach_m = place.w + 0.5 * length(texelFetch(boats, slot * BOAT_TEXELS + 4).xyz);
+    if (dot(d, d) < reach_m * reach_m) return true;
+  }
+#endif
+  return false;
+}
 
 void main() {
   const uint own = gl_WorkGroupID.x;
   const uint word = gl_LocalInvocationID.x;
-  const vec4 place = floaterPlace(int(own));
+  const vec4 place = texelFetch(places, int(own));
   uint listed = 0u;
   if (place.w > 0.0 && word < tile_words_count) {
     const ivec4 span = tileSpan(place);
@@ -23,7 +63,7 @@ void main() {
     for (uint rest = listed; rest != 0u; rest &= rest - 1u) {
       const int bit = findLSB(rest);
       const uint other = 32u * word + uint(bit);
-      const vec4 at = floaterPlace(int(other));
+      const vec4 at = texelFetch(places, int(other));
       vec3 d = at.xyz - place.xyz;
       d.xz = acrossSides(d.xz);
       const float reach_m = at.w + place.w;
@@ -32,11 +72,17 @@ void main() {
   }
   near_count[word] = uint(bitCount(listed));
   barrier();
+  const uint first = own * FLOATER_NEAR_WORDS;
+  const uint most = FLOATER_NEAR_WORDS - 1u;
   uint at = 0u;
   for (uint k = 0u; k < word; ++k) at += near_count[k];
-  const uint first = own * uint(FLOATER_NEAR_MAX + 1);
-  if (word == 31u) near[first] = min(at + near_count[31], uint(FLOATER_NEAR_MAX));
-  for (uint rest = listed; rest != 0u && at < uint(FLOATER_NEAR_MAX); rest &= rest - 1u) {
+  if (word == 31u) {
+    const uint count = min(at + near_count[31], most);
+    const uint grounded = place.w > 0.0 && isGrounded(place) ? FLOATER_GROUNDED : 0u;
+    near[first] = count + grounded;
+    if (count + grounded > 0u) touching[FLOATER_TOUCHING_FIRST + atomicAdd(touching[0], 1u)] = own;
+  }
+  for (uint rest = listed; rest != 0u && at < most; rest &= rest - 1u) {
     near[first + 1u + at] = 32u * word + uint(findLSB(rest));
     ++at;
   }

@@ -51,27 +51,22 @@ vec4 surfaceOf(Floater b, vec3 from_centre_m) {
 }
 
 /// How many points a floater touches others with; at most FLOATER_POINTS.
-int pointCount(Floater b) { return b.shape == FLOATER_SPHERE ? 1 : 20; }
+int pointCount(Floater b) { return b.shape == FLOATER_SPHERE ? 1 : FLOATER_POINTS; }
 /// The radius around them. [m]
 float pointRadius(Floater b) { return b.shape == FLOATER_SPHERE ? b.half_m.x : 0.0; }
 
-/// The k-th point, from the centre of mass in the water's axes [m]: the corners and the middles of the edges of a box, 8 on each
-/// rim of a cylinder and 4 half way between.
+/// The k-th point, from the centre of mass in the water's axes [m]. Of a box the corners and the middles of its edges along x and z; of
+/// a cylinder 6 on each rim and 4 half way between.
 vec3 pointOf(Floater b, int k) {
   vec3 p = vec3(0.0);
   if (b.shape == FLOATER_BOX) {
-    const vec3 corner = vec3((k & 1) * 2 - 1, ((k >> 1) & 1) * 2 - 1, ((k >> 2) & 1) * 2 - 1);
-    if (k >= 8) {
-      const int along = (k - 8) >> 2;
-      const vec2 edge = vec2((k & 1) * 2 - 1, ((k >> 1) & 1) * 2 - 1);
-      p = along == 0 ? vec3(0.0, edge) : (along == 1 ? vec3(edge.x, 0.0, edge.y) : vec3(edge, 0.0));
-    } else {
-      p = corner;
-    }
+    p = vec3((k & 1) * 2 - 1, ((k >> 1) & 1) * 2 - 1, ((k >> 2) & 1) * 2 - 1);
+    if (k >= 12) p = vec3(p.x, p.y, 0.0);
+    else if (k >= 8) p = vec3(0.0, p.y, p.x);
     p *= b.half_m;
   } else if (b.shape != FLOATER_SPHERE) {
-    const float angle = k < 16 ? 0.78539816 * float(k) : 1.57079633 * float(k);
-    const vec3 q = vec3(k < 8 ? -1.0 : (k < 16 ? 1.0 : 0.0), cos(angle), sin(angle));
+    const float angle = k < 12 ? 1.04719755 * float(k) : 1.57079633 * float(k);
+    const vec3 q = vec3(k < 6 ? -1.0 : (k < 12 ? 1.0 : 0.0), cos(angle), sin(angle));
     p = (b.shape == FLOATER_CYLINDER_X ? q : vec3(q.y, q.x, q.z)) * b.half_m;
   }
   return rotated(b.rotation, p - vec3(0.0, b.ballast_m, 0.0));

@@ -1,13 +1,13 @@
-// What the water, gravity and a hand do to every floater: its acceleration for the next tick. One group per floater, an invocation
-// per sample of its volume.
-// Reads SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
+// What the water, gravity and a hand do to every floater: its acceleration for the next tick. Floaters that cannot have touched anything
+// move before, as in bodies/floater_contacts.comp. One group per slot, an invocation per sample of its volume.
+// Reads FLOATER_NEAR, SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
 // With phi = elevation + head, the level of the water if nothing pressed on it, each sample feels
 //   buoyancy   rho (-g dphi/dx, g, -g dphi/dz) of the volume of it that is under phi
 //   drag       rho Cd A |u| u / 2 along each axis of the floater, u relative to the water, A its area across that axis
 // and the whole, near the surface, the damping of the waves that it makes. It carries along the water around it: half of
 // what it displaces (Lamb 1932, for a sphere). Waves by pressure: bodies/floater_press.comp.
-// The forces are those a part of a tick later (kLead), where a step of contacts that moves first and accelerates then neither feeds nor
-// damps an oscillation: with n steps per tick (n - 1) / 2n of a tick.
+// The forces are those at a position lead_s later, with which the steps of a tick neither feed nor damp an oscillation: with n steps
+// per tick (n - 1) / 2n of a tick.
 #include "bodies/floater.glsl"
 #include "shared/fixed_point.h"
 #if VARIED && NONLINEAR
@@ -20,6 +20,7 @@ layout(std430, binding = FLOATERS) restrict buffer Floaters { vec4 floaters[]; }
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
+layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 uniform float lead_s;
 
 const float kAddedMass = 0.5;         // of the displaced mass
@@ -49,18 +50,16 @@ vec3 sampleAt(Floater b, int k, out vec3 half_m) {
     half_m = b.half_m;
     return vec3(0.0);
   }
+  const float row = 0.5 * float(k & 3) - 0.75;
   if (b.shape == FLOATER_BOX) {
-    half_m = 0.25 * b.half_m;
-    return vec3(kApart, 1.0, kApart) * (vec3(k & 3, (k >> 2) & 3, k >> 4) * 0.5 - 0.75) * b.half_m;
+    half_m = vec3(0.25, 0.5, 0.25) * b.half_m;
+    return vec3(kApart * row, float((k >> 4) & 1) - 0.5, kApart * (0.5 * float((k >> 2) & 3) - 0.75)) * b.half_m;
   }
-  // 16 columns of equal area, 4 in the inner half of the radius and 12 around; at the radii that give its moments of area.
-  const int column = k & 15;
-  const bool is_inner = column < 4;
-  const float angle = is_inner ? 1.57079633 * (float(column) + 0.5) : 0.52359878 * float(column - 4);
-  const vec2 across = (is_inner ? 0.35355339 : 0.79056942) * vec2(cos(angle), sin(angle));
-  const float along = 0.5 * float(k >> 4) - 0.75;
-  half_m = 0.25 * b.half_m;
-  return (b.shape == FLOATER_CYLINDER_X ? vec3(kApart * along, across) : vec3(across.x, along, across.y)) * b.half_m;
+  // 8 columns of equal area on the circle that has the moments of area of the whole.
+  const float angle = 0.78539816 * (float(k >> 2) + 0.5);
+  const vec2 across = 0.70710678 * vec2(cos(angle), sin(angle));
+  half_m = (b.shape == FLOATER_CYLINDER_X ? vec3(0.25, 0.32, 0.32) : vec3(0.32, 0.25, 0.32)) * b.half_m;
+  return (b.shape == FLOATER_CYLINDER_X ? vec3(kApart * row, across) : vec3(across.x, row, across.y)) * b.half_m;
 }
 
 /// Share of a sphere below a level at a height over its middle, in radii.
@@ -69,35 +68,29 @@ float capShare(float height) {
   return 0.25 * d * d * (3.0 - d);
 }
 
-int levelCell(ivec2 cell) {
-  const ivec2 n = waveCounts();
-  return waveNeighbourX(cell.x, n.x) + n.x * waveNeighbourZ(cell.y, n.y);
-}
-
-/// Level without pressure [m], and whether there is water.
-vec2 levelAt(int i) {
-  const float eta_m = texelFetch(surface_texels, i).x;
+/// Level without pressure [m], its rate [m/s], and whether there is water.
+vec3 levelAt(int i) {
+  const vec2 eta = texelFetch(surface_texels, i).xy;
 #if VARIED && NONLINEAR
-  const bool is_wet = eta_m > -texelFetch(terrain, i).w + 1e-4;
-#else
-  const bool is_wet = true;
+  if (eta.x <= -texelFetch(terrain, i).w + 1e-4) return vec3(eta, 0.0);
 #endif
-  return is_wet ? vec2(eta_m + ELEVATION_UNIT_M * float(texelFetch(pressure_head, i).x), 1.0) : vec2(eta_m, 0.0);
+  return vec3(eta.x + ELEVATION_UNIT_M * float(texelFetch(pressure_head, i).x), eta.y, 1.0);
 }
 
-/// Level, its slopes along x and z, and the share of water around a position; the water's velocity. Bilinear between cells.
+/// Level, its slopes along x and z, and the share of water around a position, bilinear between cells; the water's velocity.
 vec4 waterAt(vec2 xz, out vec3 water_mps) {
   const vec2 u = clamp((xz + waveHalf_m()) / sim.wave_cell_m - 0.5, vec2(-1.0), vec2(waveCounts()));
   const ivec2 c = ivec2(floor(u));
   const vec2 t = u - vec2(c);
-  const int a = levelCell(c), b = levelCell(c + ivec2(1, 0)), d = levelCell(c + ivec2(0, 1)), e = levelCell(c + ivec2(1, 1));
-  const vec2 la = levelAt(a), lb = levelAt(b), ld = levelAt(d), le = levelAt(e);
-  const vec2 level = mix(mix(la, lb, t.x), mix(ld, le, t.x), t.y);
-  const vec2 slope = vec2(mix(lb.x - la.x, le.x - ld.x, t.y), mix(ld.x - la.x, le.x - lb.x, t.x)) / sim.wave_cell_m;
-  const vec2 flow_mps = mix(mix(texelFetch(flow_texels, a).xy, texelFetch(flow_texels, b).xy, t.x),
-                            mix(texelFetch(flow_texels, d).xy, texelFetch(flow_texels, e).xy, t.x), t.y);
-  water_mps = vec3(flow_mps.x, texelFetch(surface_texels, t.x < 0.5 ? a : b).y, flow_mps.y);
-  return vec4(level.x, level.y > 0.99 ? slope : vec2(0.0), level.y);
+  const ivec2 n = waveCounts();
+  const ivec2 x = ivec2(waveNeighbourX(c.x, n.x), waveNeighbourX(c.x + 1, n.x));
+  const ivec2 z = n.x * ivec2(waveNeighbourZ(c.y, n.y), waveNeighbourZ(c.y + 1, n.y));
+  const vec3 a = levelAt(x.x + z.x), b = levelAt(x.y + z.x), d = levelAt(x.x + z.y), e = levelAt(x.y + z.y);
+  const vec3 level = mix(mix(a, b, t.x), mix(d, e, t.x), t.y);
+  const vec2 slope = vec2(mix(b.x - a.x, e.x - d.x, t.y), mix(d.x - a.x, e.x - b.x, t.x)) / sim.wave_cell_m;
+  const vec2 flow_mps = texelFetch(flow_texels, (t.x < 0.5 ? x.x : x.y) + (t.y < 0.5 ? z.x : z.y)).xy;
+  water_mps = vec3(flow_mps.x, level.y, flow_mps.y);
+  return vec4(level.x, level.z > 0.99 ? slope : vec2(0.0), level.z);
 }
 
 WaterSums sampled(Floater b, int k, float g) {
@@ -160,6 +153,20 @@ vec3 stopping(vec3 resistance_mps2, vec3 relative_mps) {
   return resistance_mps2 / (1.0 + sim.tick_s * length(resistance_mps2) / max(length(relative_mps), 1e-6));
 }
 
+/// What the steps of a tick without contacts make.
+Floater movedFreely(Floater b) {
+  const vec3 before_mps = b.velocity_mps;
+  b.velocity_mps = limited(before_mps + sim.tick_s * b.acceleration_mps2, FLOATER_MAX_MPS);
+  b.spin_radps = limited(b.spin_radps + sim.tick_s * b.spin_up_radps2, FLOATER_MAX_RADPS);
+  const vec3 after_mps = b.velocity_mps;
+  const float late = lead_s / sim.tick_s;
+  b.velocity_mps = mix(after_mps, before_mps, late);
+  b = drifted(b, sim.tick_s);
+  b.velocity_mps = after_mps;
+  b.age_s += sim.tick_s;
+  return b;
+}
+
 void main() {
   const uint own = gl_WorkGroupID.x;
   const int k = int(gl_LocalInvocationID.x);
@@ -168,6 +175,7 @@ void main() {
   for (uint i = 0u; i < FLOATER_TEXELS; ++i) t[i] = floaters[at + i];
   Floater b = unpackFloater(t);
   if (b.age_s < 0.0) return;
+  if (near[own * FLOATER_NEAR_WORDS] == 0u) b = movedFreely(b);
   const float g = sim.gravity_mps2;
   WaterSums share = WaterSums(vec4(0.0), vec3(0.0), vec4(0.0), vec3(0.0), vec3(0.0));
   if (k == 0 || b.shape != FLOATER_SPHERE) share = sampled(drifted(b, lead_s), k, g);
@@ -207,6 +215,9 @@ void main() {
   const float open = clamp(1.0 - (level_m - top_m) / height_m, 0.0, 1.0);
   const float displaced = min(kSteadyShare * immersed / min(b.density_ratio, 1.0), 1.0) * open;
   b.dent = mix(displaced, b.dent, exp(-kDentRate_per_s * sim.tick_s));
+  floaters[at] = vec4(b.centre_m, b.age_s);
+  floaters[at + 1u] = b.rotation;
+  floaters[at + 2u] = vec4(b.velocity_mps, b.id);
   floaters[at + 3u] = vec4(b.spin_radps, b.dent);
   floaters[at + 6u] = b.hold;
   floaters[at + 7u] = vec4(b.acceleration_mps2, b.turn_radps);

@@ -19,11 +19,18 @@
 #define FLOATER_CYLINDER_Y 3
 // How long a hold lasts after the last command. [s]
 #define FLOATER_HOLD_S 0.5f
+// Limits of velocity and spin.
+#define FLOATER_MAX_MPS 25.0f
+#define FLOATER_MAX_RADPS 25.0f
 // Samples of volume of a floater, and lanes of the passes over its points of contact.
-#define FLOATER_SAMPLES 64
-#define FLOATER_POINTS 32
-// Neighbours that a floater can touch in a tick. They are listed in FLOATER_NEAR, after their number.
-#define FLOATER_NEAR_MAX 31
+#define FLOATER_SAMPLES 32
+#define FLOATER_POINTS 16
+// FLOATER_NEAR, FLOATER_NEAR_WORDS per slot: the number of neighbours that a floater can touch in a tick, plus FLOATER_GROUNDED
+// if it can touch anything else; then their slots.
+#define FLOATER_NEAR_WORDS 32
+#define FLOATER_GROUNDED 256u
+// FLOATER_TOUCHING: three words for the dispatch of a group per floater that can touch something, then from this word on their slots.
+#define FLOATER_TOUCHING_FIRST 4
 // Of the velocity that floaters give to boats: 2^-20 m/s.
 #define BOAT_PUSH_UNITS 1048576.0f
 // Squares of the water that list which floaters are there, per axis; one bit per slot in each.

@@ -1,4 +1,5 @@
 // Floaters: against closed forms, contacts, and what they do to the water.
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -69,31 +70,26 @@ class FloatersOnDevice : public OnDevice {
 }
 
 TEST_F(FloatersOnDevice, Explore) {
-  for (int variant = 2; variant < 5; ++variant) {
+  for (int n : {0, 64, 256, 1024}) for (double apart : {1.0, 0.45}) {
     core::Scene scene = floaterScene();
-    scene.floaters->capacity_count = 128;
-    const int layers = variant == 4 ? 4 : variant == 3 ? 2 : 1;
-    const double apart = variant == 0 ? 0.7 : variant == 1 ? 0.5 : 0.42;
-    for (int i = 0; i < 25 * layers; ++i)
-      scene.floaters->floaters.push_back(core::Floater{
-          .x_m = apart * (i % 5 - 2) + 0.03 * (i / 25), .y_m = 0.1 + 0.45 * (i / 25), .z_m = apart * (i / 5 % 5 - 2), .heading_deg = apart > 0.6 ? 7.0 * (i % 7) : 0,
-          .size_m = 0.4, .density_ratio = 0.4});
+    scene.wave->side_m = 40;
+    scene.wave->resolution_count = 128;
+    scene.floaters->capacity_count = 1024;
+    const int row = static_cast<int>(std::ceil(std::sqrt(n)));
+    for (int i = 0; i < n; ++i)
+      scene.floaters->floaters.push_back(core::Floater{.kind = static_cast<core::FloaterKind>(i % 7),
+          .x_m = apart * (i % row - row / 2), .y_m = 0.1, .z_m = apart * (i / row - row / 2), .heading_deg = 7.0 * (i % 7),
+          .size_m = 0.5});
     WaterSim& sim = make(scene);
-    for (int i = 0; i < 8; ++i) {
-      run(sim, 1);
-      double fastest = 0, mean = 0, top = -9, e = 0, low = 9;
-      for (const FloaterPose& p : poses(sim)) {
-        if (p.up_x == 0 && p.x_m == 0 && p.y_m==0) continue;
-        fastest = std::max(fastest, p.speed_mps());
-        mean += p.speed_mps() / 25 / layers;
-        top = std::max(top, p.y_m);
-        low = std::min(low, p.y_m);
-        e += p.y_m / 100 + 0.5 * p.speed_mps() * p.speed_mps() / 9.81 / 100;
-      }
-      double deepest = 0, highest = 0;
-      for (double eta : sim.copyState().elevation_m) deepest = std::min(deepest, eta), highest = std::max(highest, eta);
-      std::printf("variant %d t %.1f fastest %.4f mean %.5f top %.3f low %.3f energy %.4f eta %.3f %.3f\n", variant, sim.time_s(), fastest, mean, top, low, e, deepest, highest);
-    }
+    run(sim, 1);
+    (void)sim.takePassCosts();
+    const auto t0 = std::chrono::steady_clock::now();
+    run(sim, 1.5);
+    (void)sim.copyState();
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - t0).count() / 90;
+    std::printf("%d apart %.2f: %.3f ms per tick:", n, apart, ms);
+    for (const auto& c : sim.takePassCosts()) std::printf(" %s %.3f", c.name.c_str(), c.total_ms / static_cast<double>(c.scope_count));
+    std::puts("");
   }
 }
 
