@@ -218,17 +218,17 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
   }
   state_.bindTexel(FLOATERS);
   tiles_.clear();
-  touching_.clearRange(0, 0, 4);
-  touching_.clearRange(1, 4, 8);
+  touching_.clearRange(0, 0, FLOATER_TOUCHING_FIRST * 4);
+  touching_.clearRange(1, 4, 8);  // groups along y and z
   touching_.bindStorage(FLOATER_TOUCHING);
   reach_.bindStorage(FLOATER_PLACES);
   tiles_.bindStorage(FLOATER_TILES);
   near_.bindStorage(FLOATER_NEAR);
   for (Pass* pass : {&mark_tiles_, &find_near_}) pass->setUniform("tile_words_count", tile_words_count_);
-  mark_tiles_.setUniform("slot_count", slot_count_);
+  for (Pass* pass : {&mark_tiles_, &find_near_, &water_}) pass->setUniform("slot_count", slot_count_);
   mark_tiles_.run(slot_count_);
   reach_.bindTexel(FLOATER_PLACES);
-  find_near_.runGroups(slot_count_);
+  find_near_.run(slot_count_);
   contacts_.barrier(gpu::Barrier::kIndirect);
   const int steps = contactSteps(tick_s);
   contacts_.setUniform("step_s", static_cast<float>(tick_s / steps));
@@ -250,7 +250,7 @@ void Floaters::feel(double tick_s, Wave& wave) {
   state_.bindStorage(FLOATERS);
   const int steps = contactSteps(tick_s);
   water_.setUniform("lead_s", static_cast<float>(tick_s * (steps - 1) / (2.0 * steps)));
-  water_.runGroups(slot_count_);
+  water_.run(slot_count_);
 }
 
 void Floaters::press(const gpu::TexelBuffer& pressure_head) {

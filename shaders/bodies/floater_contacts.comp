@@ -1,5 +1,5 @@
-// A part of a tick of every floater that can touch something: the points at which it does push it back, and it moves. One group per
-// floater, an invocation per point.
+// A part of a tick of every floater that can touch something: the points at which it does push it back, and it moves. One invocation
+// per floater.
 // Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Writes FLOATERS_NEXT; adds to BOAT_PUSH.
 // Contacts are springs and dampers between a point of one floater and the surface of another, pulling never, with Coulomb friction. All
 // act at once, on the state before; both floaters of a pair compute the same impulse, so that momentum stays. The factors
@@ -13,7 +13,7 @@
 #include "common/terrain.glsl"
 #endif
 
-layout(local_size_x = FLOATER_POINTS) in;
+layout(local_size_x = FLOATER_GROUP) in;
 
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = FLOATERS_NEXT) restrict writeonly buffer FloatersNext { vec4 floaters_next[]; };
@@ -32,19 +32,17 @@ const float kShareFrom = 3.0;         // neighbours from which on they share the
 const float kRestSpeed_mps = 0.03;    // slower than this, a floater that is touched comes to rest
 const float kRestKept = 0.9;
 
-shared vec3 sum_velocity[FLOATER_POINTS], sum_spin[FLOATER_POINTS];
-shared uint touches;
-
 Floater floaterAt(uint slot) {
   vec4 t[FLOATER_TEXELS];
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
   return unpackFloater(t);
 }
 
-/// Change of velocity and of spin.
+/// Change of velocity and of spin, and whether there is any.
 struct Push {
   vec3 velocity_mps;
   vec3 spin_radps;
+  bool touches;
 };
 
 /// Inverse of the mass that an impulse along n at r moves, over the mass. [1]
@@ -67,37 +65,38 @@ void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m, vec3 oth
   const vec3 impulse = pressed * n - held / max(speed_mps, 1e-6) * sliding_mps;
   push.velocity_mps += impulse;
   push.spin_radps += spinOf(b, cross(r, impulse));
-  touches = 1u;
+  push.touches = true;
 }
 
-/// Contact of the k-th points of two floaters with each other's surfaces.
-void meetFloater(inout Push push, Floater b, Floater o, int k, float share) {
+/// Contact of the points of one floater with the surface of another; `is_own`: whose points they are.
+void meetPoints(inout Push push, Floater b, Floater o, vec3 apart_m, float mass_ratio, float share, bool is_own) {
+  const Floater pointed = is_own ? b : o;
+  const float radius_m = pointRadius(pointed);
+  const vec3 from_pointed_m = is_own ? -apart_m : apart_m;
+  const float away = is_own ? 1.0 : -1.0;
+  const int count = pointCount(pointed);
+  for (int k = 0; k < count; ++k) {
+    const vec3 r = pointOf(pointed, k);
+    const vec4 there = is_own ? surfaceOf(o, r + from_pointed_m) : surfaceOf(b, r + from_pointed_m);
+    const vec3 at = (is_own ? r : r + apart_m) - radius_m * there.xyz;
+    const vec3 n = away * there.xyz;
+    touch(push, b, at, n, radius_m - there.w, o.velocity_mps + cross(o.spin_radps, at - apart_m), mass_ratio * yieldOf(o, at - apart_m, n),
+          share);
+  }
+}
+
+void meetFloater(inout Push push, Floater b, Floater o, float share) {
   vec3 apart_m = o.centre_m - b.centre_m;
   apart_m.xz = acrossSides(apart_m.xz);
+  const float reach_m = reachOf(b) + reachOf(o);
+  if (dot(apart_m, apart_m) > reach_m * reach_m) return;
   const float mass_ratio = b.density_ratio * volumeOf(b) / (o.density_ratio * volumeOf(o));
-  if (k < pointCount(b)) {
-    const vec3 r = pointOf(b, k);
-    const vec4 there = surfaceOf(o, r - apart_m);
-    const float overlap_m = pointRadius(b) - there.w;
-    const vec3 at = r - there.xyz * pointRadius(b);
-    const vec3 ro = at - apart_m;
-    if (overlap_m > 0.0)
-      touch(push, b, at, there.xyz, overlap_m, o.velocity_mps + cross(o.spin_radps, ro), mass_ratio * yieldOf(o, ro, there.xyz), share);
-  }
-  if (k < pointCount(o)) {
-    const vec3 ro = pointOf(o, k);
-    const vec4 here = surfaceOf(b, ro + apart_m);
-    const float overlap_m = pointRadius(o) - here.w;
-    const vec3 at = ro + apart_m - here.xyz * pointRadius(o);
-    if (overlap_m > 0.0)
-      touch(push, b, at, -here.xyz, overlap_m, o.velocity_mps + cross(o.spin_radps, at - apart_m),
-            mass_ratio * yieldOf(o, at - apart_m, here.xyz), share);
-  }
+  meetPoints(push, b, o, apart_m, mass_ratio, share, true);
+  meetPoints(push, b, o, apart_m, mass_ratio, share, false);
 }
 
 /// Contact of a point with the bed, rocks and the sides.
 void meetGround(inout Push push, Floater b, int k) {
-  if (k >= pointCount(b)) return;
   const float radius_m = pointRadius(b);
   const vec3 r = pointOf(b, k);
   const vec3 at = b.centre_m + r;
@@ -132,7 +131,6 @@ void meetGround(inout Push push, Floater b, int k) {
 #if HULLS
 /// Contact of a point with the hulls of boats: boxes that turn about the vertical only.
 void meetBoats(inout Push push, Floater b, int k) {
-  if (k >= pointCount(b)) return;
   const float radius_m = pointRadius(b);
   const vec3 r = pointOf(b, k);
   for (int slot = 0; slot < int(boat_place_count); ++slot) {
@@ -161,36 +159,27 @@ void meetBoats(inout Push push, Floater b, int k) {
 #endif
 
 void main() {
-  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_WorkGroupID.x];
-  const int point = int(gl_LocalInvocationID.x);
+  if (gl_GlobalInvocationID.x >= touching[FLOATER_TOUCHING_COUNT]) return;
+  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_GlobalInvocationID.x];
   const Floater b = floaterAt(own);
-  if (point == 0) touches = 0u;
-  barrier();
-  Push push = Push(vec3(0.0), vec3(0.0));
+  Push push = Push(vec3(0.0), vec3(0.0), false);
   const uint list = own * FLOATER_NEAR_WORDS;
   const uint near_count = near[list] & (FLOATER_GROUNDED - 1u);
   for (uint k = 0u; k < near_count; ++k) {
     const uint other = near[list + 1u + k];
     const uint crowd = max(near_count, near[other * FLOATER_NEAR_WORDS] & (FLOATER_GROUNDED - 1u));
-    meetFloater(push, b, floaterAt(other), point, min(1.0, kShareFrom / float(crowd)));
+    meetFloater(push, b, floaterAt(other), min(1.0, kShareFrom / float(crowd)));
   }
-  if (near[list] >= FLOATER_GROUNDED) {
-    meetGround(push, b, point);
+  const int ground_points = near[list] >= FLOATER_GROUNDED ? pointCount(b) : 0;
+  for (int k = 0; k < ground_points; ++k) {
+    meetGround(push, b, k);
 #if HULLS
-    meetBoats(push, b, point);
+    meetBoats(push, b, k);
 #endif
   }
-  sum_velocity[point] = push.velocity_mps;
-  sum_spin[point] = push.spin_radps;
-  barrier();
-  if (point > 0) return;
-  vec3 velocity_mps = b.velocity_mps + step_s * b.acceleration_mps2;
-  vec3 spin_radps = b.spin_radps + step_s * b.spin_up_radps2;
-  for (int k = 0; k < FLOATER_POINTS; ++k) {
-    velocity_mps += sum_velocity[k];
-    spin_radps += sum_spin[k];
-  }
-  if (touches > 0u && b.hold.w <= 0.0) {
+  vec3 velocity_mps = b.velocity_mps + step_s * b.acceleration_mps2 + push.velocity_mps;
+  vec3 spin_radps = b.spin_radps + step_s * b.spin_up_radps2 + push.spin_radps;
+  if (push.touches && b.hold.w <= 0.0) {
     const float fastest_mps = max(length(velocity_mps), reachOf(b) * length(spin_radps));
     const float kept = fastest_mps < kRestSpeed_mps ? kRestKept : 1.0;
     velocity_mps *= kept;

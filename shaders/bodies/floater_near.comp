@@ -1,4 +1,4 @@
-// Lists for each floater what it can touch in this tick. One group per slot, an invocation per word of a tile.
+// Lists for each floater what it can touch in this tick. One invocation per slot.
 // Reads FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR, and adds to FLOATER_TOUCHING
 // (cleared before) the slots of those that can touch something, in any order.
 // Two floaters list each other, unless one has more neighbours than words: it keeps those of the lowest slots.
@@ -10,7 +10,7 @@
 #include "bodies/boat.glsl"
 #endif
 
-layout(local_size_x = 32) in;
+layout(local_size_x = FLOATER_GROUP) in;
 
 layout(binding = FLOATER_PLACES) uniform samplerBuffer places;
 layout(std430, binding = FLOATER_TILES) restrict readonly buffer FloaterTiles { uint tiles[]; };
@@ -19,8 +19,7 @@ layout(std430, binding = FLOATER_TOUCHING) restrict buffer FloaterTouching { uin
 #if HULLS
 layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
-
-shared uint near_count[32];
+uniform uint slot_count;
 
 /// Whether it can touch the bed, a rock, a side or a boat.
 bool isGrounded(vec4 place) {
@@ -52,38 +51,34 @@ bool isGrounded(vec4 place) {
 }
 
 void main() {
-  const uint own = gl_WorkGroupID.x;
-  const uint word = gl_LocalInvocationID.x;
+  const uint own = gl_GlobalInvocationID.x;
+  if (own >= slot_count) return;
   const vec4 place = texelFetch(places, int(own));
-  uint listed = 0u;
-  if (place.w > 0.0 && word < tile_words_count) {
-    const ivec4 span = tileSpan(place);
-    for (int z = span.z; z <= span.w; ++z)
-      for (int x = span.x; x <= span.y; ++x) listed |= tiles[tileAt(x, z) * tile_words_count + word];
-    for (uint rest = listed; rest != 0u; rest &= rest - 1u) {
-      const int bit = findLSB(rest);
-      const uint other = 32u * word + uint(bit);
-      const vec4 at = texelFetch(places, int(other));
-      vec3 d = at.xyz - place.xyz;
-      d.xz = acrossSides(d.xz);
-      const float reach_m = at.w + place.w;
-      if (other == own || dot(d, d) > reach_m * reach_m) listed &= ~(1u << bit);
-    }
-  }
-  near_count[word] = uint(bitCount(listed));
-  barrier();
   const uint first = own * FLOATER_NEAR_WORDS;
-  const uint most = FLOATER_NEAR_WORDS - 1u;
-  uint at = 0u;
-  for (uint k = 0u; k < word; ++k) at += near_count[k];
-  if (word == 31u) {
-    const uint count = min(at + near_count[31], most);
-    const uint grounded = place.w > 0.0 && isGrounded(place) ? FLOATER_GROUNDED : 0u;
-    near[first] = count + grounded;
-    if (count + grounded > 0u) touching[FLOATER_TOUCHING_FIRST + atomicAdd(touching[0], 1u)] = own;
+  uint count = 0u;
+  if (place.w > 0.0) {
+    const ivec4 span = tileSpan(place);
+    const uint words = (slot_count + 31u) / 32u;
+    for (uint word = 0u; word < words; ++word) {
+      uint listed = 0u;
+      for (int z = span.z; z <= span.w; ++z)
+        for (int x = span.x; x <= span.y; ++x) listed |= tiles[tileAt(x, z) * tile_words_count + word];
+      for (; listed != 0u && count < FLOATER_NEAR_WORDS - 1u; listed &= listed - 1u) {
+        const uint other = 32u * word + uint(findLSB(listed));
+        const vec4 at = texelFetch(places, int(other));
+        vec3 d = at.xyz - place.xyz;
+        d.xz = acrossSides(d.xz);
+        const float reach_m = at.w + place.w;
+        if (other == own || dot(d, d) > reach_m * reach_m) continue;
+        ++count;
+        near[first + count] = other;
+      }
+    }
+    if (isGrounded(place)) count += FLOATER_GROUNDED;
   }
-  for (uint rest = listed; rest != 0u && at < most; rest &= rest - 1u) {
-    near[first + 1u + at] = 32u * word + uint(findLSB(rest));
-    ++at;
-  }
+  near[first] = count;
+  if (count == 0u) return;
+  const uint row = atomicAdd(touching[FLOATER_TOUCHING_COUNT], 1u);
+  touching[FLOATER_TOUCHING_FIRST + row] = own;
+  if (row % FLOATER_GROUP == 0u) atomicAdd(touching[0], 1u);
 }

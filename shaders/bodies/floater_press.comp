@@ -5,7 +5,7 @@
 #include "bodies/floater.glsl"
 #include "shared/fixed_point.h"
 
-layout(local_size_x = FLOATER_SAMPLES) in;
+layout(local_size_x = FLOATER_GROUP) in;
 
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = PRESSURE_HEAD) restrict buffer PressureHead { int pressure_head[]; };
@@ -40,7 +40,7 @@ void main() {
   const ivec2 across = min(2 * ivec2(ceil(kReach * sqrt(vec2(xx, zz)) / cell_m)) + 1, n);
   const vec2 middle = clamp((middleOf(b).xz + waveHalf_m()) / cell_m, vec2(-1e6), vec2(1e6));
   const ivec2 first = ivec2(floor(middle)) - across / 2;
-  for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += FLOATER_SAMPLES) {
+  for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += FLOATER_GROUP) {
     ivec2 cell = first + ivec2(k % across.x, k / across.x);
     const vec2 d = (vec2(cell) + 0.5 - middle) * cell_m;
     const float distance2 = (zz * d.x * d.x - 2.0 * xz * d.x * d.y + xx * d.y * d.y) / determinant;

@@ -1,5 +1,5 @@
 // What the water, gravity and a hand do to every floater: its acceleration for the next tick. Floaters that cannot have touched anything
-// move before, as in bodies/floater_contacts.comp. One group per slot, an invocation per sample of its volume.
+// move before, as in bodies/floater_contacts.comp. One invocation per slot, with samples of its volume.
 // Reads FLOATER_NEAR, SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
 // With phi = elevation + head, the level of the water if nothing pressed on it, each sample feels
 //   buoyancy   rho (-g dphi/dx, g, -g dphi/dz) of the volume of it that is under phi
@@ -14,7 +14,7 @@
 #include "common/terrain_texels.glsl"
 #endif
 
-layout(local_size_x = FLOATER_SAMPLES) in;
+layout(local_size_x = FLOATER_GROUP) in;
 
 layout(std430, binding = FLOATERS) restrict buffer Floaters { vec4 floaters[]; };
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
@@ -22,6 +22,7 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 uniform float lead_s;
+uniform uint slot_count;
 
 const float kAddedMass = 0.5;         // of the displaced mass
 const float kWaveDamping = 0.12;      // of critical, at half immersion
@@ -31,16 +32,14 @@ const float kHandRate_per_s = 8.0;    // of the spring of a hand
 const float kHandMax_mps2 = 60.0;
 const float kHandTurn_per_s = 6.0;
 
-/// Sums over the samples: immersed share; buoyancy [m^4/s^2], its moment; drag, its moment; velocity of the water; level.
+/// Sums over the samples; forces over the density of water.
 struct WaterSums {
-  vec4 buoyancy;  // w: immersed share
-  vec3 moment;
-  vec4 drag;      // w: level at the middle
-  vec3 drag_moment;
-  vec3 water_mps;
+  float immersed;         // share of the volume
+  float level_m;          // mean
+  vec3 water_mps;         // times the immersed share
+  vec3 buoyancy, moment;  // [m^4/s^2], [m^5/s^2]
+  vec3 drag, drag_moment;
 };
-shared vec4 share_buoyancy[FLOATER_SAMPLES], share_drag[FLOATER_SAMPLES];
-shared vec3 share_moment[FLOATER_SAMPLES], share_drag_moment[FLOATER_SAMPLES], share_water[FLOATER_SAMPLES];
 
 /// A sample of the volume: position from the middle along its axes [m]; half its extents there. Four samples in a row lie kApart
 /// further apart than the middles of quarters, which gives them the moment of area of the whole.
@@ -93,59 +92,36 @@ vec4 waterAt(vec2 xz, out vec3 water_mps) {
   return vec4(level.x, level.z > 0.99 ? slope : vec2(0.0), level.z);
 }
 
-WaterSums sampled(Floater b, int k, float g) {
+void add(inout WaterSums sums, Floater b, int k, vec3 upright, float part, float g) {
   vec3 half_m;
-  const float volume_m3 = volumeOf(b);
-  const float part_m3 = b.shape == FLOATER_SPHERE ? volume_m3 : volume_m3 / float(FLOATER_SAMPLES);
-  const vec3 own_m = sampleAt(b, k, half_m) - vec3(0.0, b.ballast_m, 0.0);
-  const vec3 r = rotated(b.rotation, own_m);
+  const vec3 r = rotated(b.rotation, sampleAt(b, k, half_m) - vec3(0.0, b.ballast_m, 0.0));
   vec3 water_mps;
   const vec4 water = waterAt(b.centre_m.xz + r.xz, water_mps);
-  const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
-  const float extent_m = dot(abs(upright), half_m);
   const float height_m = water.x - (b.centre_m.y + r.y);
-  float under = b.shape == FLOATER_SPHERE ? capShare(height_m / half_m.x) : clamp(0.5 + 0.5 * height_m / extent_m, 0.0, 1.0);
-  under *= water.w;
-
-  WaterSums sums;
-  const vec3 buoyancy = part_m3 * under * g * vec3(-water.y, 1.0, -water.z);
-  sums.buoyancy = vec4(buoyancy, under * part_m3 / volume_m3);
-  sums.moment = cross(r, buoyancy);
+  const float share = b.shape == FLOATER_SPHERE ? capShare(height_m / half_m.x)
+                                                : clamp(0.5 + 0.5 * height_m / dot(abs(upright), half_m), 0.0, 1.0);
+  const float under = part * share * water.w;
+  const vec3 buoyancy = volumeOf(b) * under * g * vec3(-water.y, 1.0, -water.z);
   const vec3 u = rotatedBack(b.rotation, b.velocity_mps + cross(b.spin_radps, r) - water_mps);
-  vec3 drag;  // along its axes, over the density of water [m^4/s^2]
-  if (b.shape == FLOATER_SPHERE) {
-    drag = -0.5 * 0.47 * 3.14159265 * half_m.x * half_m.x * length(u) * u;
-  } else {
-    const float drag_coefficient = b.shape == FLOATER_BOX ? 1.05 : 0.85;
-    const vec3 area_m2 = 4.0 * b.half_m.yxx * b.half_m.zzy;
-    drag = -0.5 * drag_coefficient * (part_m3 / volume_m3) * area_m2 * abs(u) * u;
-  }
-  drag *= under;
-  sums.drag = vec4(rotated(b.rotation, drag), water.x * part_m3 / volume_m3);
-  sums.drag_moment = cross(r, sums.drag.xyz);
-  sums.water_mps = under * water_mps * (part_m3 / volume_m3);
-  return sums;
+  const vec3 area_m2 = 4.0 * b.half_m.yxx * b.half_m.zzy;
+  const vec3 drag = b.shape == FLOATER_SPHERE ? -0.5 * 0.47 * 3.14159265 * half_m.x * half_m.x * length(u) * u
+                                              : -0.5 * (b.shape == FLOATER_BOX ? 1.05 : 0.85) * area_m2 * abs(u) * u;
+  const vec3 dragged = under * rotated(b.rotation, drag);
+  sums.immersed += under;
+  sums.level_m += part * water.x;
+  sums.water_mps += under * water_mps;
+  sums.buoyancy += buoyancy;
+  sums.moment += cross(r, buoyancy);
+  sums.drag += dragged;
+  sums.drag_moment += cross(r, dragged);
 }
 
-WaterSums totalOf(WaterSums own) {
-  const uint k = gl_LocalInvocationID.x;
-  share_buoyancy[k] = own.buoyancy;
-  share_moment[k] = own.moment;
-  share_drag[k] = own.drag;
-  share_drag_moment[k] = own.drag_moment;
-  share_water[k] = own.water_mps;
-  for (uint reach = FLOATER_SAMPLES / 2u; reach > 0u; reach >>= 1) {
-    barrier();
-    if (k < reach) {
-      share_buoyancy[k] += share_buoyancy[k + reach];
-      share_moment[k] += share_moment[k + reach];
-      share_drag[k] += share_drag[k + reach];
-      share_drag_moment[k] += share_drag_moment[k + reach];
-      share_water[k] += share_water[k + reach];
-    }
-  }
-  barrier();
-  return WaterSums(share_buoyancy[0], share_moment[0], share_drag[0], share_drag_moment[0], share_water[0]);
+WaterSums sampled(Floater b, float g) {
+  const int samples = b.shape == FLOATER_SPHERE ? 1 : FLOATER_SAMPLES;
+  const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
+  WaterSums sums = WaterSums(0.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
+  for (int k = 0; k < samples; ++k) add(sums, b, k, upright, 1.0 / float(samples), g);
+  return sums;
 }
 
 /// Shortens a resistance so that it stops what it acts on in a tick, and does not reverse it.
@@ -168,8 +144,8 @@ Floater movedFreely(Floater b) {
 }
 
 void main() {
-  const uint own = gl_WorkGroupID.x;
-  const int k = int(gl_LocalInvocationID.x);
+  const uint own = gl_GlobalInvocationID.x;
+  if (own >= slot_count) return;
   const uint at = own * FLOATER_TEXELS;
   vec4 t[FLOATER_TEXELS];
   for (uint i = 0u; i < FLOATER_TEXELS; ++i) t[i] = floaters[at + i];
@@ -177,14 +153,10 @@ void main() {
   if (b.age_s < 0.0) return;
   if (near[own * FLOATER_NEAR_WORDS] == 0u) b = movedFreely(b);
   const float g = sim.gravity_mps2;
-  WaterSums share = WaterSums(vec4(0.0), vec3(0.0), vec4(0.0), vec3(0.0), vec3(0.0));
-  if (k == 0 || b.shape != FLOATER_SPHERE) share = sampled(drifted(b, lead_s), k, g);
-  const WaterSums sums = totalOf(share);
-  if (k > 0) return;
+  const WaterSums sums = sampled(drifted(b, lead_s), g);
 
   const float volume_m3 = volumeOf(b);
-  const float immersed = sums.buoyancy.w;
-  const float level_m = sums.drag.w;
+  const float immersed = sums.immersed;
   const float mass_m3 = b.density_ratio * volume_m3;  // over the density of water
   const float carried = 1.0 + kAddedMass * immersed / b.density_ratio;
   // As in the implicit midpoint rule, so that a light floater is stable with any tick.
@@ -195,14 +167,14 @@ void main() {
   const vec3 relative_mps = b.velocity_mps - water_mps;
   const float at_surface = 4.0 * immersed * (1.0 - immersed);
   const float damping_per_s = 2.0 * kWaveDamping * sqrt(bob2_ps2) * at_surface;
-  const vec3 drag_mps2 = stopping(sums.drag.xyz / (mass_m3 * carried) - damping_per_s * relative_mps, relative_mps);
-  b.acceleration_mps2 = sums.buoyancy.xyz / (mass_m3 * carried * yields) + drag_mps2 - vec3(0.0, g / carried, 0.0) * mix(1.0, 1.0 / yields, immersed);
+  const vec3 drag_mps2 = stopping(sums.drag / (mass_m3 * carried) - damping_per_s * relative_mps, relative_mps);
+  b.acceleration_mps2 = sums.buoyancy / (mass_m3 * carried * yields) + drag_mps2 - vec3(0.0, g / carried, 0.0) * mix(1.0, 1.0 / yields, immersed);
   const vec3 drag_radps2 = stopping(spinOf(b, sums.drag_moment) / (mass_m3 * carried) - damping_per_s * b.spin_radps, b.spin_radps);
   b.spin_up_radps2 = spinOf(b, sums.moment) / (mass_m3 * carried * yields) + drag_radps2;
 
   if (b.hold.w > 0.0) {
     vec2 way_m = acrossSides(b.hold.xz - b.centre_m.xz);
-    const vec3 pull_m = vec3(way_m.x, level_m + b.hold.y - middleOf(b).y, way_m.y);
+    const vec3 pull_m = vec3(way_m.x, sums.level_m + b.hold.y - middleOf(b).y, way_m.y);
     b.acceleration_mps2 = kHandRate_per_s * (kHandRate_per_s * pull_m - 2.0 * b.velocity_mps);
     b.acceleration_mps2 *= min(1.0, kHandMax_mps2 / max(length(b.acceleration_mps2), 1e-6));
     b.spin_up_radps2.y = 0.0;
@@ -212,7 +184,7 @@ void main() {
 
   // The dent fades as the floater sinks below the surface.
   const float top_m = middleOf(b).y + dot(abs(rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0))), b.half_m);
-  const float open = clamp(1.0 - (level_m - top_m) / height_m, 0.0, 1.0);
+  const float open = clamp(1.0 - (sums.level_m - top_m) / height_m, 0.0, 1.0);
   const float displaced = min(kSteadyShare * immersed / min(b.density_ratio, 1.0), 1.0) * open;
   b.dent = mix(displaced, b.dent, exp(-kDentRate_per_s * sim.tick_s));
   floaters[at] = vec4(b.centre_m, b.age_s);

@@ -22,14 +22,17 @@
 // Limits of velocity and spin.
 #define FLOATER_MAX_MPS 25.0f
 #define FLOATER_MAX_RADPS 25.0f
-// Samples of volume of a floater, and lanes of the passes over its points of contact.
+// Invocations of a group of the passes with one per floater.
+#define FLOATER_GROUP 32
+// Samples of volume of a floater, and the points at which it touches; one of each for a ball.
 #define FLOATER_SAMPLES 32
 #define FLOATER_POINTS 16
 // FLOATER_NEAR, FLOATER_NEAR_WORDS per slot: the number of neighbours that a floater can touch in a tick, plus FLOATER_GROUNDED
 // if it can touch anything else; then their slots.
 #define FLOATER_NEAR_WORDS 32
 #define FLOATER_GROUNDED 256u
-// FLOATER_TOUCHING: three words for the dispatch of a group per floater that can touch something, then from this word on their slots.
+// FLOATER_TOUCHING: three words for the dispatch over floaters that can touch something, their number, and their slots.
+#define FLOATER_TOUCHING_COUNT 3
 #define FLOATER_TOUCHING_FIRST 4
 // Of the velocity that floaters give to boats: 2^-20 m/s.
 #define BOAT_PUSH_UNITS 1048576.0f
