@@ -19,8 +19,8 @@ constexpr float kFreeSlot = -1.0f;
 /// The device stores ids as 32-bit floats, which are exact for whole numbers up to this one.
 constexpr std::uint32_t kIdMax = 1u << 24;
 /// A step of contacts lasts at most this long, unless a tick would have too many.
-constexpr double kContactStep_s = 0.0042;
-constexpr int kContactSteps = 4, kMaxContactSteps = 16;
+constexpr double kContactStep_s = 0.0084;
+constexpr int kMaxContactSteps = 8;
 
 using FloaterState = std::array<float, std::size_t{FLOATER_TEXELS} * 4>;
 
@@ -80,7 +80,7 @@ FloaterState startingFloater(const core::Floater& floater, std::uint32_t floater
 
 int contactSteps(double tick_s) {
   const int steps = static_cast<int>(std::ceil(tick_s / kContactStep_s));
-  return std::clamp(steps + steps % 2, kContactSteps, kMaxContactSteps);  // even: the last one writes state_
+  return std::min(steps + steps % 2, kMaxContactSteps);  // even: the last one writes state_
 }
 
 }  // namespace

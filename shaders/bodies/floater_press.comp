@@ -1,7 +1,7 @@
 // Pressure of the floaters on the water: the weight of the water that each displaces. One group per floater.
 // Reads FLOATERS. Adds to PRESSURE_HEAD [nx x nz, units] (cleared before).
-// The pressure is a Gaussian with the second moments of the floater's volume, and at least kLeastCells wide, so that the grid
-// carries it; its integral is exact up to its cut. The floater presses where it will be in the middle of the next tick.
+// The pressure is exp(-(q / 2 sqrt(pi))^2), q being the distance squared in standard deviations. It has the second moments of the
+// floater's volume, and at least those of kLeastCells, so that the grid carries it; its integral is pi^2 products of deviations. The floater presses where it will be in the middle of the next tick.
 #include "bodies/floater.glsl"
 #include "shared/fixed_point.h"
 
@@ -35,7 +35,7 @@ void main() {
   }
   const float determinant = xx * zz - xz * xz;
   const float highest_m = kHighestHead * sim.wave_depth_m;
-  const float peak_m = min(pressing_m3 / (6.2831853 * sqrt(determinant)), highest_m);
+  const float peak_m = min(pressing_m3 / (9.8696044 * sqrt(determinant)), highest_m);
   const ivec2 n = waveCounts();
   const ivec2 across = min(2 * ivec2(ceil(kReach * sqrt(vec2(xx, zz)) / cell_m)) + 1, n);
   const vec2 middle = clamp((middleOf(b).xz + waveHalf_m()) / cell_m, vec2(-1e6), vec2(1e6));
@@ -51,7 +51,7 @@ void main() {
     cell.y = wrapped(cell.y, n.y);
 #endif
     if (distance2 > kReach * kReach || any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) continue;
-    const float units = peak_m * exp(-0.5 * distance2) * ELEVATION_UNITS_PER_M;
+    const float units = peak_m * exp(-distance2 * distance2 / 12.566371) * ELEVATION_UNITS_PER_M;
     // Skip a floater with a non-finite state.
     const int whole = abs(units) < TRANSFER_MAX_UNITS ? int(round(units)) : 0;
     if (whole != 0) atomicAdd(pressure_head[cell.x + n.x * cell.y], whole);

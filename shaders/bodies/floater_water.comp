@@ -1,7 +1,7 @@
 // What the water, gravity and a hand do to every floater: its acceleration for the next tick. Floaters that cannot have touched anything
-// move before, as in bodies/floater_contacts.comp. One invocation per slot, with samples of its volume.
+// move before, as in bodies/floater_contacts.comp. One invocation per slot, with columns of its volume.
 // Reads FLOATER_NEAR, SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
-// With phi = elevation + head, the level of the water if nothing pressed on it, each sample feels
+// With phi = elevation + head, the level of the water if nothing pressed on it, each column feels
 //   buoyancy   rho (-g dphi/dx, g, -g dphi/dz) of the volume of it that is under phi
 //   drag       rho Cd A |u| u / 2 along each axis of the floater, u relative to the water, A its area across that axis
 // and the whole, near the surface, the damping of the waves that it makes. It carries along the water around it: half of
@@ -41,24 +41,56 @@ struct WaterSums {
   vec3 drag, drag_moment;
 };
 
-/// A sample of the volume: position from the middle along its axes [m]; half its extents there. Four samples in a row lie kApart
-/// further apart than the middles of quarters, which gives them the moment of area of the whole.
+/// A column of the volume, in the water's axes: its middle from the centre of mass, half its length upward [m], and its share of the
+/// volume. Columns of a box stand on the face that looks down most; those of a cylinder along its axis, or across it if it lies. Four
+/// in a row lie kApart further apart than the middles of quarters, which gives them the moment of area of the whole.
+struct Column {
+  vec3 middle_m;
+  vec3 half_m;
+  float share;
+};
 const float kApart = 1.0327956;  // sqrt(16 / 15)
-vec3 sampleAt(Floater b, int k, out vec3 half_m) {
-  if (b.shape == FLOATER_SPHERE) {
-    half_m = b.half_m;
-    return vec3(0.0);
-  }
-  const float row = 0.5 * float(k & 3) - 0.75;
+const float kChordShare = 1.2511359;  // makes the shares of four chords of a circle 1
+
+Column columnAt(Floater b, int k) {
+  const float row = kApart * (0.5 * float(k & 3) - 0.75);
+  const float other_row = kApart * (0.5 * float(k >> 2) - 0.75);
+  const vec3 h = b.half_m;
+  const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
+  Column c = Column(vec3(0.0), vec3(0.0), 1.0 / float(FLOATER_SAMPLES));
   if (b.shape == FLOATER_BOX) {
-    half_m = vec3(0.25, 0.5, 0.25) * b.half_m;
-    return vec3(kApart * row, float((k >> 4) & 1) - 0.5, kApart * (0.5 * float((k >> 2) & 3) - 0.75)) * b.half_m;
+    const vec3 steep = abs(upright);
+    const bool along_x = steep.x > max(steep.y, steep.z);
+    const bool along_z = !along_x && steep.z > steep.y;
+    c.middle_m = along_x ? vec3(0.0, row, other_row) : (along_z ? vec3(row, other_row, 0.0) : vec3(row, 0.0, other_row));
+    c.half_m = along_x ? vec3(1.0, 0.0, 0.0) : (along_z ? vec3(0.0, 0.0, 1.0) : vec3(0.0, 1.0, 0.0));
+    c.middle_m *= h;
+    c.half_m *= h;
+  } else {
+    const bool is_x = b.shape == FLOATER_CYLINDER_X;
+    const vec3 axis = is_x ? vec3(1.0, 0.0, 0.0) : vec3(0.0, 1.0, 0.0);
+    const float radius_m = h.z;
+    const vec3 steep = upright - dot(upright, axis) * axis;
+    const vec3 side = is_x ? vec3(0.0, 0.0, 1.0) : vec3(1.0, 0.0, 0.0);
+    if (abs(dot(upright, axis)) > 0.7071) {
+      // 4 columns in the inner half of the radius and 12 around, at the radii that give the moments of area.
+      const bool is_inner = k < 4;
+      const float angle = is_inner ? 1.57079633 * (float(k) + 0.5) : 0.52359878 * float(k - 4);
+      const vec2 across_m = radius_m * (is_inner ? 0.35355339 : 0.79056942) * vec2(cos(angle), sin(angle));
+      c.middle_m = across_m.x * side + across_m.y * cross(axis, side);
+      c.half_m = axis * dot(axis, h);
+    } else {
+      const vec3 up = steep / max(length(steep), 1e-6);
+      const float chord = sqrt(max(1.0 - other_row * other_row, 0.0));
+      c.middle_m = row * dot(axis, h) * axis + other_row * radius_m * cross(axis, up);
+      c.half_m = chord * radius_m * up;
+      c.share *= kChordShare * chord;
+    }
   }
-  // 8 columns of equal area on the circle that has the moments of area of the whole.
-  const float angle = 0.78539816 * (float(k >> 2) + 0.5);
-  const vec2 across = 0.70710678 * vec2(cos(angle), sin(angle));
-  half_m = (b.shape == FLOATER_CYLINDER_X ? vec3(0.25, 0.32, 0.32) : vec3(0.32, 0.25, 0.32)) * b.half_m;
-  return (b.shape == FLOATER_CYLINDER_X ? vec3(kApart * row, across) : vec3(across.x, row, across.y)) * b.half_m;
+  c.middle_m = rotated(b.rotation, c.middle_m - vec3(0.0, b.ballast_m, 0.0));
+  c.half_m = rotated(b.rotation, c.half_m);
+  c.half_m *= c.half_m.y < 0.0 ? -1.0 : 1.0;
+  return c;
 }
 
 /// Share of a sphere below a level at a height over its middle, in radii.
@@ -92,23 +124,15 @@ vec4 waterAt(vec2 xz, out vec3 water_mps) {
   return vec4(level.x, level.z > 0.99 ? slope : vec2(0.0), level.z);
 }
 
-void add(inout WaterSums sums, Floater b, int k, vec3 upright, float part, float g) {
-  vec3 half_m;
-  const vec3 r = rotated(b.rotation, sampleAt(b, k, half_m) - vec3(0.0, b.ballast_m, 0.0));
-  vec3 water_mps;
-  const vec4 water = waterAt(b.centre_m.xz + r.xz, water_mps);
-  const float height_m = water.x - (b.centre_m.y + r.y);
-  const float share = b.shape == FLOATER_SPHERE ? capShare(height_m / half_m.x)
-                                                : clamp(0.5 + 0.5 * height_m / dot(abs(upright), half_m), 0.0, 1.0);
-  const float under = part * share * water.w;
+/// Adds a part of the volume: what of it is under water is at `r` from the centre of mass.
+void add(inout WaterSums sums, Floater b, vec3 r, float under, vec4 water, vec3 water_mps, float g) {
   const vec3 buoyancy = volumeOf(b) * under * g * vec3(-water.y, 1.0, -water.z);
   const vec3 u = rotatedBack(b.rotation, b.velocity_mps + cross(b.spin_radps, r) - water_mps);
-  const vec3 area_m2 = 4.0 * b.half_m.yxx * b.half_m.zzy;
-  const vec3 drag = b.shape == FLOATER_SPHERE ? -0.5 * 0.47 * 3.14159265 * half_m.x * half_m.x * length(u) * u
-                                              : -0.5 * (b.shape == FLOATER_BOX ? 1.05 : 0.85) * area_m2 * abs(u) * u;
+  const vec3 h = b.half_m;
+  const vec3 drag = b.shape == FLOATER_SPHERE ? -0.5 * 0.47 * 3.14159265 * h.x * h.x * length(u) * u
+                                              : -0.5 * (b.shape == FLOATER_BOX ? 1.05 : 0.85) * 4.0 * h.yxx * h.zzy * abs(u) * u;
   const vec3 dragged = under * rotated(b.rotation, drag);
   sums.immersed += under;
-  sums.level_m += part * water.x;
   sums.water_mps += under * water_mps;
   sums.buoyancy += buoyancy;
   sums.moment += cross(r, buoyancy);
@@ -117,10 +141,22 @@ void add(inout WaterSums sums, Floater b, int k, vec3 upright, float part, float
 }
 
 WaterSums sampled(Floater b, float g) {
-  const int samples = b.shape == FLOATER_SPHERE ? 1 : FLOATER_SAMPLES;
-  const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
   WaterSums sums = WaterSums(0.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
-  for (int k = 0; k < samples; ++k) add(sums, b, k, upright, 1.0 / float(samples), g);
+  const vec3 middle = middleOf(b) - b.centre_m;
+  vec3 water_mps;
+  const int columns = b.shape == FLOATER_SPHERE ? 0 : FLOATER_SAMPLES;
+  for (int k = 0; k < columns; ++k) {
+    const Column c = columnAt(b, k);
+    const vec4 water = waterAt(b.centre_m.xz + c.middle_m.xz, water_mps);
+    const float height_m = water.x - (b.centre_m.y + c.middle_m.y);
+    const float share = clamp(0.5 + 0.5 * height_m / max(c.half_m.y, 1e-6), 0.0, 1.0);
+    add(sums, b, c.middle_m + (share - 1.0) * c.half_m, c.share * share * water.w, water, water_mps, g);
+    sums.level_m += water.x / float(FLOATER_SAMPLES);
+  }
+  if (columns > 0) return sums;
+  const vec4 water = waterAt(b.centre_m.xz + middle.xz, water_mps);
+  add(sums, b, middle, capShare((water.x - b.centre_m.y - middle.y) / b.half_m.x) * water.w, water, water_mps, g);
+  sums.level_m = water.x;
   return sums;
 }
 
