@@ -50,12 +50,18 @@ Boats::Boats(Creation& create, const core::Scene& scene, double cell_m)
       drift_(create.pass("bodies/drift.comp")),
       kick_(create.pass("bodies/kick.comp")) {
   static_assert(core::kMaxBoats == MAX_BOATS);
+  if (scene.floaters) push_ = create.buffer("boat push", std::size_t{MAX_BOATS} * 2 * 4);
   if (scene.wave) press_ = create.pass("bodies/press.comp");
   if (scene.boats->boats.size() > scene.boats->capacity_count) {
     create.fail(core::invalid(
         fmt::format("boats.boats: {} boats are more than boats.capacity_count = {}: remove some or raise it",
                     scene.boats->boats.size(), scene.boats->capacity_count)));
   }
+}
+
+void Boats::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &state_, .carried = true});
+  if (push_) out.push_back({.buffer = &push_, .lasts = false});
 }
 
 void Boats::reset(const core::Scene& scene) {
@@ -156,7 +162,9 @@ void Boats::move(const Wave* wave) {
   }
   bind();
   state_.bindStorage(BOATS);
+  if (push_) bindPush();
   drift_.runGroups(1);
+  if (push_) push_.clear();
   kick_.runGroups(controls_.place_count);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include <shared/bindings.h>
 #include <shared/boats.h>
 
 #include <spindrift/sim_state/carried_state.h>
@@ -25,7 +26,7 @@ class Boats {
   /// Returns a number above every id in use or used before.
   [[nodiscard]] std::uint32_t nextId() const { return next_id_; }
   /// Its state on the device, which recovery mends.
-  void declareState(StateBuffers& out) { out.push_back({.buffer = &state_, .carried = true}); }
+  void declareState(StateBuffers& out);
   /// Everything but the device's state, and its replacement.
   [[nodiscard]] CarriedBoats carried() const { return {places_, first_id_, next_id_}; }
   void takeOver(const CarriedBoats& carried);
@@ -47,6 +48,8 @@ class Boats {
   void press(const gpu::TexelBuffer& pressure_head);
   /// Binds BOATS and their controls for passes that read hulls.
   void bind() const;
+  /// Binds BOAT_PUSH, to which floaters add before move(). Only in scenes with floaters.
+  void bindPush() const { push_.bindStorage(BOAT_PUSH); }
 
   [[nodiscard]] std::vector<BoatRecord> records() const;
   [[nodiscard]] std::uint32_t count() const;
@@ -62,6 +65,7 @@ class Boats {
   shared::BoatControls controls_{};
   gpu::TexelBuffer state_;
   gpu::Buffer control_uniforms_;
+  gpu::Buffer push_;  ///< of floaters; zero but between their move and that of the boats. Empty in scenes without
   Pass drift_, kick_, press_;
 };
 

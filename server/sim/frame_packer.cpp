@@ -16,8 +16,8 @@ constexpr std::size_t kFrameSlotCount = 4;  ///< one being filled, one in flight
 /// Number of packed particles, number of live particles.
 constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
-constexpr std::size_t kWordsPerBoat = 7;
-constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBoat;
+constexpr std::size_t kWordsPerBody = 7;  ///< boat or floater
+constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBody;
 
 std::size_t surfaceWords(core::CellCounts count) {
   return (count.total() + 1) / 2;
@@ -39,6 +39,10 @@ FramePacker::FramePacker(Creation& create, const core::Scene& scene, const Deriv
   if (derived.particles) pack_particles_ = create.pass("stream/pack_particles.comp");
   if (hasSurfaceFoam(scene)) pack_foam_ = create.pass("stream/pack_foam.comp");
   if (scene.boats) pack_bodies_ = create.pass("stream/pack_bodies.comp");
+  if (scene.floaters) {
+    pack_floaters_ = create.pass("stream/pack_floaters.comp");
+    floater_words_ = scene.floaters->capacity_count * kWordsPerBody;
+  }
   resize(create, derived);
 }
 
@@ -46,7 +50,7 @@ void FramePacker::resize(Creation& create, const Derived& derived) {
   const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
   const core::ReducedCounts reduced_counts = core::reducedCounts(surface_, particles);
   // The slot has room for all levels at once.
-  std::size_t words = pack_bodies_ ? kBodyWords : 0;
+  std::size_t words = (pack_bodies_ ? kBodyWords : 0) + floater_words_;
   for (const core::Level level : core::kLevels) {
     if (isSent(level, reduced_counts.planes)) {
       words += surfaceWords(surfaceCount(level)) + (pack_foam_ ? foamWords(foamCount(level)) : 0);
@@ -100,6 +104,11 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const core::Scene& sce
     pending.bodies = at;
     frame.bodies = core::BodiesView{.count = parts.boats->count(), .words = {}};
     at += kBodyWords;
+  }
+  if (parts.floaters && request.floaters) {
+    frame.floaters = core::FloatersView{.count = parts.floaters->pack(pack_floaters_, at), .words = {}};
+    pending.floaters = at;
+    at += floater_words_;
   }
   if (at == 0) return false;
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);  // the next tick's passes write the buffers that were read here
@@ -200,7 +209,8 @@ std::vector<core::FrameView> FramePacker::poll() {
       if (view.particles) takeParticles(words.subspan(*places.particles), *view.particles);
       if (view.foam) view.foam->words = words.subspan(*places.foam, foamWords(view.foam->count));
     }
-    if (frame.bodies) frame.bodies->words = words.subspan(*pending.bodies, frame.bodies->count * kWordsPerBoat);
+    if (frame.bodies) frame.bodies->words = words.subspan(*pending.bodies, frame.bodies->count * kWordsPerBody);
+    if (frame.floaters) frame.floaters->words = words.subspan(*pending.floaters, frame.floaters->count * kWordsPerBody);
     out.push_back(std::move(frame));
   }
   return out;

@@ -14,6 +14,7 @@
 
 #include "boats.h"
 #include "creation.h"
+#include "floaters.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
 #include "surface_foam.h"
@@ -36,6 +37,7 @@ class FramePacker {
     const Population* population = nullptr;
     SurfaceFoam* foam = nullptr;
     Boats* boats = nullptr;
+    Floaters* floaters = nullptr;
   };
   /// `scene` and `derived` are those of the uniforms that are bound: what the packed words mean is noted with the
   /// frame, because parameters may change before poll() returns it. Returns false when there will be no frame: no
@@ -58,7 +60,7 @@ class FramePacker {
     /// Without words and lease. The particles have the count of their budget and the radius of all particles.
     core::FrameView frame;
     std::array<Places, core::kLevelCount> places{};
-    std::optional<std::size_t> bodies;
+    std::optional<std::size_t> bodies, floaters;
   };
 
   [[nodiscard]] core::CellCounts surfaceCount(core::Level level) const;
@@ -74,9 +76,10 @@ class FramePacker {
   gpu::Context& ctx_;
   core::CellCounts surface_;  ///< cells of the surface; 0 without one
   std::uint32_t particles_ = 0;
+  std::size_t floater_words_ = 0;  ///< of a frame
   core::ReducedCounts reduced_counts_;
   gpu::Buffer packed_;  ///< one frame, its parts in a row
-  Pass pack_surface_, pack_particles_, pack_foam_, pack_bodies_;
+  Pass pack_surface_, pack_particles_, pack_foam_, pack_bodies_, pack_floaters_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
   std::deque<Pending> pending_;
   std::uint64_t packed_count_ = 0;

@@ -14,12 +14,13 @@ void WaterSim::step() {
   parts_->uniforms.bindUniform(SIM_UNIFORMS);  // another WaterSim of the context may have bound its own
   watchHealth();
   startEvents();
-  // The surface, its breakers and the boats advance once per tick; the wave divides the tick by its own step-size rule.
+  // The surface, its breakers and the bodies advance once per tick; the wave divides the tick by its own step-size
+  // rule.
   advanceWave();
   stirParticles();
   sampleSurface();
   breakWaves();
-  moveBoats();
+  moveBodies();
   movePatch();
   // Particles take as many substeps as their step-size rules require.
   for (std::uint32_t substep = 0; parts_->particles && substep < derived_.substeps_count; ++substep) {
@@ -47,7 +48,6 @@ void WaterSim::advanceWave() {
                           parts_->effects.advance(end_s, domainOf(*derived_.wave)), advanceSea(k),
                           begin_s + 0.5 * derived_.wave->dt_s);
   }
-  parts_->wave->clearPressure();  // hulls and falling particles set it again for the next tick
 }
 
 const gpu::TexelBuffer* WaterSim::advanceSea(std::uint32_t substep) {
@@ -77,11 +77,12 @@ void WaterSim::breakWaves() {
   parts_->breakers->update(*parts_->wave, parts_->pool.get(), runTick());
 }
 
-void WaterSim::moveBoats() {
-  if (!parts_->boats) return;
+void WaterSim::moveBodies() {
   const auto timer = timers_.scope("bodies");
-  parts_->boats->move(parts_->wave.get());
-  if (parts_->wave) parts_->boats->press(parts_->wave->pressureHead());
+  if (parts_->floaters) parts_->floaters->move(derived_.tick_s, *parts_->wave, parts_->boats.get());
+  if (parts_->boats) parts_->boats->move(parts_->wave.get());
+  if (parts_->floaters) parts_->floaters->feel(derived_.tick_s, *parts_->wave);
+  parts_->pressAgain();  // particles that fall in this tick add to it
 }
 
 void WaterSim::emitParticles(std::uint32_t substep) {
@@ -195,6 +196,7 @@ core::Result<void> WaterSim::build() {
   if (hasBreakers(scene_)) make(p.breakers, *derived_.wave);
   if (isTwoWay(scene_)) make(p.pool, scene_, derived_);
   if (scene_.boats) make(p.boats, scene_, derived_.uniforms.wave_cell_m);
+  if (scene_.floaters) make(p.floaters, scene_);
   if (hasSurfaceFoam(scene_)) make(p.foam, scene_, *derived_.wave);
   if (!scene_.wave) make(p.stir);
   if (followNumber(scene_) != 0) make(p.follower, scene_);
@@ -220,6 +222,7 @@ StateBuffers WaterSim::Parts::stateBuffers() {
   add(foam);
   add(wind_sea);
   add(boats);
+  add(floaters);
   add(grid);
   out.push_back({.buffer = &uniforms});  // the pass that moves the patch of particles changes them
   return out;

@@ -7,6 +7,13 @@
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
+namespace {
+
+core::Error noFloaters() {
+  return core::invalid("this scene has no floaters: choose one whose file has \"floaters {}\"");
+}
+
+}  // namespace
 
 core::Result<void> WaterSim::start(const core::Effect& effect) {
   core::Effect complete = effect;
@@ -57,6 +64,25 @@ void WaterSim::numberBoatsFrom(std::uint32_t first_id) {
 
 std::uint32_t WaterSim::nextBoatId() const {
   return parts_->boats ? parts_->boats->nextId() : first_boat_id_;
+}
+
+core::Result<std::uint32_t> WaterSim::spawnFloater(const core::Floater& floater) {
+  if (!parts_->floaters) return noFloaters();
+  return parts_->floaters->spawn(floater);
+}
+
+core::Result<void> WaterSim::holdFloater(const FloaterHold& hold) {
+  if (!parts_->floaters) return noFloaters();
+  return parts_->floaters->hold(hold);
+}
+
+core::Result<void> WaterSim::removeFloater(std::uint32_t floater_id) {
+  if (!parts_->floaters) return noFloaters();
+  return parts_->floaters->remove(floater_id);
+}
+
+std::uint32_t WaterSim::floaterCount() const {
+  return parts_->floaters ? parts_->floaters->count() : 0;
 }
 
 std::uint32_t WaterSim::particleCount() const {

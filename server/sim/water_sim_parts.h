@@ -14,6 +14,7 @@
 #include "checkpoints.h"
 #include "creation.h"
 #include "diagnostics.h"
+#include "floaters.h"
 #include "frame_packer.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
@@ -55,6 +56,7 @@ struct WaterSim::Parts {
   std::unique_ptr<Breakers> breakers;
   std::unique_ptr<ParticlePool> pool;
   std::unique_ptr<Boats> boats;
+  std::unique_ptr<Floaters> floaters;
   std::unique_ptr<SurfaceFoam> foam;
   std::unique_ptr<PatchFollower> follower;
   std::unique_ptr<Stir> stir;  ///< in scenes without a wave
@@ -80,8 +82,8 @@ struct WaterSim::Parts {
   StateBuffers stateBuffers();
   /// Number of live particles. Waits in two-way scenes.
   [[nodiscard]] std::size_t liveCount(const Derived& derived) const;
-  /// Sets the pressure of the hulls for the next tick, and no other: what the tick before has set belongs to another
-  /// gravity or grid.
+  /// Sets the pressure of hulls and floaters for the next tick, and no other: what the tick before has set belongs to
+  /// another gravity or grid.
   void pressAgain();
   void makeCheckpoints(Creation& create);
   /// Replaces everything whose size depends on the number of particles; programs stay. After an error the particles are

@@ -34,6 +34,7 @@ StateBuffers WaterSim::stateBuffers() {
 HostState WaterSim::hostState() const {
   HostState out{.effects = parts_->effects, .boats = {{}, first_boat_id_, first_boat_id_}};
   if (parts_->boats) out.boats = parts_->boats->carried();
+  if (parts_->floaters) out.floaters = parts_->floaters->carried();
   if (parts_->wind_sea) out.sea = parts_->wind_sea->carried();
   if (parts_->follower) {
     out.patch_x_m = parts_->follower->x_m();
@@ -114,6 +115,8 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
     sources.push_back(&*from);
   }
   if (parts_->boats && !parts_->boats->fits(saved.host.boats)) return differs("it has another limit of boats");
+  if (parts_->floaters && !parts_->floaters->fits(saved.host.floaters))
+    return differs("it has another limit of floaters");
   for (std::size_t k = 0; k < buffers.size(); ++k) buffers[k].buffer->upload(sources[k]->words);
   continueWith(saved.host, saved.run_tick);
   if (parts_->wind_sea) parts_->wind_sea->resumeSteps(saved.host.sea);
@@ -143,6 +146,7 @@ void WaterSim::continueWith(const HostState& host, std::uint64_t run_tick) {
   parts_->effects = host.effects;
   if (parts_->boats) parts_->boats->takeOver(host.boats);
   first_boat_id_ = host.boats.first_id;
+  if (parts_->floaters) parts_->floaters->takeOver(host.floaters);
   if (parts_->wind_sea) parts_->wind_sea->takeOver(host.sea);
   if (parts_->follower) parts_->follower->goTo(host.patch_x_m, host.patch_z_m);
   start_tick_ = tick_ - run_tick;  // modulo 2^64

@@ -116,6 +116,7 @@ void WaterSim::Parts::pressAgain() {
   wave->clearPressure();
   uniforms.bindUniform(SIM_UNIFORMS);
   if (boats) boats->press(wave->pressureHead());
+  if (floaters) floaters->press(wave->pressureHead());
 }
 
 // The start
@@ -138,6 +139,7 @@ void WaterSim::uploadStartingState() {
   if (parts_->breakers) parts_->breakers->clear();
   if (parts_->foam) parts_->foam->clear();
   if (parts_->boats) parts_->boats->reset(scene_);
+  if (parts_->floaters) parts_->floaters->reset(scene_);
   if (parts_->pool) {
     parts_->pool->clear();
   } else if (parts_->particles) {

@@ -76,6 +76,7 @@ void WaterSim::recover(const Health& breach) {
   }
   if (parts_->wave) parts_->wave->clearPressure();
   if (parts_->boats) parts_->boats->mend();
+  if (parts_->floaters) parts_->floaters->mend();
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
   ++revision_;
@@ -119,7 +120,8 @@ bool WaterSim::requestFrame(const FrameRequest& request) {
                                  .particles = parts_->particlesOrNull(),
                                  .population = population ? &*population : nullptr,
                                  .foam = parts_->foam.get(),
-                                 .boats = parts_->boats.get()};
+                                 .boats = parts_->boats.get(),
+                                 .floaters = parts_->floaters.get()};
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
   return parts_->frames->pack(tick_, time_s(), scene_, derived_, parts, request);

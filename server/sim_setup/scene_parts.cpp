@@ -91,14 +91,14 @@ bool hasSurfaceFoam(const core::Scene& scene) {
   return scene.wave && scene.foam && scene.foam->surface;
 }
 bool hasPressureHead(const core::Scene& scene) {
-  return scene.wave && (scene.boats || isTwoWay(scene));
+  return scene.wave && (scene.boats || scene.floaters || isTwoWay(scene));
 }
 bool hasBreakers(const core::Scene& scene) {
   return scene.wave && (isTwoWay(scene) || hasSurfaceFoam(scene) || scene.wave->steepening_ratio > 0 ||
                         (isNonlinear(scene) && disperses(scene)));
 }
 bool isSampled(const core::Scene& scene) {
-  return scene.wave && (scene.coupling || scene.boats || hasBreakers(scene));
+  return scene.wave && (scene.coupling || scene.boats || scene.floaters || hasBreakers(scene));
 }
 
 bool isVaried(const core::Scene& scene) {

@@ -289,7 +289,7 @@ bool isSameWater(const core::Scene& a, const core::Scene& b) {
   const auto same_presence = [](const auto& x, const auto& y) { return x.has_value() == y.has_value(); };
   if (!same_presence(a.wave, b.wave) || !same_presence(a.particles, b.particles) ||
       !same_presence(a.coupling, b.coupling) || !same_presence(a.foam, b.foam) || !same_presence(a.boats, b.boats) ||
-      !same_presence(a.storm, b.storm)) {
+      !same_presence(a.storm, b.storm) || !same_presence(a.floaters, b.floaters)) {
     return false;
   }
   if (a.wave && !(fixedPart(*a.wave) == fixedPart(*b.wave) &&
@@ -299,12 +299,14 @@ bool isSameWater(const core::Scene& a, const core::Scene& b) {
   if (a.coupling && a.coupling->mode != b.coupling->mode) return false;
   if (a.wave && hasSurfaceFoam(a) != hasSurfaceFoam(b)) return false;
   if (a.boats && a.boats->capacity_count != b.boats->capacity_count) return false;
+  if (a.floaters && a.floaters->capacity_count != b.floaters->capacity_count) return false;
   return a.obstacles == b.obstacles && a.beaches == b.beaches && a.bed == b.bed && a.wave_makers == b.wave_makers;
 }
 
 ResampledState resampleState(const CarriedState& before, const core::Scene& scene, const Derived& derived) {
   ResampledState out;
   out.state.boats = before.state.boats;
+  out.state.floaters = before.state.floaters;
   if (derived.particles && !isTwoWay(scene)) {
     RelaidParticles relaid = scene.wave ? relayParticles(scene, before.derived, before.state, *derived.particles)
                                         : refillParticles(scene, before.derived, before.state, *derived.particles);

@@ -1,10 +1,13 @@
 // First half of a tick of every boat: it moves with its velocities, then leaves its contacts. One invocation per boat,
 // all in one group.
-// Updates BOATS; reads TERRAIN. The second half is bodies/kick.comp, which says how both are second order.
+// Updates BOATS; reads TERRAIN, BOAT_PUSH. The second half is bodies/kick.comp, which says how both are second order.
 // Contacts: three circles along each hull against other boats, obstacles, shallow ground and sides. Each boat moves by half
 // of the overlap and loses its approaching speed.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
 #include "bodies/boat.glsl"
+#if PUSHED
+#include "shared/floaters.h"
+#endif
 #include "wave/wave_cell.glsl"
 #if VARIED
 #include "common/terrain.glsl"
@@ -13,6 +16,10 @@
 layout(local_size_x = MAX_BOATS) in;
 
 layout(std430, binding = BOATS) restrict buffer Boats { vec4 boats[]; };
+
+#if PUSHED
+layout(std430, binding = BOAT_PUSH) restrict readonly buffer BoatPush { int boat_push[]; };
+#endif
 
 const float kBounce = 0.3;
 const float kGroundingDepth = 1.1;    // depth over draught at which a boat runs aground
@@ -108,6 +115,9 @@ void main() {
     b = drifted(b, sim.tick_s);
     vec2 shift_m = vec2(0.0);
     vec2 velocity_mps = velocityOf(b);
+#if PUSHED
+    velocity_mps += vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / BOAT_PUSH_UNITS;
+#endif
     meetBoats(b, own, shift_m, velocity_mps);
 #if VARIED
     meetGround(b, shift_m, velocity_mps);

@@ -2,16 +2,13 @@
 // boats are few.
 // Reads BOATS, BoatControls. Writes PACKED_WORDS from first_word on.
 #include "bodies/boat.glsl"
+#include "stream/quantized.glsl"
 
 layout(local_size_x = 1) in;
 
 layout(binding = BOATS) uniform samplerBuffer boats;
 layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
 uniform uint first_word;
-
-uint millimetres(float x_m) { return isnan(x_m) ? 0u : uint(int(round(clamp(x_m, -1e6, 1e6) * 1000.0))); }
-/// -1..1 to -high..high, the low bits of the word.
-uint quantizedSigned(float unit, float high) { return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * high))); }
 
 void main() {
   uint at = first_word;

@@ -232,6 +232,7 @@ void SoakClient::checkFrame(const v1::LayerFrame& frame) {
     case v1::LayerFrame::kBodiesFixed28:
       look(codec::decodeBodies(frame), ofBodies);
       break;
+    case v1::LayerFrame::kFloatersFixed28:
     case v1::LayerFrame::CODEC_NOT_SET:
       read = core::Error{core::ErrorCode::kInvalidInput, "a frame without a codec"};
   }

@@ -53,6 +53,12 @@ struct BodiesView {
   std::span<const std::uint32_t> words;  ///< 7 * count words
 };
 
+/// Floaters, seven words each: FloatersFixed28 in proto, little endian, in the order of their slots.
+struct FloatersView {
+  std::uint32_t count = 0;
+  std::span<const std::uint32_t> words;  ///< 7 * count words
+};
+
 /// Health and cost of a room, measured once per frame.
 struct DiagnosticsView {
   double step_ms = 0.0;           ///< wall time of step() per tick, mean since the last frame
@@ -109,6 +115,7 @@ struct FrameView {
   std::uint64_t state_id = 0;                 ///< number of the room's state that the frame shows; 0: unknown
   std::array<LevelView, kLevelCount> levels;  ///< indexed by Level; see at()
   std::optional<BodiesView> bodies;
+  std::optional<FloatersView> floaters;
   std::optional<DiagnosticsView> diagnostics;
   ReducedCounts reduced_counts;    ///< of the scene, whatever this frame contains
   LevelSet due = LevelSet::all();  ///< levels whose rate includes the frame

@@ -14,6 +14,7 @@ namespace spindrift::core {
 
 /// At most this many boats, and gauges, in a scene.
 inline constexpr std::uint32_t kMaxBoats = 16;
+inline constexpr std::uint32_t kMaxFloaters = 1024;
 inline constexpr std::uint32_t kMaxGauges = 64;
 
 /// Returns the cells of the wave's grid.

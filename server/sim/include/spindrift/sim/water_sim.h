@@ -41,6 +41,7 @@ struct LayerRequest {
 struct FrameRequest {
   std::array<LayerRequest, core::kLevelCount> levels{};  ///< indexed by core::Level; see at()
   bool bodies = false;
+  bool floaters = false;
   double asked_s = 0.0;                        ///< on the caller's clock; returned with the frame
   std::uint64_t state_id = 0;                  ///< the caller's; returned with the frame
   core::LevelSet due = core::LevelSet::all();  ///< the levels that take the frame; returned with it
@@ -55,12 +56,23 @@ struct FrameRequest {
   [[nodiscard]] static FrameRequest allLayers() {
     FrameRequest out = full({.surface = true, .particles = true, .foam = true});
     out.bodies = true;
+    out.floaters = true;
     return out;
   }
 
-  [[nodiscard]] bool isEmpty() const { return !bodies && std::ranges::all_of(levels, &LayerRequest::isEmpty); }
+  [[nodiscard]] bool isEmpty() const { return !bodies && !floaters && std::ranges::all_of(levels, &LayerRequest::isEmpty); }
   [[nodiscard]] const LayerRequest& at(core::Level level) const { return levels[indexOf(level)]; }
   [[nodiscard]] LayerRequest& at(core::Level level) { return levels[indexOf(level)]; }
+};
+
+/// Where somebody pulls a floater to; as v1::HoldFloater.
+struct FloaterHold {
+  std::uint32_t floater_id = 0;
+  double x_m = 0.0;
+  double z_m = 0.0;
+  double lift_m = 0.0;
+  double turn_radps = 0.0;
+  bool ends = false;
 };
 
 /// Call all functions on the thread that owns the context; ownership may move between two calls (Context::release() and
@@ -100,6 +112,14 @@ class WaterSim {
   /// Returns a number above every id in use; in a scene without boats that of numberBoatsFrom().
   [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
+  /// Adds a floater and returns its id. kInvalidInput in a scene without floaters, kUnavailable when all slots are taken
+  /// and none by a stone.
+  core::Result<std::uint32_t> spawnFloater(const core::Floater& floater);
+  /// kInvalidInput for an unknown floater.
+  core::Result<void> holdFloater(const FloaterHold& hold);
+  /// Removes one, or with id 0 all. kInvalidInput for an unknown floater.
+  core::Result<void> removeFloater(std::uint32_t floater_id);
+  [[nodiscard]] std::uint32_t floaterCount() const;
   /// Returns the number of particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;
 
@@ -198,7 +218,7 @@ class WaterSim {
   void stirParticles();
   void sampleSurface();
   void breakWaves();
-  void moveBoats();
+  void moveBodies();
   void emitParticles(std::uint32_t substep);
   void leadSurface(std::uint32_t substep);
   void movePatch();

@@ -21,6 +21,7 @@ struct StateCopy {
   /// Part of elevation_m that came through x faces, in a matched layer [units]; empty in scenes without one.
   std::vector<std::int32_t> elevation_x_units;
   std::vector<float> boats;         ///< layout: shaders/shared/boats.h; every slot
+  std::vector<float> floaters;      ///< layout: shaders/shared/floaters.h; every slot
   std::vector<std::uint32_t> pool;  ///< shaders/shared/pool.h; two-way scenes
   std::vector<float> flow_m2ps;     ///< 2 (9-point stencil: 4) per cell: the faces owned by the cell
   std::vector<float> breaking;      ///< 4 per wave cell, as BREAKING; empty in scenes without
@@ -35,6 +36,7 @@ struct StateCopy {
     visit("velocity", copy.velocity);
     visit("pool", copy.pool);
     visit("boats", copy.boats);
+    visit("floaters", copy.floaters);
     visit("flow", copy.flow_m2ps);
     visit("elevation from x faces", copy.elevation_x_units);
     visit("breaking", copy.breaking);
@@ -63,6 +65,17 @@ struct CarriedBoats {
   std::uint32_t next_id = 1;
 };
 
+/// A slot of the floaters; floater_id 0: free.
+struct FloaterPlace {
+  std::uint32_t floater_id = 0;
+  core::Floater floater;
+};
+
+struct CarriedFloaters {
+  std::vector<FloaterPlace> places;
+  std::uint32_t next_id = 1;
+};
+
 /// A wind sea as it comes in: what is shown, and what it fades into, since when in the scene's time.
 struct CarriedSea {
   SeaState shown;
@@ -75,6 +88,7 @@ struct CarriedSea {
 struct HostState {
   Effects effects{};
   CarriedBoats boats{};
+  CarriedFloaters floaters{};
   CarriedSea sea{};
   double patch_x_m = 0.0;  ///< where the patch of particles follows to
   double patch_z_m = 0.0;

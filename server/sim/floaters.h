@@ -1,0 +1,64 @@
+// Floaters: the list of objects in the water (host) and their motion (device). See shaders/shared/floaters.h, and
+// shaders/bodies for the equations.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <shared/floaters.h>
+
+#include <spindrift/sim/water_sim.h>
+
+#include "boats.h"
+#include "creation.h"
+#include "wave.h"
+
+namespace spindrift::sim {
+
+class Floaters {
+ public:
+  Floaters(Creation& create, const core::Scene& scene);
+
+  /// Keeps only the scene's own floaters, as at the start. Ids of others are not reused.
+  void reset(const core::Scene& scene);
+  void declareState(StateBuffers& out) { out.push_back({.buffer = &state_, .carried = true}); }
+  /// Everything but the device's state, and its replacement.
+  [[nodiscard]] CarriedFloaters carried() const { return {places_, next_id_}; }
+  void takeOver(const CarriedFloaters& carried);
+  /// Returns whether takeOver() may be called: as many slots as here.
+  [[nodiscard]] bool fits(const CarriedFloaters& carried) const { return carried.places.size() == places_.size(); }
+  /// Returns the new floater's id. When all slots are taken it replaces the oldest stone; kUnavailable without one.
+  core::Result<std::uint32_t> spawn(const core::Floater& floater);
+  /// kInvalidInput for an unknown floater.
+  core::Result<void> hold(const FloaterHold& hold);
+  /// Removes one, or with id 0 all.
+  core::Result<void> remove(std::uint32_t floater_id);
+  /// For recovery: puts floaters whose state is not finite back to their starting positions. Waits for the device.
+  void mend();
+
+  /// Moves the floaters by a tick with their contacts: to the time of the surface. Then boats.takePush() has what they
+  /// give.
+  void move(double tick_s, const Wave& wave, Boats* boats);
+  /// Sets their accelerations for the next tick. Call it after Wave::sampleSurface() and before Wave::clearPressure().
+  void feel(double tick_s, Wave& wave);
+  /// Adds their pressure to the pressure head.
+  void press(const gpu::TexelBuffer& pressure_head);
+  /// Packs them for a frame, from a word of PACKED_WORDS on; returns how many.
+  std::uint32_t pack(Pass& pass, std::size_t first_word) const;
+  [[nodiscard]] std::uint32_t count() const;
+
+ private:
+  core::Result<std::size_t> find(std::uint32_t floater_id) const;
+  void put(std::size_t slot, std::uint32_t floater_id, const core::Floater& floater);
+  void countSlots();
+
+  std::vector<FloaterPlace> places_;
+  std::uint32_t slot_count_ = 0;  ///< slots to look at: all floaters are below
+  std::uint32_t next_id_ = 1;     ///< never decreases
+  std::uint32_t tile_words_count_;
+  gpu::TexelBuffer state_, next_, reach_;
+  gpu::Buffer tiles_, near_, touching_;
+  Pass mark_tiles_, find_near_, contacts_, water_, press_;
+};
+
+}  // namespace spindrift::sim

@@ -1,0 +1,198 @@
+// A part of a tick of every floater that can touch something: the points at which it does push it back, and it moves. One invocation
+// per floater.
+// Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Writes FLOATERS_NEXT; adds to BOAT_PUSH.
+// Contacts are springs and dampers between a point of one floater and the surface of another, pulling never, with Coulomb friction. All
+// act at once, on the state before; both floaters of a pair compute the same impulse, so that momentum stays. The factors
+// are those of a contact in units of the mass m that it moves and of the step h: an impulse of m (STIFFNESS overlap / h + DAMPING
+// approach), divided among neighbours, stays stable for a floater that is touched on all sides.
+#include "bodies/floater_shape.glsl"
+#if HULLS
+#include "bodies/boat.glsl"
+#endif
+#if VARIED
+#include "common/terrain.glsl"
+#endif
+
+layout(local_size_x = FLOATER_GROUP) in;
+
+layout(binding = FLOATERS) uniform samplerBuffer floaters;
+layout(std430, binding = FLOATERS_NEXT) restrict writeonly buffer FloatersNext { vec4 floaters_next[]; };
+layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
+layout(std430, binding = FLOATER_TOUCHING) restrict readonly buffer FloaterTouching { uint touching[]; };
+#if HULLS
+layout(binding = BOATS) uniform samplerBuffer boats;
+layout(std430, binding = BOAT_PUSH) restrict buffer BoatPush { int boat_push[]; };
+#endif
+uniform float step_s;
+
+const float kStiffness = 0.08;
+const float kDamping = 0.2;
+const float kFriction = 0.5;          // of wood on wood
+const float kShareFrom = 3.0;         // neighbours from which on they share the impulse
+const float kRestSpeed_mps = 0.03;    // slower than this, a floater that is touched comes to rest
+const float kRestKept = 0.9;
+
+Floater floaterAt(uint slot) {
+  vec4 t[FLOATER_TEXELS];
+  for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
+  return unpackFloater(t);
+}
+
+/// Change of velocity and of spin, and whether there is any.
+struct Push {
+  vec3 velocity_mps;
+  vec3 spin_radps;
+  bool touches;
+};
+
+/// Inverse of the mass that an impulse along n at r moves, over the mass. [1]
+float yieldOf(Floater b, vec3 r, vec3 n) {
+  const vec3 lever = cross(r, n);
+  return 1.0 + dot(lever, spinOf(b, lever));
+}
+
+/// Adds a contact at r from the centre of mass, pushed along n, against something that moves with other_mps. `lightness` is the
+/// other's inverse mass along n over the inverse mass of this one; `share` the part of the impulse that is applied.
+void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m, vec3 other_mps, float lightness, float share) {
+  if (!(overlap_m > 0.0)) return;
+  const vec3 relative_mps = b.velocity_mps + cross(b.spin_radps, r) - other_mps;
+  const float approach_mps = -dot(relative_mps, n);
+  const float mass = 1.0 / (yieldOf(b, r, n) + lightness);
+  const float pressed = share * mass * max(kStiffness * min(overlap_m, 0.2 * b.half_m.x) / step_s + kDamping * approach_mps, 0.0);
+  const vec3 sliding_mps = relative_mps + approach_mps * n;
+  const float speed_mps = length(sliding_mps);
+  const float held = min(kFriction * pressed, share * mass * kDamping * speed_mps);
+  const vec3 impulse = pressed * n - held / max(speed_mps, 1e-6) * sliding_mps;
+  push.velocity_mps += impulse;
+  push.spin_radps += spinOf(b, cross(r, impulse));
+  push.touches = true;
+}
+
+/// Contact of the points of one floater with the surface of another; `is_own`: whose points they are.
+void meetPoints(inout Push push, Floater b, Floater o, vec3 apart_m, float mass_ratio, float share, bool is_own) {
+  const Floater pointed = is_own ? b : o;
+  const float radius_m = pointRadius(pointed);
+  const vec3 from_pointed_m = is_own ? -apart_m : apart_m;
+  const float away = is_own ? 1.0 : -1.0;
+  const int count = pointCount(pointed);
+  for (int k = 0; k < count; ++k) {
+    const vec3 r = pointOf(pointed, k);
+    const vec4 there = is_own ? surfaceOf(o, r + from_pointed_m) : surfaceOf(b, r + from_pointed_m);
+    const vec3 at = (is_own ? r : r + apart_m) - radius_m * there.xyz;
+    const vec3 n = away * there.xyz;
+    touch(push, b, at, n, radius_m - there.w, o.velocity_mps + cross(o.spin_radps, at - apart_m), mass_ratio * yieldOf(o, at - apart_m, n),
+          share);
+  }
+}
+
+void meetFloater(inout Push push, Floater b, Floater o, float share) {
+  vec3 apart_m = o.centre_m - b.centre_m;
+  apart_m.xz = acrossSides(apart_m.xz);
+  const float reach_m = reachOf(b) + reachOf(o);
+  if (dot(apart_m, apart_m) > reach_m * reach_m) return;
+  const float mass_ratio = b.density_ratio * volumeOf(b) / (o.density_ratio * volumeOf(o));
+  meetPoints(push, b, o, apart_m, mass_ratio, share, true);
+  meetPoints(push, b, o, apart_m, mass_ratio, share, false);
+}
+
+/// Contact of a point with the bed, rocks and the sides.
+void meetGround(inout Push push, Floater b, int k) {
+  const float radius_m = pointRadius(b);
+  const vec3 r = pointOf(b, k);
+  const vec3 at = b.centre_m + r;
+  float bed_m = -sim.wave_depth_m;
+  vec3 up = vec3(0.0, 1.0, 0.0);
+#if VARIED
+  const vec4 t = terrainAt(at.xz);
+  bed_m = -t.w;
+  const bool is_in_rock = t.x < radius_m && t.w <= 0.0;
+  if (is_in_rock && radius_m - t.x < bed_m - at.y + radius_m) {
+    const vec3 n = vec3(t.y, 0.0, t.z);
+    touch(push, b, r - radius_m * n, n, radius_m - t.x, vec3(0.0), 0.0, 1.0);
+    bed_m = -1e6;
+  } else if (at.y - radius_m < bed_m) {
+    const float cell_m = sim.wave_cell_m;
+    const vec2 deeper = vec2(terrainAt(at.xz + vec2(cell_m, 0.0)).w - terrainAt(at.xz - vec2(cell_m, 0.0)).w,
+                             terrainAt(at.xz + vec2(0.0, cell_m)).w - terrainAt(at.xz - vec2(0.0, cell_m)).w);
+    up = normalize(vec3(deeper.x, 2.0 * cell_m, deeper.y));
+  }
+#endif
+  touch(push, b, r - radius_m * up, up, (bed_m - at.y + radius_m) * up.y, vec3(0.0), 0.0, 1.0);
+  const vec2 beyond_m = abs(at.xz) + radius_m - waveHalf_m();
+  const vec2 inward = -sign(at.xz);
+#if !WAVE_PERIODIC_X
+  touch(push, b, r - vec3(radius_m * inward.x, 0.0, 0.0), vec3(inward.x, 0.0, 0.0), beyond_m.x, vec3(0.0), 0.0, 1.0);
+#endif
+#if !WAVE_PERIODIC_Z
+  touch(push, b, r - vec3(0.0, 0.0, radius_m * inward.y), vec3(0.0, 0.0, inward.y), beyond_m.y, vec3(0.0), 0.0, 1.0);
+#endif
+}
+
+#if HULLS
+/// Contact of a point with the hulls of boats: boxes that turn about the vertical only.
+void meetBoats(inout Push push, Floater b, int k) {
+  const float radius_m = pointRadius(b);
+  const vec3 r = pointOf(b, k);
+  for (int slot = 0; slot < int(boat_place_count); ++slot) {
+    vec4 t[BOAT_TEXELS];
+    for (int i = 0; i < BOAT_TEXELS; ++i) t[i] = texelFetch(boats, slot * BOAT_TEXELS + i);
+    const BoatState boat = unpackBoat(t);
+    if (boat.age_s < 0.0) continue;
+    vec3 d = b.centre_m + r - boat.centre_m;
+    d.xz = acrossSides(d.xz);
+    const vec2 f = forwardOf(boat.heading);
+    const vec2 s = starboardOf(boat.heading);
+    const vec4 hull = boxDistance(vec3(dot(d.xz, f), d.y, dot(d.xz, s)), 0.5 * boat.hull_m.xzy);
+    const float overlap_m = radius_m - hull.w;
+    if (!(overlap_m > 0.0)) continue;
+    const vec3 n = vec3(f.x * hull.x + s.x * hull.z, hull.y, f.y * hull.x + s.y * hull.z);
+    const vec2 hull_mps = velocityOf(boat);
+    const float boat_mass = boat.hull_m.x * boat.hull_m.y * boat.hull_m.w;
+    const float mass_ratio = b.density_ratio * volumeOf(b) / boat_mass;
+    const vec3 before = push.velocity_mps;
+    touch(push, b, r - radius_m * n, n, overlap_m, vec3(hull_mps.x, boat.speed_mps.z, hull_mps.y), mass_ratio, 1.0);
+    const vec2 given_mps = clamp(-mass_ratio * (push.velocity_mps - before).xz, vec2(-4.0), vec2(4.0));
+    atomicAdd(boat_push[2 * slot], int(round(given_mps.x * BOAT_PUSH_UNITS)));
+    atomicAdd(boat_push[2 * slot + 1], int(round(given_mps.y * BOAT_PUSH_UNITS)));
+  }
+}
+#endif
+
+void main() {
+  if (gl_GlobalInvocationID.x >= touching[FLOATER_TOUCHING_COUNT]) return;
+  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_GlobalInvocationID.x];
+  const Floater b = floaterAt(own);
+  Push push = Push(vec3(0.0), vec3(0.0), false);
+  const uint list = own * FLOATER_NEAR_WORDS;
+  const uint near_count = near[list] & (FLOATER_GROUNDED - 1u);
+  for (uint k = 0u; k < near_count; ++k) {
+    const uint other = near[list + 1u + k];
+    const uint crowd = max(near_count, near[other * FLOATER_NEAR_WORDS] & (FLOATER_GROUNDED - 1u));
+    meetFloater(push, b, floaterAt(other), min(1.0, kShareFrom / float(crowd)));
+  }
+  const int ground_points = near[list] >= FLOATER_GROUNDED ? pointCount(b) : 0;
+  for (int k = 0; k < ground_points; ++k) {
+    meetGround(push, b, k);
+#if HULLS
+    meetBoats(push, b, k);
+#endif
+  }
+  vec3 velocity_mps = b.velocity_mps + step_s * b.acceleration_mps2 + push.velocity_mps;
+  vec3 spin_radps = b.spin_radps + step_s * b.spin_up_radps2 + push.spin_radps;
+  if (push.touches && b.hold.w <= 0.0) {
+    const float fastest_mps = max(length(velocity_mps), reachOf(b) * length(spin_radps));
+    const float kept = fastest_mps < kRestSpeed_mps ? kRestKept : 1.0;
+    velocity_mps *= kept;
+    spin_radps *= kept;
+  }
+  Floater after = b;
+  after.velocity_mps = limited(velocity_mps, FLOATER_MAX_MPS);
+  after.spin_radps = limited(spin_radps, FLOATER_MAX_RADPS);
+  after = drifted(after, step_s);
+  const uint at = own * FLOATER_TEXELS;
+  floaters_next[at] = vec4(after.centre_m, b.age_s + step_s);
+  floaters_next[at + 1u] = after.rotation;
+  floaters_next[at + 2u] = vec4(after.velocity_mps, b.id);
+  floaters_next[at + 3u] = vec4(after.spin_radps, b.dent);
+  for (uint k = 4u; k < FLOATER_TEXELS; ++k) floaters_next[at + k] = texelFetch(floaters, int(at + k));
+}
