@@ -99,7 +99,7 @@ TEST(ServerMessages, StateMessagesHaveTheirValues) {
 
 TEST(ServerMessages, MessageOfDefaultsKeepsItsKind) {
   EXPECT_TRUE(read(roomState(false, 0.0)).has_room_state());
-  EXPECT_TRUE(read(ack(0, 0)).has_ack());
+  EXPECT_TRUE(read(ack({})).has_ack());
   EXPECT_TRUE(read(boatList({})).has_boat_list()) << "the last boat left";
 }
 
