@@ -410,6 +410,7 @@ std::vector<GoldenCase> goldenCases() {
   for (GoldenCase& packed : goldenPackedFoam()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedParticles()) cases.push_back(std::move(packed));
   for (GoldenCase& rectangle : goldenRectangles()) cases.push_back(std::move(rectangle));
+  for (GoldenCase& floaters : goldenFloaters()) cases.push_back(std::move(floaters));
   return cases;
 }
 
