@@ -1,6 +1,7 @@
 // Floaters in the saved water: as a message, and back.
 #include <gmock/gmock.h>
 
+#include <spindrift/scene/to_core.h>
 #include <spindrift/water/water_state.h>
 
 namespace spindrift::water {
