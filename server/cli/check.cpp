@@ -145,6 +145,8 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
     printParticles(in);
   }
   if (in.boats) printBoats(*in.boats);
+  if (in.floaters)
+    fmt::print("  floaters   {} of at most {}\n", in.floaters->floaters.size(), in.floaters->capacity_count);
   if (in.storm) printStorm(in, d);
   for (const sim::StepRule& rule : d.rules)
     fmt::print("  rule       step <= {:.3f} ms: {} ({})\n", rule.max_dt_s * 1e3, rule.name, rule.field);

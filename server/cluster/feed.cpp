@@ -284,13 +284,11 @@ bool Feed::sendToNodeOf(core::SessionId session, v1::FromRoom message) {
   return true;
 }
 
-bool Feed::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+bool Feed::commandApplied(const rooms::Command& command, const v1::Ack& ack) {
   v1::FromRoom message;
   v1::Outcome& outcome = *message.mutable_outcome();
   outcome.set_session(numberAtNode(command.sender.session_id));
-  outcome.mutable_ack()->set_command_id(command.id());
-  outcome.mutable_ack()->set_applied_tick(tick);
-  outcome.mutable_ack()->set_boat_id(boat_id);
+  *outcome.mutable_ack() = ack;
   return sendToNodeOf(command.sender.session_id, std::move(message));
 }
 

@@ -23,8 +23,8 @@
 
 namespace spindrift::cluster {
 
-/// Version of cluster.proto and the frames' head.
-inline constexpr std::uint32_t kClusterVersion = 1;
+/// Version of cluster.proto, the frames' head and the numbers of streams.
+inline constexpr std::uint32_t kClusterVersion = 2;
 /// A link whose other end was silent for so long is dead.
 inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.
@@ -61,7 +61,7 @@ class Feed final : public service::RemoteAudience {
   void sceneChanged(const rooms::Room& room) override;
   void stateChanged(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message) override;
   void closed(const rooms::Room& room) override;
-  bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  bool commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
   void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;

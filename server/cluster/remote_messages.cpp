@@ -172,8 +172,7 @@ void RemoteRoom::takeOutcome(const v1::Outcome& message) {
     commands.erase(sent);
   }
   const rooms::Command command = commandOf(message.session(), id);
-  if (message.has_ack())
-    return sessions_.commandApplied(command, message.ack().applied_tick(), message.ack().boat_id());
+  if (message.has_ack()) return sessions_.commandApplied(command, message.ack());
   sessions_.commandRejected(command, message.reject());
 }
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <numbers>
 #include <string>
@@ -8,6 +9,7 @@
 #include <google/protobuf/stubs/logging.h>
 
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/core/text.h>
 
 #include "frame_checks.h"
 
@@ -18,13 +20,40 @@ static_assert(std::endian::native == std::endian::little, "payload integers are 
 
 constexpr std::size_t kSampleBytes = 2;
 constexpr std::size_t kParticleBytes = 12;
-constexpr std::size_t kBodyBytes = 28;
+constexpr std::size_t kObjectBytes = 28;
+/// By which a quaternion of 16-bit numbers may differ from a unit one.
+constexpr double kNormTolerance = 1e-3;
 
 template <typename Integer>
 Integer load(const std::uint8_t* at) {
   Integer value{};
   std::memcpy(&value, at, sizeof value);
   return value;
+}
+
+/// Reads boats or floaters: the id and the position of each, which stand first, and with `read_rest` what follows.
+template <typename Sample, typename ReadRest>
+core::Result<std::vector<Sample>> decodeObjects(const v1::LayerFrame& frame, v1::Layer layer, std::size_t count,
+                                                std::uint32_t Sample::*id, const ReadRest& read_rest) {
+  if (auto error = checkCount(count, kBodyMaxCount)) return *error;
+  if (auto error = checkPlainFrame(frame, layer, count * kObjectBytes)) return *error;
+  const core::ByteView payload = viewOf(frame.payload());
+  std::vector<Sample> out(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::uint8_t* at = payload.data() + i * kObjectBytes;
+    Sample& sample = out[i];
+    sample.*id = load<std::uint32_t>(at);
+    if (sample.*id == 0) {
+      return invalid(std::string(layer == v1::LAYER_BODIES ? "boat_id" : "floater_id") +
+                     ": 0 is not an id; the frame is damaged");
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      sample.position_m[axis] = load<std::int32_t>(at + 4 + 4 * axis) / 1000.0;
+      if (auto error = checkRange("position_m", sample.position_m[axis], -kMaxMagnitude)) return *error;
+    }
+    if (std::optional<core::Error> error = read_rest(at, sample)) return *error;
+  }
+  return out;
 }
 
 }  // namespace
@@ -108,31 +137,43 @@ core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame) {
 
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame) {
   if (!frame.has_bodies_fixed28()) return invalid("codec: not bodies_fixed28, the only codec of bodies known here");
-  const std::size_t count = frame.bodies_fixed28().count();
-  if (auto error = checkCount(count, kBodyMaxCount)) return *error;
-  if (auto error = checkPlainFrame(frame, v1::LAYER_BODIES, count * kBodyBytes)) return *error;
-  const core::ByteView payload = viewOf(frame.payload());
   const auto angle = [](std::int16_t value) { return value / 32767.0 * std::numbers::pi; };
   const auto ratio = [](std::uint8_t byte) { return std::max(static_cast<std::int8_t>(byte) / 127.0, -1.0); };
-  std::vector<BodySample> out;
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::uint8_t* at = payload.data() + i * kBodyBytes;
-    BodySample body;
-    body.boat_id = load<std::uint32_t>(at);
-    if (body.boat_id == 0) return invalid("boat_id: 0 is not a boat; the frame is damaged");
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      body.position_m[axis] = load<std::int32_t>(at + 4 + 4 * axis) / 1000.0;
-      if (auto error = checkRange("position_m", body.position_m[axis], -kMaxMagnitude)) return *error;
-    }
+  const auto read_rest = [&](const std::uint8_t* at, BodySample& body) -> std::optional<core::Error> {
     body.heading_rad = angle(load<std::int16_t>(at + 16));
     body.pitch_rad = angle(load<std::int16_t>(at + 18));
     body.roll_rad = angle(load<std::int16_t>(at + 20));
     body.speed_mps = load<std::int16_t>(at + 22) / 100.0;
     body.throttle_ratio = ratio(at[24]);
     body.rudder_ratio = ratio(at[25]);
-    out.push_back(body);
-  }
-  return out;
+    return std::nullopt;
+  };
+  return decodeObjects(frame, v1::LAYER_BODIES, frame.bodies_fixed28().count(), &BodySample::boat_id, read_rest);
+}
+
+core::Result<std::vector<FloaterSample>> decodeFloaters(const v1::LayerFrame& frame) {
+  if (!frame.has_floaters_fixed28())
+    return invalid("codec: not floaters_fixed28, the only codec of floaters known here");
+  const auto read_rest = [](const std::uint8_t* at, FloaterSample& floater) -> std::optional<core::Error> {
+    double norm = 0.0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      floater.rotation[k] = load<std::int16_t>(at + 16 + 2 * k) / 32767.0;
+      norm += floater.rotation[k] * floater.rotation[k];
+    }
+    norm = std::sqrt(norm);
+    if (std::abs(norm - 1.0) > kNormTolerance) {
+      return invalid("rotation: a quaternion of norm " + core::formatNumber(norm) + " is no rotation; the frame is " +
+                     "damaged");
+    }
+    floater.size_m = load<std::uint16_t>(at + 24) / 100.0;
+    floater.kind = static_cast<v1::FloaterKind>(at[26]);
+    if (!v1::FloaterKind_IsValid(floater.kind) || floater.kind == v1::FLOATER_KIND_UNSPECIFIED)
+      return invalid("kind: " + std::to_string(at[26]) + " is not a kind of floater; the frame is damaged");
+    floater.is_held = (at[27] & 1u) != 0;
+    return std::nullopt;
+  };
+  return decodeObjects(frame, v1::LAYER_FLOATERS, frame.floaters_fixed28().count(), &FloaterSample::floater_id,
+                       read_rest);
 }
 
 }  // namespace spindrift::codec

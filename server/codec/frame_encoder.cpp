@@ -58,13 +58,15 @@ core::SharedBytes plainFoam(const core::FrameView& frame, core::Level level) {
   return plain(frame, v1::LAYER_FOAM, level, codec, foam.words, foam.count.total());
 }
 
-core::SharedBytes plainBodies(const core::FrameView& frame) {
-  if (!frame.bodies) return nullptr;
-  assert(frame.bodies->words.size() == std::size_t{7} * frame.bodies->count);
+/// Boats or floaters; `mutableHeader` returns the header of their codec.
+template <typename View, typename Header>
+core::SharedBytes plainObjects(const core::FrameView& frame, v1::Layer layer, const std::optional<View>& objects,
+                               Header* (v1::LayerFrame::*mutableHeader)()) {
+  if (!objects) return nullptr;
+  assert(objects->words.size() == std::size_t{7} * objects->count);
   v1::LayerFrame codec;
-  codec.mutable_bodies_fixed28()->set_count(frame.bodies->count);
-  return plain(frame, v1::LAYER_BODIES, core::Level::kFull, codec, frame.bodies->words,
-               frame.bodies->words.size_bytes());
+  (codec.*mutableHeader)()->set_count(objects->count);
+  return plain(frame, layer, core::Level::kFull, codec, objects->words, objects->words.size_bytes());
 }
 
 }  // namespace
@@ -91,7 +93,11 @@ EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, c
       if (is_packed) return packed.foam.encode(frame, stream.layer, level, wants_keyframe);
       return {plainFoam(frame, level), nullptr};
     case v1::LAYER_BODIES:
-      return {is_packed ? nullptr : plainBodies(frame), nullptr};
+      if (is_packed) return {};
+      return {plainObjects(frame, stream.layer, frame.bodies, &v1::LayerFrame::mutable_bodies_fixed28), nullptr};
+    case v1::LAYER_FLOATERS:
+      if (is_packed) return {};
+      return {plainObjects(frame, stream.layer, frame.floaters, &v1::LayerFrame::mutable_floaters_fixed28), nullptr};
     case v1::LAYER_DIAGNOSTICS:
       return {is_packed ? nullptr : serializeDiagnostics(frame), nullptr};
     default:

@@ -20,7 +20,8 @@ std::span<const Stream> allStreams() {
   static constexpr std::array kStreams = {Stream{v1::LAYER_SURFACE},   Stream{v1::LAYER_SURFACE, v1::PACKING_PACKED},
                                           Stream{v1::LAYER_PARTICLES}, Stream{v1::LAYER_PARTICLES, v1::PACKING_PACKED},
                                           Stream{v1::LAYER_FOAM},      Stream{v1::LAYER_FOAM, v1::PACKING_PACKED},
-                                          Stream{v1::LAYER_BODIES},    Stream{v1::LAYER_DIAGNOSTICS}};
+                                          Stream{v1::LAYER_BODIES},    Stream{v1::LAYER_DIAGNOSTICS},
+                                          Stream{v1::LAYER_FLOATERS}};
   return kStreams;
 }
 

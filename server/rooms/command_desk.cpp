@@ -59,6 +59,9 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kStep, {kOperator, kLight}, &Act::advance, nullptr},
       {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, &Desk::beginScene},
       {C::kTakeBoat, {kPlayer, kLight}, &Act::takeBoat, nullptr},
+      {C::kSpawnFloater, {kPlayer, kLight}, &Act::spawnFloater, nullptr},
+      {C::kHoldFloater, {kPlayer, kLight}, nullptr, nullptr},
+      {C::kRemoveFloater, {kPlayer, kLight}, nullptr, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action
@@ -70,7 +73,9 @@ const CommandTraits& traitsOf(const v1::Command& command) {
 }
 
 core::Role roleFor(const v1::Command& command) {
-  return command.stroke().tool() == v1::STROKE_TOOL_CALM ? core::Role::kOperator : traitsOf(command).role;
+  const bool removes_all = command.has_remove_floater() && command.remove_floater().floater_id() == 0;
+  const bool calms = command.stroke().tool() == v1::STROKE_TOOL_CALM;
+  return removes_all || calms ? core::Role::kOperator : traitsOf(command).role;
 }
 
 CommandDesk::CommandDesk(RoomData& room, RoomActions& actions, WaterChange& change)
@@ -127,7 +132,7 @@ void CommandDesk::apply(Batch batch) {
   if (!outcome) {
     outcome = kind.in_room ? (actions_.*kind.in_room)(batch.front()) : actions_.applyToWater(batch.front());
   }
-  answer(std::move(batch), outcome, actions_.takeNewBoatId());
+  answer(std::move(batch), outcome, actions_.takeNewIds());
 }
 
 CommandDesk::Outcome CommandDesk::checkAgain(const Command& command) const {
@@ -215,8 +220,8 @@ CommandDesk::Outcome CommandDesk::refuseValue(const Command& command) const {
 
 // Answers
 
-void CommandDesk::answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id) {
-  for (Command& command : batch) answers_.push_back({std::move(command), outcome, boat_id});
+void CommandDesk::answer(Batch batch, const Outcome& outcome, const v1::Ack& ack) {
+  for (Command& command : batch) answers_.push_back({std::move(command), outcome, ack});
 }
 
 void CommandDesk::rejectAll(const wire::CommandRejection& rejection) {
@@ -252,7 +257,9 @@ void CommandDesk::sendAnswers() {
       one.rejected->set_command_id(one.command.id());
       room_.outlets.commandRejected(one.command, *one.rejected);
     } else {
-      room_.outlets.commandApplied(one.command, room_.water->tick(), one.boat_id);
+      one.ack.set_command_id(one.command.id());
+      one.ack.set_applied_tick(room_.water->tick());
+      room_.outlets.commandApplied(one.command, one.ack);
     }
   }
 }

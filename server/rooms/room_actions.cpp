@@ -100,8 +100,8 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   }
   if (auto rejected = applyToWater(command)) return rejected;
   boatsChanged();
-  new_boat_id_ = room_.water->spawnedBoatId();
-  room_.roster.give(new_boat_id_, sender.person_id);
+  new_ids_.set_boat_id(room_.water->spawnedId());
+  room_.roster.give(room_.water->spawnedId(), sender.person_id);
   return {};
 }
 
@@ -148,6 +148,12 @@ RoomActions::Outcome RoomActions::takeBoat(const Command& command) {
     return wire::rejection(v1::REJECT_REASON_HAS_BOAT, kField, "you have a boat: remove it before you take another");
   }
   room_.roster.give(boat_id, sender.person_id);
+  return {};
+}
+
+RoomActions::Outcome RoomActions::spawnFloater(const Command& command) {
+  if (auto rejected = applyToWater(command)) return rejected;
+  new_ids_.set_floater_id(room_.water->spawnedId());
   return {};
 }
 

@@ -61,6 +61,7 @@ void RoomFrames::request(TimePoint now, core::LevelSet due) {
       layers.particles |= stream.layer == v1::LAYER_PARTICLES && scene.has_particles();
       layers.foam |= stream.layer == v1::LAYER_FOAM && scene.foam().surface();
       request.bodies |= stream.layer == v1::LAYER_BODIES && scene.has_boats();
+      request.floaters |= stream.layer == v1::LAYER_FLOATERS && scene.has_floaters();
       wants_diagnostics_ |= stream.layer == v1::LAYER_DIAGNOSTICS;
     }
   }

@@ -1,4 +1,4 @@
-// Defaults of effects and boats in commands, fitted to the water that they are for.
+// Defaults of effects, boats and floaters in commands, fitted to the water that they are for.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,7 +12,7 @@ namespace {
 
 /// Limits may follow from another field that was left out: that of a boat's beam from its length.
 constexpr int kPassCount = 2;
-/// Positions that are tried for a boat.
+/// Positions that are tried for a boat or a floater.
 constexpr int kPlaceMaxCount = 400;
 /// A finger in the water: its radius as a share of the shorter side; its depth in radii, or as a share of the water's.
 constexpr double kFingerSides = 0.025, kFingerDepthRadii = 0.45, kFingerDepthRatio = 0.2;
@@ -34,18 +34,19 @@ void complete(Message& message, const IssuesOf& issues_of) {
   }
 }
 
-/// Moves the boat to the first permitted position on a spiral from the middle outward; leaves it where none is found.
-void findPlace(v1::Boat& boat, const v1::Scene& scene) {
+/// Moves a boat or a floater to the first permitted position on a spiral from the middle outward; leaves it where none
+/// is found.
+template <typename Message, typename IssuesOf>
+void findPlace(Message& message, const v1::Scene& scene, const IssuesOf& issues_of) {
   const WaterExtents water = waterExtentsOf(scene);
   const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));  // fills the water evenly
-  core::Boat tried = toCore(boat);
+  Message tried = message;
   for (int k = 0; k < kPlaceMaxCount; ++k) {
     const double out = std::sqrt(static_cast<double>(k) / kPlaceMaxCount);
-    tried.x_m = 0.5 * water.side_x_m * out * std::cos(k * golden_angle);
-    tried.z_m = 0.5 * water.side_z_m * out * std::sin(k * golden_angle);
-    if (!checkBoat(tried, scene, "").empty()) continue;
-    boat.set_x_m(tried.x_m);
-    boat.set_z_m(tried.z_m);
+    tried.set_x_m(0.5 * water.side_x_m * out * std::cos(k * golden_angle));
+    tried.set_z_m(0.5 * water.side_z_m * out * std::sin(k * golden_angle));
+    if (!issues_of(tried).empty()) continue;
+    message = std::move(tried);
     return;
   }
 }
@@ -62,8 +63,18 @@ void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene) {
 
 void completeBoat(v1::Boat& boat, const v1::Scene& scene) {
   const bool has_place = boat.has_x_m() || boat.has_z_m();
-  complete(boat, [&](const v1::Boat& filled) { return checkBoat(toCore(filled), scene, ""); });
-  if (!has_place) findPlace(boat, scene);
+  const auto issues_of = [&](const v1::Boat& filled) { return checkBoat(toCore(filled), scene, ""); };
+  complete(boat, issues_of);
+  if (!has_place) findPlace(boat, scene, issues_of);
+}
+
+void completeFloater(v1::Floater& floater, const v1::Scene& scene) {
+  const bool has_place = floater.has_x_m() || floater.has_z_m();
+  const bool has_height = floater.has_y_m();
+  const auto issues_of = [&](const v1::Floater& filled) { return checkFloater(toCore(filled), scene, ""); };
+  complete(floater, issues_of);
+  if (!has_height) floater.set_y_m(floater.size_m() / 2);
+  if (!has_place) findPlace(floater, scene, issues_of);
 }
 
 void completeStroke(v1::Stroke& stroke, const v1::Scene& scene) {

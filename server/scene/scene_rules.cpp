@@ -94,6 +94,7 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.obstacles_size() > 0) needsWave("obstacles[0]", "the obstacles");
   if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
   if (scene.has_storm()) needsWave("storm", "storm");
+  if (scene.has_floaters()) needsWave("floaters", "floaters");
   if (scene.has_bed()) needsWave("bed", "bed");
   if (scene.gauges_size() > 0) needsWave("gauges[0]", "the gauges");
   if (scene.wave_makers_size() > 0) needsWave("wave_makers[0]", "the wave-makers");
@@ -104,6 +105,8 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   checkCount(scene.beaches_size(), kSceneBeachMaxCount, "beaches", "beaches", issues);
   checkCount(scene.wave_makers_size(), kSceneWaveMakerMaxCount, "wave_makers", "wave-makers", issues);
   checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
+  checkCount(scene.floaters().floaters_size(), static_cast<int>(core::kMaxFloaters), "floaters.floaters", "objects",
+             issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
     issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("obstacles", i),
@@ -250,6 +253,14 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
               "is more than a third of the water's depth", issues);
   checkAtMost(stroke.depth_m(), kStrokeMaxDepthRadii * stroke.radius_m(), "stroke.depth_m",
               "is more than half the radius", issues);
+  return issues;
+}
+
+std::vector<FieldIssue> checkHold(double x_m, double z_m, const v1::Scene& scene) {
+  std::vector<FieldIssue> issues;
+  const WaterExtents water = waterExtentsOf(scene);
+  checkPosition(x_m, water.side_x_m, "hold_floater.x_m", issues);
+  checkPosition(z_m, water.side_z_m, "hold_floater.z_m", issues);
   return issues;
 }
 

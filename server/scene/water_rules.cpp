@@ -1,4 +1,4 @@
-// Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats, wave-makers.
+// Rules between the water and the objects in it: sides, sponge, obstacles, beaches, boats, floaters, wave-makers.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -18,6 +18,9 @@ constexpr double kMaxBoatSideRatio = 0.25;
 constexpr double kMaxBoatWidthRatio = 0.5;
 /// Draught over the water's depth of a boat whose height follows from the water.
 constexpr double kFittingDraughtRatio = 0.6;
+/// Maximum size of a floater over the water's shorter side, and its maximum height over the rest level.
+constexpr double kMaxFloaterSideRatio = 0.25;
+constexpr double kMaxFloaterHeight_m = 20.0;
 
 using core::metres;
 
@@ -44,6 +47,11 @@ struct Footprint {
   }
 };
 
+/// A disc seen from above.
+struct Disc {
+  double x_m, z_m, radius_m;
+};
+
 /// Separating axis test: two rectangles are apart if their extents are apart along a side of one of them.
 bool overlap(const Footprint& a, const Footprint& b) {
   const std::array<std::array<double, 2>, 4> axes = {
@@ -54,12 +62,20 @@ bool overlap(const Footprint& a, const Footprint& b) {
   });
 }
 
-bool overlap(const Footprint& a, const v1::Rock& rock) {
-  const double dx = rock.x_m() - a.x_m;
-  const double dz = rock.z_m() - a.z_m;
+bool overlap(const Footprint& a, const Disc& disc) {
+  const double dx = disc.x_m - a.x_m;
+  const double dz = disc.z_m - a.z_m;
   const double along_m = std::max(0.0, std::abs(dx * a.cosine + dz * a.sine) - a.half_length_m);
   const double across_m = std::max(0.0, std::abs(dz * a.cosine - dx * a.sine) - a.half_width_m);
-  return std::hypot(along_m, across_m) < rock.radius_m();
+  return std::hypot(along_m, across_m) < disc.radius_m;
+}
+
+bool overlap(const Disc& disc, const Footprint& b) {
+  return overlap(b, disc);
+}
+
+bool overlap(const Disc& a, const Disc& b) {
+  return std::hypot(b.x_m - a.x_m, b.z_m - a.z_m) < a.radius_m + b.radius_m;
 }
 
 Footprint footprintOf(const core::Boat& boat) {
@@ -68,6 +84,23 @@ Footprint footprintOf(const core::Boat& boat) {
 
 Footprint footprintOf(const v1::Breakwater& wall) {
   return {wall.x_m(), wall.z_m(), wall.length_m(), wall.width_m(), wall.heading_deg()};
+}
+
+/// Checks that a Footprint or a Disc lies in no obstacle.
+template <typename Outline>
+void checkFree(const Outline& outline, const v1::Scene& scene, const std::string& prefix,
+               std::vector<FieldIssue>& issues) {
+  for (int i = 0; i < scene.obstacles_size(); ++i) {
+    const v1::Obstacle& obstacle = scene.obstacles(i);
+    const v1::Rock& rock = obstacle.rock();
+    const bool hits = obstacle.has_rock()         ? overlap(outline, Disc{rock.x_m(), rock.z_m(), rock.radius_m()})
+                      : obstacle.has_breakwater() ? overlap(outline, footprintOf(obstacle.breakwater()))
+                                                  : false;
+    if (!hits) continue;
+    addRange(issues, prefix + "x_m",
+             metres(outline.x_m) + ", z " + metres(outline.z_m) + " lies in " + indexed("obstacles", i) +
+                 "; choose a position in open water");
+  }
 }
 
 /// Checks that an object with the half extent `reach_m` around its centre lies in the water along one axis.
@@ -201,13 +234,27 @@ void checkHull(const core::Boat& boat, const WaterExtents& water, const std::str
   }
 }
 
+void checkCapacity(int count, std::uint32_t capacity_count, const char* list, const char* what,
+                   std::vector<FieldIssue>& issues) {
+  if (count <= static_cast<int>(capacity_count)) return;
+  addRange(issues, indexed(list, static_cast<int>(capacity_count)),
+           std::to_string(count) + " " + what + " are more than the capacity_count of " +
+               std::to_string(capacity_count) + "; remove some or raise it");
+}
+
+void checkFloaters(const v1::FloatersScene& floaters, const v1::Scene& scene, std::vector<FieldIssue>& issues) {
+  checkCapacity(floaters.floaters_size(), floaters.capacity_count(), "floaters.floaters", "objects", issues);
+  const int count = std::min(floaters.floaters_size(), static_cast<int>(core::kMaxFloaters));
+  for (int i = 0; i < count; ++i) {
+    const std::string prefix = indexed("floaters.floaters", i) + ".";
+    for (FieldIssue& issue : checkFloater(toCore(floaters.floaters(i)), scene, prefix))
+      issues.push_back(std::move(issue));
+  }
+}
+
 void checkBoats(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   const v1::BoatsScene& boats = scene.boats();
-  if (boats.boats_size() > static_cast<int>(boats.capacity_count())) {
-    addRange(issues, indexed("boats.boats", static_cast<int>(boats.capacity_count())),
-             std::to_string(boats.boats_size()) + " boats are more than the capacity_count of " +
-                 std::to_string(boats.capacity_count()) + "; remove some or raise it");
-  }
+  checkCapacity(boats.boats_size(), boats.capacity_count(), "boats.boats", "boats", issues);
   const int count = std::min(boats.boats_size(), static_cast<int>(core::kMaxBoats));
   for (int i = 0; i < count; ++i) {
     const core::Boat boat = toCore(boats.boats(i));
@@ -269,16 +316,25 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
   const Footprint hull = footprintOf(boat);
   checkInside(boat.x_m, hull.reachX_m(), water.side_x_m, prefix + "x_m", issues);
   checkInside(boat.z_m, hull.reachZ_m(), water.side_z_m, prefix + "z_m", issues);
-  for (int i = 0; i < scene.obstacles_size(); ++i) {
-    const v1::Obstacle& obstacle = scene.obstacles(i);
-    const bool hits = obstacle.has_rock()         ? overlap(hull, obstacle.rock())
-                      : obstacle.has_breakwater() ? overlap(hull, footprintOf(obstacle.breakwater()))
-                                                  : false;
-    if (!hits) continue;
-    addRange(issues, prefix + "x_m",
-             metres(boat.x_m) + ", z " + metres(boat.z_m) + " lies in " + indexed("obstacles", i) +
-                 "; choose a position in open water");
+  checkFree(hull, scene, prefix, issues);
+  return issues;
+}
+
+std::vector<FieldIssue> checkFloater(const core::Floater& floater, const v1::Scene& scene, const std::string& prefix) {
+  std::vector<FieldIssue> issues;
+  const WaterExtents water = waterExtentsOf(scene);
+  checkAtMost(floater.size_m, kMaxFloaterSideRatio * water.shorterSide_m(), prefix + "size_m",
+              "is more than a quarter of the water's shorter side of " + metres(water.shorterSide_m()), issues);
+  checkAtMost(floater.y_m, kMaxFloaterHeight_m, prefix + "y_m", "is too high above the rest level", issues);
+  if (floater.y_m < -water.depth_m) {
+    addRange(issues, prefix + "y_m",
+             metres(floater.y_m) + " lies below the bed; choose at least " + metres(-water.depth_m));
   }
+  // It may turn any way, so that it takes the disc of its longest extent.
+  const Disc disc{floater.x_m, floater.z_m, floater.size_m / 2};
+  checkInside(disc.x_m, disc.radius_m, water.side_x_m, prefix + "x_m", issues);
+  checkInside(disc.z_m, disc.radius_m, water.side_z_m, prefix + "z_m", issues);
+  checkFree(disc, scene, prefix, issues);
   return issues;
 }
 
@@ -291,6 +347,7 @@ std::vector<FieldIssue> checkWater(const v1::Scene& scene) {
     checkBeaches(scene, issues);
     checkBedNumbers(scene, issues);
     checkMakerNumbers(scene, issues);
+    checkFloaters(scene.floaters(), scene, issues);
   }
   if (scene.has_boats()) checkBoats(scene, issues);
   return issues;

@@ -141,12 +141,12 @@ void Gateway::publish(const std::string& room, codec::Stream stream, const codec
   if (cluster_.audience) cluster_.audience->publish(room, stream, frame, levels);
 }
 
-void Gateway::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+void Gateway::commandApplied(const rooms::Command& command, const v1::Ack& ack) {
   counters_.applied();
-  access_.audit().applied(command, tick);
-  if (command.sender.request_id != 0) return rest_.commandApplied(command, tick, boat_id);
-  if (cluster_.audience && cluster_.audience->commandApplied(command, tick, boat_id)) return;
-  sessions_.commandApplied(command, tick, boat_id);
+  access_.audit().applied(command, ack.applied_tick());
+  if (command.sender.request_id != 0) return rest_.commandApplied(command, ack);
+  if (cluster_.audience && cluster_.audience->commandApplied(command, ack)) return;
+  sessions_.commandApplied(command, ack);
 }
 
 void Gateway::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {

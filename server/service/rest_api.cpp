@@ -90,6 +90,7 @@ unsigned httpStatusOf(v1::RejectReason reason) {
     case v1::REJECT_REASON_NOT_YOURS:
       return 403;
     case v1::REJECT_REASON_UNKNOWN_BOAT:
+    case v1::REJECT_REASON_UNKNOWN_FLOATER:
     case v1::REJECT_REASON_UNKNOWN_SCENE:
     case v1::REJECT_REASON_UNKNOWN_PARAMETER:
       return 404;
@@ -353,13 +354,11 @@ net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
   return node ? std::move(node.mapped()) : net::HttpResponder();
 }
 
-void RestApi::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
+void RestApi::commandApplied(const rooms::Command& command, const v1::Ack& ack) {
   const auto respond = takePending(command.sender.request_id);
   if (!respond) return;
   v1::CommandAnswer out;
-  out.mutable_ack()->set_command_id(command.id());
-  out.mutable_ack()->set_applied_tick(tick);
-  out.mutable_ack()->set_boat_id(boat_id);
+  *out.mutable_ack() = ack;
   respond(json(200, out));
 }
 

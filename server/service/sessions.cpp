@@ -28,6 +28,7 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
   if (scene.has_particles()) layers.push_back(v1::LAYER_PARTICLES);
   if (scene.has_boats()) layers.push_back(v1::LAYER_BODIES);
   if (scene.foam().surface()) layers.push_back(v1::LAYER_FOAM);
+  if (scene.has_floaters()) layers.push_back(v1::LAYER_FLOATERS);
   layers.push_back(v1::LAYER_DIAGNOSTICS);
   return layers;
 }
@@ -375,8 +376,8 @@ bool Sessions::takeCommand(net::SessionId session) {
   return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
 }
 
-void Sessions::commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) {
-  hub().sendAnswer(command.sender.session_id, wire::ack(command.id(), tick, boat_id));
+void Sessions::commandApplied(const rooms::Command& command, const v1::Ack& ack) {
+  hub().sendAnswer(command.sender.session_id, wire::ack(ack));
 }
 
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {

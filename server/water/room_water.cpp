@@ -74,7 +74,9 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
         return Outcome();
       };
     case Command::kSpawnBoat:
-      return [](RoomWater& room, const Command& command) { return room.spawnBoat(command.spawn_boat()); };
+      return [](RoomWater& room, const Command& command) {
+        return room.spawned(room.sim().spawnBoat(scene::toCore(command.spawn_boat().boat())), "spawn_boat");
+      };
     case Command::kControlBoat:
       return [](RoomWater& room, const Command& command) {
         const v1::ControlBoat& control = command.control_boat();
@@ -85,6 +87,26 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
       return [](RoomWater& room, const Command& command) {
         return outcomeOf(room.sim().removeBoat(command.remove_boat().boat_id()), "remove_boat.boat_id",
                          v1::REJECT_REASON_UNKNOWN_BOAT);
+      };
+    case Command::kSpawnFloater:
+      return [](RoomWater& room, const Command& command) {
+        return room.spawned(room.sim().spawnFloater(scene::toCore(command.spawn_floater().floater())), "spawn_floater");
+      };
+    case Command::kHoldFloater:
+      return [](RoomWater& room, const Command& command) {
+        const v1::HoldFloater& hold = command.hold_floater();
+        return outcomeOf(room.sim().holdFloater({.floater_id = hold.floater_id(),
+                                                 .x_m = hold.x_m(),
+                                                 .z_m = hold.z_m(),
+                                                 .lift_m = hold.lift_m(),
+                                                 .turn_radps = hold.turn_radps(),
+                                                 .ends = hold.ends()}),
+                         "hold_floater.floater_id", v1::REJECT_REASON_UNKNOWN_FLOATER);
+      };
+    case Command::kRemoveFloater:
+      return [](RoomWater& room, const Command& command) {
+        return outcomeOf(room.sim().removeFloater(command.remove_floater().floater_id()), "remove_floater.floater_id",
+                         v1::REJECT_REASON_UNKNOWN_FLOATER);
       };
     default:
       return nullptr;
@@ -140,10 +162,9 @@ std::optional<TickWork> RoomWater::workWith(const v1::SetParameter& change) cons
   return derived ? std::optional(workOf(wanted, *derived)) : std::nullopt;
 }
 
-RoomWater::Outcome RoomWater::spawnBoat(const v1::SpawnBoat& spawn) {
-  const auto boat_id = sim().spawnBoat(scene::toCore(spawn.boat()));
-  if (boat_id) spawned_boat_id_ = *boat_id;
-  return outcomeOf(boat_id, "spawn_boat");
+RoomWater::Outcome RoomWater::spawned(const core::Result<std::uint32_t>& id, const char* action) {
+  if (id) spawned_id_ = *id;
+  return outcomeOf(id, action);
 }
 
 std::unique_ptr<Water> RoomWater::replaceWater(std::unique_ptr<Water> water) {

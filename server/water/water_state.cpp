@@ -44,6 +44,16 @@ constexpr std::tuple kActiveStrokeNumbers{NUMBER(is_whole), NUMBER(play_s), NUMB
 constexpr std::tuple kBoatNumbers{
     NUMBER(x_m),      NUMBER(z_m),           NUMBER(heading_deg),   NUMBER(length_m),       NUMBER(beam_m),
     NUMBER(height_m), NUMBER(density_ratio), NUMBER(max_speed_mps), NUMBER(throttle_ratio), NUMBER(rudder_ratio)};
+constexpr std::tuple kFloaterNumbers{NUMBER(x_m),
+                                     NUMBER(y_m),
+                                     NUMBER(z_m),
+                                     NUMBER(heading_deg),
+                                     NUMBER(size_m),
+                                     NUMBER(density_ratio),
+                                     NUMBER(ballast_ratio),
+                                     NUMBER(velocity_x_mps),
+                                     NUMBER(velocity_y_mps),
+                                     NUMBER(velocity_z_mps)};
 constexpr std::tuple kSeaNumbers{NUMBER(wind_speed_mps), NUMBER(significant_height_m), NUMBER(peak_period_s),
                                  NUMBER(peak_length_m)};
 constexpr std::tuple kSeaWaveNumbers{NUMBER(amplitude_m), NUMBER(omega_radps), NUMBER(kx_radpm), NUMBER(kz_radpm),
@@ -96,6 +106,15 @@ sim::Stroke toStroke(const v1::ActiveStroke& message) {
   out.is_lifted = part.ends;
   read(message, out, kActiveStrokeNumbers);
   return out;
+}
+
+void fill(v1::FloaterPlace& out, const sim::FloaterPlace& place) {
+  out.set_floater_id(place.floater_id);
+  write(*out.mutable_floater(), place.floater, kFloaterNumbers);
+  for (int kind = v1::FloaterKind_MIN + 1; kind < v1::FloaterKind_ARRAYSIZE; ++kind) {
+    const auto one = static_cast<v1::FloaterKind>(kind);
+    if (scene::toCore(one) == place.floater.kind) out.mutable_floater()->set_kind(one);
+  }
 }
 
 void fill(v1::SeaState& out, const sim::SeaState& sea) {
@@ -198,6 +217,8 @@ v1::WaterState toMessage(const sim::SavedState& state) {
   }
   out.set_first_boat_id(state.host.boats.first_id);
   out.set_next_boat_id(state.host.boats.next_id);
+  for (const sim::FloaterPlace& place : state.host.floaters.places) fill(*out.add_floaters(), place);
+  out.set_next_floater_id(state.host.floaters.next_id);
   fill(*out.mutable_sea(), state.host.sea.shown);
   fill(*out.mutable_next_sea(), state.host.sea.next);
   if (state.host.sea.fade_begin_s) out.set_fade_begin_s(*state.host.sea.fade_begin_s);
@@ -243,6 +264,12 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
     host.boats.places.push_back({place.boat_id(), scene::toCore(place.boat())});
   host.boats.first_id = message.first_boat_id();
   host.boats.next_id = message.next_boat_id();
+  if (message.floaters_size() > static_cast<int>(core::kMaxFloaters))
+    return invalid("it has more floaters than there can be");
+  for (const v1::FloaterPlace& place : message.floaters())
+    host.floaters.places.push_back({place.floater_id(), scene::toCore(place.floater())});
+  // Snapshots of servers that knew no floaters have no number.
+  host.floaters.next_id = std::max(message.next_floater_id(), sim::CarriedFloaters{}.next_id);
   host.sea.shown = toSea(message.sea());
   host.sea.next = toSea(message.next_sea());
   if (host.sea.shown.waves.size() + host.sea.next.waves.size() > MAX_SEA_WAVES)

@@ -22,6 +22,7 @@ constexpr std::size_t kPathMaxBytes = 128;
 /// Maximum length of a scene name in error messages.
 constexpr std::size_t kNameEchoMaxBytes = 64;
 constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
+constexpr const char* kNoFloaters = "this scene has no floaters; choose a scene that has";
 
 CommandRejection rejectionOf(std::uint64_t command_id, scene::FieldIssue issue) {
   return rejection(issue.reason, std::move(issue.path), std::move(issue.message), command_id);
@@ -185,6 +186,10 @@ std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::
     v1::Boat& boat = *command.mutable_spawn_boat()->mutable_boat();
     if (scene.has_boats()) scene::completeBoat(boat, scene);
   }
+  if (command.has_spawn_floater()) {
+    v1::Floater& floater = *command.mutable_spawn_floater()->mutable_floater();
+    if (scene.has_floaters()) scene::completeFloater(floater, scene);
+  }
   if (command.has_stroke()) scene::completeStroke(*command.mutable_stroke(), scene);
   scene::fillMessageDefaults(command);
   return checkAgainstScene(command, scene);
@@ -194,6 +199,9 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
   std::vector<scene::FieldIssue> issues;
   const auto needBoats = [&](const char* field) {
     if (!scene.has_boats()) scene::addAbsent(issues, field, kNoBoats);
+  };
+  const auto needFloaters = [&](const char* field) {
+    if (!scene.has_floaters()) scene::addAbsent(issues, field, kNoFloaters);
   };
   switch (command.action_case()) {
     case v1::Command::kSplash:
@@ -223,6 +231,19 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kTakeBoat:
       needBoats("take_boat");
+      break;
+    case v1::Command::kSpawnFloater:
+      needFloaters("spawn_floater");
+      if (issues.empty()) {
+        issues = scene::checkFloater(scene::toCore(command.spawn_floater().floater()), scene, "spawn_floater.floater.");
+      }
+      break;
+    case v1::Command::kHoldFloater:
+      needFloaters("hold_floater");
+      if (issues.empty()) issues = scene::checkHold(command.hold_floater().x_m(), command.hold_floater().z_m(), scene);
+      break;
+    case v1::Command::kRemoveFloater:
+      needFloaters("remove_floater");
       break;
     default:  // the other commands have no rules about the scene
       break;

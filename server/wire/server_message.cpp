@@ -29,12 +29,8 @@ core::SharedBytes greeting(v1::Greeting greeting, const v1::Scene& scene) {
   return messageWith(&v1::ServerMessage::mutable_greeting, std::move(greeting));
 }
 
-core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id) {
-  v1::Ack out;
-  out.set_command_id(command_id);
-  out.set_applied_tick(applied_tick);
-  out.set_boat_id(boat_id);
-  return messageWith(&v1::ServerMessage::mutable_ack, std::move(out));
+core::SharedBytes ack(const v1::Ack& ack) {
+  return messageWith(&v1::ServerMessage::mutable_ack, ack);
 }
 
 core::SharedBytes reject(const CommandRejection& rejection) {

@@ -44,7 +44,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace spindrift;
   using fuzz::must;
   static const v1::Scene full = fuzz::sceneOf(
-      "wave { resolution_count: 64 } particles { count: 100 } coupling {} foam {} boats {} "
+      "wave { resolution_count: 64 } particles { count: 100 } coupling {} foam {} boats {} floaters {} "
       "obstacles { rock { x_m: 4 } } storm {}");
   static const v1::Scene wave_only = fuzz::sceneOf("wave { resolution_count: 64 depth_m: 0.5 }");
   const wire::ClientMessage message = wire::parseClientMessage({data, size});

@@ -55,7 +55,7 @@ void check(const Decoded& decoded) {
 /// A frame with a wrong checksum is always refused.
 void checkRefused(const v1::LayerFrame& frame) {
   must(!codec::decodeSurface(frame) && !codec::decodeParticles(frame) && !codec::decodeFoam(frame) &&
-           !codec::decodeBodies(frame) && !codec::decodePackedParticles(frame) &&
+           !codec::decodeBodies(frame) && !codec::decodeFloaters(frame) && !codec::decodePackedParticles(frame) &&
            !codec::PackedSurfaceDecoder().decode(frame) && !codec::PackedFoamDecoder().decode(frame),
        "a wrong checksum is noticed");
 }
@@ -69,6 +69,7 @@ class Client {
     if (const auto bodies = codec::decodeBodies(frame)) {
       must(bodies->size() == frame.bodies_fixed28().count(), "as many bodies as the frame says");
     }
+    check(codec::decodeFloaters(frame));
     check(packed_surface_.decode(frame));
     check(packed_foam_.decode(frame));
     check(codec::decodePackedParticles(frame));

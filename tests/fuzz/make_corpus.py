@@ -53,6 +53,10 @@ CLIENT_MESSAGES = {
     "change_scene": 'command { command_id: 20 change_scene { name: "harbor" } }',
     "change_scene_path": 'command { command_id: 21 change_scene { name: "../harbor" } }',
     "no_action": "command { command_id: 22 }",
+    "spawn_floater": "command { command_id: 23 spawn_floater { floater { kind: FLOATER_KIND_DUCK x_m: 1 y_m: 3 velocity_z_mps: -4 } } }",
+    "spawn_floater_in_rock": "command { command_id: 24 spawn_floater { floater { x_m: 4 } } }",
+    "hold_floater": "command { command_id: 25 hold_floater { floater_id: 1 x_m: 2 z_m: -1 lift_m: 0.5 turn_radps: 1 } }",
+    "remove_floaters": "command { command_id: 26 remove_floater { } }",
 }
 
 # Commands and requests of the REST interface.
@@ -128,7 +132,7 @@ SCENES = {
     "every_part": "name: 'full' gravity_mps2: 9.81\nwave { resolution_count: 64 depth_m: 1.5 stencil: STENCIL_NINE_POINT }\n"
     "particles { count: 100 boundary_x: BOUNDARY_WALL }\ncoupling { lattice_count: 3 }\nfoam { lifetime_s: 1e0 }\n"
     "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n"
-    "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nstorm { level_ratio: 0.5 }\n",
+    "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nfloaters { floaters { x_m: 2 size_m: 0.5 } }\nstorm { level_ratio: 0.5 }\n",
     "fine": "fidelity: FIDELITY_FINE wave { resolution_count: 64 }\n",
     "wrong": "wave { depth_m: -1 colour: 'blue' }\nparticles { count: 1e9 }\nnonsense: 1\nname: 'a b'\n",
     "wrong_types": "wave: 3\ngravity_mps2: 'nine'\nevents { at_s: nan }\nwave { stencil: STENCIL_TEN }\n",

@@ -19,6 +19,8 @@
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
+#include "commands.h"
+
 namespace spindrift::test {
 
 inline constexpr std::uint32_t kFakeResolutionCount = 32;
@@ -108,7 +110,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
     } else if (const auto* command = std::get_if<v1::Command>(&message)) {
       hub_->broadcastState(kRooms[command->command_id() % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
       if (command->has_reset()) hub_->join(session, kRooms[1], demands[1]);
-      hub_->sendAnswer(session, wire::ack(command->command_id(), 0));
+      hub_->sendAnswer(session, wire::ack(ackOf(command->command_id(), 0)));
     }
   }
   void sessionClosed(net::SessionId, const net::SessionEnd&) override { ++closed_count; }

@@ -35,9 +35,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void fidelityChanged(const rooms::Room&, const std::string& how) override { fidelity_news.push_back(how); }
   void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }
   void closed(const rooms::Room&) override {}
-  void commandApplied(const rooms::Command& command, std::uint64_t, std::uint32_t) override {
-    applied.push_back(command.id());
-  }
+  void commandApplied(const rooms::Command& command, const v1::Ack&) override { applied.push_back(command.id()); }
   void commandRejected(const rooms::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message());
     rejected_ids.push_back(rejection.command_id());

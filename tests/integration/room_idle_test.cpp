@@ -26,7 +26,7 @@ constexpr const char* kStillPool = "wave { resolution_count: 32 side_m: 8 depth_
 struct CountingOutlets final : SilentOutlets {
   std::atomic<int> answer_count{0};
 
-  void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override { ++answer_count; }
+  void commandApplied(const rooms::Command&, const v1::Ack&) override { ++answer_count; }
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++answer_count; }
 };
 

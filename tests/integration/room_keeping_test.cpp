@@ -364,7 +364,7 @@ TEST_F(KeptRoomTest, RetriesAFailedSnapshotSoon) {
 class SleepingRoomTest : public KeptRoomTest {
  protected:
   struct Deserted final : SilentOutlets {
-    void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override { ++applied_count; }
+    void commandApplied(const rooms::Command&, const v1::Ack&) override { ++applied_count; }
     void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++rejected_count; }
     int applied_count = 0, rejected_count = 0;
   };

@@ -16,7 +16,7 @@ struct SilentOutlets : rooms::RoomOutlets {
   void fidelityChanged(const rooms::Room&, const std::string&) override {}
   void hasRecovered(const rooms::Room&, const std::string&) override {}
   void closed(const rooms::Room&) override {}
-  void commandApplied(const rooms::Command&, std::uint64_t, std::uint32_t) override {}
+  void commandApplied(const rooms::Command&, const v1::Ack&) override {}
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override {}
   void frameReady(const rooms::Room&, core::FrameView) override {}
 };

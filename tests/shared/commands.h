@@ -1,4 +1,4 @@
-// Commands with the values that tests vary; the other fields are left out.
+// Commands with the values that tests vary, the other fields left out; and their answers.
 #pragma once
 
 #include <cstdint>
@@ -80,6 +80,28 @@ inline v1::Command removeBoat(std::uint32_t boat_id) {
   return command;
 }
 
+inline v1::Command spawnFloater(double x_m, double z_m) {
+  v1::Command command;
+  command.mutable_spawn_floater()->mutable_floater()->set_x_m(x_m);
+  command.mutable_spawn_floater()->mutable_floater()->set_z_m(z_m);
+  return command;
+}
+
+inline v1::Command holdFloater(std::uint32_t floater_id, double x_m, double z_m) {
+  v1::Command command;
+  command.mutable_hold_floater()->set_floater_id(floater_id);
+  command.mutable_hold_floater()->set_x_m(x_m);
+  command.mutable_hold_floater()->set_z_m(z_m);
+  return command;
+}
+
+/// 0: all.
+inline v1::Command removeFloater(std::uint32_t floater_id) {
+  v1::Command command;
+  command.mutable_remove_floater()->set_floater_id(floater_id);
+  return command;
+}
+
 inline v1::Command step(std::uint32_t tick_count) {
   v1::Command command;
   command.mutable_step()->set_tick_count(tick_count);
@@ -98,6 +120,17 @@ inline v1::Command breakingWave(v1::Side side, double amplitude_m, double length
   command.mutable_breaking_wave()->set_amplitude_m(amplitude_m);
   command.mutable_breaking_wave()->set_length_m(length_m);
   return command;
+}
+
+/// The answer to a command that gave out these ids.
+inline v1::Ack ackOf(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0,
+                     std::uint32_t floater_id = 0) {
+  v1::Ack out;
+  out.set_command_id(command_id);
+  out.set_applied_tick(applied_tick);
+  out.set_boat_id(boat_id);
+  out.set_floater_id(floater_id);
+  return out;
 }
 
 /// The command with a number.

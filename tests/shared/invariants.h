@@ -49,6 +49,8 @@ inline bool isChecked(const v1::Command& command) {
              std::abs(command.control_boat().rudder_ratio()) <= 1;
     case v1::Command::kSpawnBoat:
       return scene::toCore(command.spawn_boat().boat()).length_m > 0;
+    case v1::Command::kSpawnFloater:
+      return scene::toCore(command.spawn_floater().floater()).size_m > 0;
     case v1::Command::kStep:
       return !command.step().has_tick_count() ||
              (command.step().tick_count() >= 1 && command.step().tick_count() <= 600);
@@ -93,6 +95,14 @@ inline bool isWhole(const codec::ParticleSamples& particles) {
          particles.velocity_mps.size() == std::size_t{3} * particles.count &&
          particles.tint.size() == particles.count && particles.foam.size() == particles.count &&
          allFinite(particles.position_m) && allFinite(particles.velocity_mps);
+}
+/// Each has an id, a kind and a rotation.
+inline bool isWhole(const std::vector<codec::FloaterSample>& floaters) {
+  return std::ranges::all_of(floaters, [](const codec::FloaterSample& floater) {
+    double norm = 0.0;
+    for (const double part : floater.rotation) norm += part * part;
+    return floater.floater_id != 0 && floater.kind != v1::FLOATER_KIND_UNSPECIFIED && std::abs(norm - 1.0) < 0.01;
+  });
 }
 inline bool isWhole(const codec::FoamSamples& foam) {
   return foam.foam.size() == foam.count.total();

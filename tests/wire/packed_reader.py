@@ -77,12 +77,15 @@ CODECS = {
                                5: ("cells_x_count", UINT), 6: ("cells_y_count", UINT), 7: ("cells_z_count", UINT),
                                8: ("cell_m", DOUBLE), 9: ("offset_bits", UINT), 10: ("velocity_quantum_mps", DOUBLE),
                                11: ("radius_m", DOUBLE)}),
+    18: ("floaters_fixed28", {1: ("count", UINT)}),
     14: ("foam_predicted", {**GRID, 3: ("weights", SINTS), 4: ("earlier_weights", SINTS), **along_z(5)}),
 }
 FRAME = {1: ("layer", UINT), 2: ("tick", UINT), 3: ("time_s", DOUBLE), 4: ("keyframe", UINT), 5: ("base_tick", UINT),
          6: ("crc32c", FIXED32), 7: ("level", UINT), 15: ("payload", BYTES), 16: ("server_time_s", DOUBLE),
          17: ("state_id", UINT)}
-LAYERS = {"surface": 1, "particles": 2, "bodies": 3, "foam": 4}
+LAYERS = {"surface": 1, "particles": 2, "bodies": 3, "foam": 4, "floaters": 6}
+OBJECTS = ("bodies_fixed28", "floaters_fixed28")
+FLOATER_KINDS = ("CRATE", "BALL", "BARREL", "PLANK", "DUCK", "BUOY", "RAFT", "STONE")
 KINDS = range(1, 16)  # of ServerMessage
 FRAME_KIND = 2
 
@@ -174,7 +177,7 @@ def check_header(frame):
         h["width_m"] = h["width_m"] or h["side_m"]
         must(h["count_z"] <= 4096, "count_z")
         must(h["width_m"] >= 1e-6, "width_m")
-    must(h.get("count", 0) <= (1024 if codec == "bodies_fixed28" else 4_194_304), "count")
+    must(h.get("count", 0) <= (1024 if codec in OBJECTS else 4_194_304), "count")
     if codec == "particles_fixed12":
         must(all(h[f"min_{a}_m"] <= h[f"max_{a}_m"] for a in "xyz"), "a minimum above its maximum")
     if codec == "particles_by_cell":
@@ -186,7 +189,7 @@ def check_header(frame):
     if predicted:
         must(len(h["weights"]) == 10, "weights")
         must(not frame["keyframe"] or len(h["earlier_weights"]) == 10, "earlier_weights")
-    bytes_each = {"surface_fixed16": 2, "foam_fixed8": 1, "particles_fixed12": 12, "bodies_fixed28": 28}.get(codec)
+    bytes_each = {"surface_fixed16": 2, "foam_fixed8": 1, "particles_fixed12": 12, **dict.fromkeys(OBJECTS, 28)}.get(codec)
     if bytes_each:
         elements = h["count"] if "count" in h else h["resolution_count"] * h["count_z"]
         must(len(frame["payload"]) == bytes_each * elements, "the payload's length")
@@ -386,6 +389,16 @@ class Reader:
                           "pitch_rad": pitch, "roll_rad": roll, "speed_mps": speed / 100,
                           "throttle_ratio": max(throttle / 127, -1), "rudder_ratio": max(rudder / 127, -1)})
         return {"bodies": boats}
+
+    def floaters_fixed28(self, frame, h):
+        floaters = []
+        for floater_id, x, y, z, *rotation, size, kind, flags in struct.iter_unpack("<IiiihhhhHBB", frame["payload"]):
+            must(floater_id != 0, "floater_id 0")
+            name = FLOATER_KINDS[kind - 1] if 1 <= kind <= len(FLOATER_KINDS) else "CRATE"
+            floaters.append({"floater_id": floater_id, "position_m": [x / 1000, y / 1000, z / 1000],
+                             "rotation": [q / 32767 for q in rotation], "size_m": size / 100,
+                             "kind": f"FLOATER_KIND_{name}", "is_held": bool(flags & 1)})
+        return {"floaters": floaters}
 
     def particles_by_cell(self, frame, h):
         bits, count, offset_bits = Bits(frame["payload"]), h["count"], h["offset_bits"]

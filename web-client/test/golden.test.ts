@@ -8,6 +8,7 @@ import type { PackedFrame } from "../src/codec/frame_types";
 import { FrameUnpacker } from "../src/codec/frame_unpacker";
 import { parse, type ParsedMessage } from "../src/codec/parse";
 import { unpackBodies, type BodyPose } from "../src/scene/frames/bodies";
+import { unpackFloaters } from "../src/scene/frames/floaters";
 import { elevationAtM } from "../src/scene/frames/height_field";
 import { isPacked } from "./wire";
 
@@ -43,7 +44,7 @@ function unpacked(golden: GoldenCase, unpacker = new FrameUnpacker()): Exclude<P
 
 /** Kinds and layers that the tests below read; the first test fails if golden.json has another one. */
 const kKinds = ["frame", "diagnostics", "greeting", "ack", "reject", "boat_list", "room_event", "draining"];
-const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES"];
+const kLayers = ["LAYER_SURFACE", "LAYER_PARTICLES", "LAYER_FOAM", "LAYER_BODIES", "LAYER_FLOATERS"];
 
 /** A plane's samples and sides; a square names those along x only. */
 function extentsOf(golden: GoldenCase): object {
@@ -140,6 +141,23 @@ describe("golden bytes", () => {
       expect(speedMps).toBeCloseTo(boat["speed_mps"] as number, 8);
       expect(throttle).toBeCloseTo(boat["throttle_ratio"] as number, 8);
       expect(rudder).toBeCloseTo(boat["rudder_ratio"] as number, 8);
+    });
+  });
+
+  it.each(cases.filter((c) => c["layer"] === "LAYER_FLOATERS"))("unpacks the objects of $file", (golden) => {
+    const parsed = parse(read(golden.file));
+    if (parsed.kind !== "floaters") throw new Error(JSON.stringify(parsed));
+    const { header, payload } = parsed;
+    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), stateId: 0n, timeS: golden["time_s"], serverTimeS: 0, level: "full", count: golden["count"] });
+    const { floaters } = unpackFloaters({ layer: "floaters", ...header, buffer: payload.slice().buffer });
+    const wanted = golden["floaters"] as Record<string, unknown>[];
+    expect(floaters).toHaveLength(wanted.length);
+    wanted.forEach((floater, i) => {
+      const { floaterId, xM, yM, zM, turn, sizeM, kind, isHeld } = floaters[i]!;
+      expect([floaterId, xM, yM, zM]).toEqual([floater["floater_id"], ...(floater["position_m"] as number[])]);
+      // The file holds the quaternion as it was read; the page makes it a unit one.
+      turn.forEach((part, k) => expect(part).toBeCloseTo((floater["rotation"] as number[])[k]!, 3));
+      expect([sizeM, `FLOATER_KIND_${kind.toUpperCase()}`, isHeld]).toEqual([floater["size_m"], floater["kind"], floater["is_held"]]);
     });
   });
 

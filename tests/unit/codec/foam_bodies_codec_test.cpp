@@ -9,6 +9,7 @@
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/crc32c.h>
+#include <spindrift/core/scene.h>
 
 namespace spindrift::codec {
 namespace {
@@ -63,6 +64,30 @@ const std::vector<std::uint32_t> kTwoBoats = {1,
                                               0xFF38'C000u,
                                               0x0000'7F81u};
 
+v1::LayerFrame floatersFrame(const std::vector<std::uint32_t>& words) {
+  core::FrameView view;
+  view.tick = 60;
+  view.time_s = 1.0;
+  view.floaters = core::FloatersView{static_cast<std::uint32_t>(words.size() / 7), words};
+  return encoded(v1::LAYER_FLOATERS, view);
+}
+
+/// A duck of 0.6 m at rest; a held stone of 2 m, half a turn about z.
+const std::vector<std::uint32_t> kTwoFloaters = {3,
+                                                 1'500,
+                                                 static_cast<std::uint32_t>(-20),
+                                                 static_cast<std::uint32_t>(-2'250),
+                                                 0x0000'0000u,
+                                                 0x7FFF'0000u,
+                                                 0x0005'003Cu,  //
+                                                 1'000'000,
+                                                 0,
+                                                 0,
+                                                 0,
+                                                 0x0000'0000u,
+                                                 0x0000'8001u,
+                                                 0x0108'00C8u};
+
 TEST(FoamCodec, RoundTripsEveryByte) {
   const v1::LayerFrame frame = foamFrame();
   EXPECT_EQ(frame.layer(), v1::LAYER_FOAM);
@@ -99,6 +124,37 @@ TEST(BodiesCodec, HandlesAnEmptyWater) {
   const auto bodies = decodeBodies(bodiesFrame({}));
   ASSERT_TRUE(bodies) << bodies.error().message;
   EXPECT_TRUE(bodies->empty());
+}
+
+TEST(FloatersCodec, RoundTripsPositionRotationSizeAndKind) {
+  const auto floaters = decodeFloaters(floatersFrame(kTwoFloaters));
+  ASSERT_TRUE(floaters) << floaters.error().message;
+  ASSERT_EQ(floaters->size(), 2u);
+  const FloaterSample& duck = floaters->at(0);
+  EXPECT_EQ(duck.floater_id, 3u);
+  EXPECT_THAT(duck.position_m, testing::ElementsAre(1.5, -0.02, -2.25));
+  EXPECT_THAT(duck.rotation, testing::ElementsAre(0.0, 0.0, 0.0, 1.0));
+  EXPECT_DOUBLE_EQ(duck.size_m, 0.6);
+  EXPECT_EQ(duck.kind, v1::FLOATER_KIND_DUCK);
+  EXPECT_FALSE(duck.is_held);
+  const FloaterSample& stone = floaters->at(1);
+  EXPECT_EQ(stone.floater_id, 1'000'000u);
+  EXPECT_THAT(stone.rotation, testing::ElementsAre(0.0, 0.0, -1.0, 0.0));
+  EXPECT_DOUBLE_EQ(stone.size_m, 2.0);
+  EXPECT_EQ(stone.kind, v1::FLOATER_KIND_STONE);
+  EXPECT_TRUE(stone.is_held);
+}
+
+TEST(FloatersCodec, HandlesAnEmptyWaterAndAFullOne) {
+  const auto none = decodeFloaters(floatersFrame({}));
+  ASSERT_TRUE(none) << none.error().message;
+  EXPECT_TRUE(none->empty());
+  std::vector<std::uint32_t> words;
+  for (std::uint32_t k = 0; k < core::kMaxFloaters; ++k)
+    words.insert(words.end(), kTwoFloaters.begin(), kTwoFloaters.begin() + 7);
+  const auto all = decodeFloaters(floatersFrame(words));
+  ASSERT_TRUE(all) << all.error().message;
+  EXPECT_EQ(all->size(), core::kMaxFloaters);
 }
 
 struct DamagedFrame {
@@ -159,6 +215,29 @@ TEST(BodiesCodec, RefusesDamagedFrames) {
           {"flipped", [](v1::LayerFrame& f) { (*f.mutable_payload())[30] ^= 4; }, "crc32c", false},
       },
       [](const v1::LayerFrame& frame) { return decodeBodies(frame); });
+}
+
+TEST(FloatersCodec, RefusesDamagedFrames) {
+  expectRefusals(
+      floatersFrame(kTwoFloaters),
+      {
+          {"layer", [](v1::LayerFrame& f) { f.set_layer(v1::LAYER_BODIES); }, "LAYER_FLOATERS"},
+          {"codec", [](v1::LayerFrame& f) { f.mutable_bodies_fixed28()->set_count(2); }, "codec"},
+          {"not whole", [](v1::LayerFrame& f) { f.set_keyframe(false); }, "keyframe"},
+          {"count 3", [](v1::LayerFrame& f) { f.mutable_floaters_fixed28()->set_count(3); }, "calls for 84"},
+          {"count over", [](v1::LayerFrame& f) { f.mutable_floaters_fixed28()->set_count(1025); }, "1024"},
+          // 28 * count would wrap to the payload's 56 bytes in 32 bits.
+          {"count wraps", [](v1::LayerFrame& f) { f.mutable_floaters_fixed28()->set_count(0x4000'0002u); }, "count"},
+          {"id 0", [](v1::LayerFrame& f) { (*f.mutable_payload())[0] = 0; }, "floater_id"},
+          {"far away", [](v1::LayerFrame& f) { (*f.mutable_payload())[7] = 0x7F; }, "position_m"},
+          {"no rotation", [](v1::LayerFrame& f) { (*f.mutable_payload())[23] = 0; }, "rotation"},
+          {"rotation too long", [](v1::LayerFrame& f) { (*f.mutable_payload())[17] = 0x10; }, "rotation"},
+          {"kind 0", [](v1::LayerFrame& f) { (*f.mutable_payload())[26] = 0; }, "kind"},
+          {"kind 9", [](v1::LayerFrame& f) { (*f.mutable_payload())[26] = 9; }, "kind"},
+          {"short", [](v1::LayerFrame& f) { f.mutable_payload()->resize(55); }, "55 bytes"},
+          {"flipped", [](v1::LayerFrame& f) { (*f.mutable_payload())[30] ^= 4; }, "crc32c", false},
+      },
+      [](const v1::LayerFrame& frame) { return decodeFloaters(frame); });
 }
 
 }  // namespace

@@ -50,12 +50,18 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
     v1::Command command;
     (void)v1::Command::GetReflection()->MutableMessage(&command, actions.field(i));
     const auto& name = actions.field(i)->name();
-    const bool is_play =
-        name.find("boat") != std::string::npos || name == "splash" || name == "breaking_wave" || name == "stroke";
+    const bool is_play = name.find("boat") != std::string::npos || name.find("floater") != std::string::npos ||
+                         name == "splash" || name == "breaking_wave" || name == "stroke";
     EXPECT_EQ(traitsOf(command).role, is_play ? core::Role::kPlayer : core::Role::kOperator) << name;
   }
   EXPECT_TRUE(traitsOf(reset()).is_heavy);
   EXPECT_FALSE(traitsOf(splash()).is_heavy);
+}
+
+TEST(CommandTraits, ToRemoveAllFloatersTakesAnOperator) {
+  EXPECT_EQ(roleFor(test::removeFloater(3)), core::Role::kPlayer);
+  EXPECT_EQ(roleFor(test::removeFloater(0)), core::Role::kOperator);
+  EXPECT_EQ(roleFor(test::holdFloater(0, 0, 0)), core::Role::kPlayer);
 }
 
 TEST_F(CommandQueueTest, LanesTakeTurnsAndKeepTheirOrder) {

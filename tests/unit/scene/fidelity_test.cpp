@@ -62,6 +62,13 @@ TEST(Fidelity, KeepsWhatTheSceneChose) {
   EXPECT_EQ(scene.stream().surface_quantum_m(), 0.01);
 }
 
+TEST(Fidelity, LeavesFloatersAsTheyAre) {
+  const std::string text = "wave {} floaters { capacity_count: 20 floaters { size_m: 0.5 } }";
+  const std::string floaters = parsed(text, v1::FIDELITY_BALANCED).floaters().SerializeAsString();
+  for (const auto level : {v1::FIDELITY_DRAFT, v1::FIDELITY_FINE, v1::FIDELITY_REFERENCE})
+    EXPECT_EQ(parsed(text, level).floaters().SerializeAsString(), floaters) << fidelityName(level);
+}
+
 TEST(Fidelity, FillsABoxWithMoreLayersAndMakesDropsSmaller) {
   const v1::Scene box = parsed("particles { count: 1000 layers_count: 10 box_side_m: 2 }", v1::FIDELITY_REFERENCE);
   EXPECT_EQ(box.particles().layers_count(), 22.0);

@@ -28,6 +28,7 @@ v1::Scene sceneWithEveryPart() {
   scene.add_obstacles()->mutable_breakwater();
   scene.add_beaches();
   scene.mutable_boats()->add_boats();
+  scene.mutable_floaters()->add_floaters();
   scene.mutable_storm();
   scene.mutable_bed()->mutable_grid();
   scene.mutable_bed()->add_shapes()->mutable_cone();
@@ -54,10 +55,12 @@ TEST(SceneDefaults, OfCoreAreThoseOfTheOptions) {
   EXPECT_EQ(filled.seed, core::Scene{}.seed);
 }
 
-TEST(SceneDefaults, LetAsManyBoatsInAsCoreCanHold) {
-  const auto& options =
-      v1::BoatsScene::descriptor()->FindFieldByName("capacity_count")->options().GetExtension(v1::parameter);
-  EXPECT_EQ(options.max(), core::kMaxBoats);
+TEST(SceneDefaults, LetAsManyBoatsAndFloatersInAsCoreCanHold) {
+  const auto most = [](const google::protobuf::Descriptor& part) {
+    return part.FindFieldByName("capacity_count")->options().GetExtension(v1::parameter).max();
+  };
+  EXPECT_EQ(most(*v1::BoatsScene::descriptor()), core::kMaxBoats);
+  EXPECT_EQ(most(*v1::FloatersScene::descriptor()), core::kMaxFloaters);
 }
 
 TEST(SceneDefaults, LeaveAbsentPartsAbsent) {

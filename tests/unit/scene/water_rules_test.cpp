@@ -1,4 +1,4 @@
-// Rules between the water and the obstacles and boats in it, each broken once.
+// Rules between the water and the obstacles, boats and floaters in it, each broken once.
 #include <string>
 #include <vector>
 
@@ -90,6 +90,31 @@ const BrokenRule kBrokenRules[] = {
     {"TooManyBoats",
      "wave {}\nboats { capacity_count: 1 boats {} boats { z_m: 3 } }",
      {"boats.boats[1]: 2 boats", "capacity_count of 1"}},
+    {"FloatersWithoutWave", "particles {}\nfloaters {}", {"floaters: needs a wave", "remove floaters"}},
+    {"FloaterTooBig",
+     "wave { side_m: 8 width_m: 4 }\nfloaters { floaters { size_m: 1.5 } }",
+     {"floaters.floaters[0].size_m: 1.5 m", "quarter", "shorter side of 4 m", "at most 1 m"}},
+    {"FloaterTooHigh",
+     "wave {}\nfloaters { floaters {} floaters { y_m: 21 } }",
+     {"floaters.floaters[1].y_m: 21 m", "too high", "at most 20 m"}},
+    {"FloaterBelowTheBed",
+     "wave { depth_m: 1 }\nfloaters { floaters { y_m: -1.5 } }",
+     {"floaters.floaters[0].y_m: -1.5 m", "below the bed", "at least -1 m"}},
+    {"FloaterOverTheEdge",
+     "wave { side_m: 10 }\nfloaters { floaters { z_m: 4.8 } }",
+     {"floaters.floaters[0].z_m: 4.8 m", "-4.7 to 4.7 m"}},
+    {"FloaterInARock",
+     "wave {}\nobstacles { rock { z_m: 1.2 } }\nfloaters { floaters {} }",
+     {"floaters.floaters[0].x_m: 0 m, z 0 m", "obstacles[0]"}},
+    {"FloaterInABreakwater",
+     "wave {}\nobstacles { breakwater { heading_deg: 30 } }\nfloaters { floaters { x_m: 2 z_m: 1 } }",
+     {"floaters.floaters[0].x_m: 2 m, z 1 m", "obstacles[0]"}},
+    {"FloaterTooFast",
+     "wave {}\nfloaters { floaters { velocity_x_mps: -21 } }",
+     {"floaters.floaters[0].velocity_x_mps: -21 m/s"}},
+    {"TooManyFloaters",
+     "wave {}\nfloaters { capacity_count: 1 floaters {} floaters { z_m: 3 } }",
+     {"floaters.floaters[1]: 2 objects", "capacity_count of 1"}},
     {"FoamOfNothing", "wave {}\nfoam {}", {"foam: needs particles", "surface: true", "remove foam"}},
     {"SurfaceFoamWithoutWave", "particles {}\nfoam { surface: true }", {"foam.surface: needs a wave"}},
     {"FollowsNoBoat",
@@ -119,6 +144,7 @@ TEST(WaterRules, AcceptASceneWithEveryPart) {
       "obstacles { breakwater { x_m: -16 z_m: 10 } }\n"
       "beaches { width_m: 40 shore_depth_m: 2 }\n"
       "boats { capacity_count: 3 boats { x_m: 5 } boats { x_m: 5 z_m: 1 } boats { x_m: 8 length_m: 3 } }\n"
+      "floaters { floaters { x_m: -8 } floaters { x_m: -8 y_m: 20 size_m: 10 kind: FLOATER_KIND_RAFT } }\n"
       "storm { level_ratio: 1 }\n"
       "events { effect { breaking_wave { side: SIDE_DIRECTION direction_deg: -135 shape: WAVE_SHAPE_SWELL } } }\n",
       "pool.textproto");

@@ -20,6 +20,8 @@
 #include <spindrift/wire/client_message.h>
 #include <spindrift/wire/server_message.h>
 
+#include "commands.h"
+
 namespace spindrift::service {
 namespace {
 
@@ -125,7 +127,7 @@ TEST_F(WireReadme, FirstExchangeParsesAsTheServerDoes) {
 }
 
 TEST_F(WireReadme, FirstExchangeHasTheBytesThatTheServersEncoderMakes) {
-  EXPECT_EQ(bytesOf("in  Ack"), *wire::ack(7, 300, 0));
+  EXPECT_EQ(bytesOf("in  Ack"), *wire::ack(test::ackOf(7, 300)));
 
   const auto samples = [](std::int16_t first, std::int16_t second) {
     return static_cast<std::uint16_t>(first) | std::uint32_t{static_cast<std::uint16_t>(second)} << 16;

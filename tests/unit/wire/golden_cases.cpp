@@ -12,6 +12,7 @@
 #include <spindrift/core/crc32c.h>
 #include <spindrift/wire/server_message.h>
 
+#include "commands.h"
 #include "golden_boats.h"
 #include "golden_packed.h"
 
@@ -326,7 +327,7 @@ std::vector<GoldenCase> goldenCases() {
       {"diagnostics.bin", kOk, diagnosticsJson(), diagnosticsBytes()},
       {"greeting.bin", kOk, greetingJson(), greetingBytes()},
       {"ack.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"300\", \"applied_tick\": " + wide(kTick),
-       *ack(300, kTick)},
+       *ack(test::ackOf(300, kTick))},
       {"reject.bin", kOk,
        "\"kind\": \"reject\", \"command_id\": \"301\", \"reason\": \"REJECT_REASON_OUT_OF_RANGE\", "
        "\"field\": \"splash.radius_m\", \"message\": \"too wide\"",
@@ -336,7 +337,7 @@ std::vector<GoldenCase> goldenCases() {
       {"bodies_state_id.bin", kOk, "\"state_id\": " + wide(kTick + 2) + ", " + bodiesJson(numberedBytes()),
        numberedBytes()},
       {"ack_boat.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"302\", \"applied_tick\": \"1234\", \"boat_id\": 7",
-       *ack(302, 1234, 7)},
+       *ack(test::ackOf(302, 1234, 7))},
       {"boat_list.bin", kOk, "\"kind\": \"boat_list\", \"boats\": " + std::string(kGoldenBoatsJson),
        *boatList(goldenBoats())},
       {"room_event.bin", kOk,
@@ -409,6 +410,7 @@ std::vector<GoldenCase> goldenCases() {
   for (GoldenCase& packed : goldenPackedFoam()) cases.push_back(std::move(packed));
   for (GoldenCase& packed : goldenPackedParticles()) cases.push_back(std::move(packed));
   for (GoldenCase& rectangle : goldenRectangles()) cases.push_back(std::move(rectangle));
+  for (GoldenCase& floaters : goldenFloaters()) cases.push_back(std::move(floaters));
   return cases;
 }
 

@@ -34,6 +34,8 @@ bool decodes(const v1::LayerFrame& frame, codec::PackedSurfaceDecoder& packed, c
       return static_cast<bool>(frame.has_foam_predicted() ? packed_foam.decode(frame) : codec::decodeFoam(frame));
     case v1::LAYER_BODIES:
       return static_cast<bool>(codec::decodeBodies(frame));
+    case v1::LAYER_FLOATERS:
+      return static_cast<bool>(codec::decodeFloaters(frame));
     default:
       return static_cast<bool>(frame.has_particles_by_cell() ? codec::decodePackedParticles(frame)
                                                              : codec::decodeParticles(frame));

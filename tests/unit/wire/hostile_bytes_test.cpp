@@ -72,7 +72,7 @@ core::Bytes serialized(const google::protobuf::MessageLite& message) {
 }
 
 std::vector<core::Bytes> validClientMessages() {
-  std::vector<v1::ClientMessage> messages(14);
+  std::vector<v1::ClientMessage> messages(17);
   messages[0].mutable_hello()->mutable_version()->set_major(1);
   messages[0].mutable_hello()->set_client("hostile \xC3\xA9");
   messages[1].mutable_subscribe()->set_layer(v1::LAYER_SURFACE);
@@ -98,6 +98,12 @@ std::vector<core::Bytes> validClientMessages() {
   messages[11].mutable_command()->mutable_remove_boat()->set_boat_id(1);
   messages[12].mutable_command()->mutable_step()->set_tick_count(10);
   messages[13].mutable_command()->mutable_change_scene()->set_name("harbour");
+  v1::Floater& floater = *messages[14].mutable_command()->mutable_spawn_floater()->mutable_floater();
+  floater.set_kind(v1::FLOATER_KIND_BARREL);
+  floater.set_size_m(0.5);
+  messages[15].mutable_command()->mutable_hold_floater()->set_floater_id(1);
+  messages[15].mutable_command()->mutable_hold_floater()->set_x_m(2);
+  messages[16].mutable_command()->mutable_remove_floater()->set_floater_id(1);
   std::vector<core::Bytes> out;
   for (const v1::ClientMessage& message : messages) out.push_back(serialized(message));
   return out;
@@ -105,7 +111,8 @@ std::vector<core::Bytes> validClientMessages() {
 
 v1::Scene fullScene() {
   const auto scene = scene::parseSceneText(
-      "wave {} particles {} coupling {} foam {} boats {} obstacles { rock { x_m: 4 } }", "hostile.textproto");
+      "wave {} particles {} coupling {} foam {} boats {} floaters {} obstacles { rock { x_m: 4 } }",
+      "hostile.textproto");
   EXPECT_TRUE(scene);
   return *scene;
 }
@@ -176,6 +183,9 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValues) {
     } else if (const auto bodies = codec::decodeBodies(frame)) {
       ++decoded_count;
       ASSERT_EQ(bodies->size(), frame.bodies_fixed28().count());
+    } else if (const auto floaters = codec::decodeFloaters(frame)) {
+      ++decoded_count;
+      ASSERT_TRUE(isWhole(*floaters)) << "case " << i;
     } else {
       ++refused_count;
     }
@@ -190,7 +200,8 @@ TEST(HostileBytes, DamagedScenesLoadCheckedOrNotAtAll) {
       "name: 'pool' gravity_mps2: 9.81\nwave { resolution_count: 64 depth_m: 1.5 stencil: STENCIL_NINE_POINT }\n"
       "particles { count: 100 boundary_x: BOUNDARY_WALL }\ncoupling { lattice_count: 3 }\nfoam { lifetime_s: 1e0 }\n"
       "events { at_s: 1 effect { splash { x_m: -2 depth_m: 0.4 } } }\n"
-      "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nstorm { level_ratio: 0.5 }\n";
+      "obstacles { rock { x_m: 5 } }\nboats { boats { z_m: -3 } }\nfloaters { floaters { x_m: 2 } }\nstorm { "
+      "level_ratio: 0.5 }\n";
   int loaded_count = 0;
   for (int i = 0; i < 2'000; ++i) {
     const core::Bytes bytes = mutate(core::Bytes(valid.begin(), valid.end()), random);

@@ -5,6 +5,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/server_message.h>
 
+#include "commands.h"
+
 namespace spindrift::wire {
 namespace {
 
@@ -60,11 +62,12 @@ TEST(ServerMessages, GreetingHasAllThatAClientNeeds) {
 }
 
 TEST(ServerMessages, AnswersCarryIdTickReasonAndField) {
-  const v1::Ack acknowledged = read(ack(7, 1234)).ack();
+  const v1::Ack acknowledged = read(ack(test::ackOf(7, 1234))).ack();
   EXPECT_EQ(acknowledged.command_id(), 7u);
   EXPECT_EQ(acknowledged.applied_tick(), 1234u);
   EXPECT_EQ(acknowledged.boat_id(), 0u);
-  EXPECT_EQ(read(ack(7, 1234, 5)).ack().boat_id(), 5u);
+  EXPECT_EQ(read(ack(test::ackOf(7, 1234, 5))).ack().boat_id(), 5u);
+  EXPECT_EQ(read(ack(test::ackOf(7, 1234, 0, 6))).ack().floater_id(), 6u);
   const v1::Reject rejected =
       read(reject(rejection(v1::REJECT_REASON_OUT_OF_RANGE, "splash.x_m", "too far", 8))).reject();
   EXPECT_EQ(rejected.command_id(), 8u);
@@ -98,7 +101,7 @@ TEST(ServerMessages, StateMessagesHaveTheirValues) {
 
 TEST(ServerMessages, MessageOfDefaultsKeepsItsKind) {
   EXPECT_TRUE(read(roomState(false, 0.0)).has_room_state());
-  EXPECT_TRUE(read(ack(0, 0)).has_ack());
+  EXPECT_TRUE(read(ack({})).has_ack());
   EXPECT_TRUE(read(boatList({})).has_boat_list()) << "the last boat left";
 }
 

@@ -17,7 +17,7 @@ namespace spindrift::codec {
 /// Limits of what a server may send.
 inline constexpr std::uint32_t kSurfaceMaxResolutionCount = 4096;
 inline constexpr std::uint32_t kParticleMaxCount = 4 * 1024 * 1024;
-inline constexpr std::uint32_t kBodyMaxCount = 1024;
+inline constexpr std::uint32_t kBodyMaxCount = 1024;  ///< boats, and floaters
 inline constexpr std::size_t kServerMessageMaxBytes = 64 * 1024 * 1024;
 
 /// Samples of a plane and its extent. The samples are row by row (x fastest); sample (i, k) lies at x = (i + 1/2)
@@ -60,6 +60,16 @@ struct BodySample {
   double speed_mps = 0.0;  ///< along the heading
   double throttle_ratio = 0.0;
   double rudder_ratio = 0.0;
+};
+
+/// Position of a floater. The rotation takes its own axes to those of the water.
+struct FloaterSample {
+  std::uint32_t floater_id = 0;
+  double position_m[3] = {0, 0, 0};   ///< of its middle
+  double rotation[4] = {0, 0, 0, 1};  ///< unit quaternion x, y, z, w
+  double size_m = 0.0;
+  v1::FloaterKind kind = v1::FLOATER_KIND_CRATE;
+  bool is_held = false;
 };
 
 /// Parses one server message. Error kInvalidInput: over kServerMessageMaxBytes, unparseable, or of an unknown kind.
@@ -125,5 +135,8 @@ core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
 /// Decodes a frame of the bodies layer; errors likewise, count at most kBodyMaxCount (0 is valid), ids above 0,
 /// positions within 10^6 m.
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame);
+
+/// Decodes a frame of the floaters layer; errors likewise, and for an unknown kind and a rotation that is none.
+core::Result<std::vector<FloaterSample>> decodeFloaters(const v1::LayerFrame& frame);
 
 }  // namespace spindrift::codec

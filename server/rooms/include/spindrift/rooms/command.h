@@ -25,7 +25,7 @@ struct CommandTraits {
 
 /// Traits of a command whose action is set.
 [[nodiscard]] const CommandTraits& traitsOf(const v1::Command& command);
-/// Returns the role that a command takes: that of its kind, or of its tool.
+/// Returns the role that a command takes: that of its kind, of its tool, or for all floaters at once.
 [[nodiscard]] core::Role roleFor(const v1::Command& command);
 
 }  // namespace spindrift::rooms

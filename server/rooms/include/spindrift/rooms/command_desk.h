@@ -77,7 +77,7 @@ class CommandDesk {
   struct Answer {
     Command command;
     Outcome rejected{};
-    std::uint32_t boat_id = 0;  ///< that the command added; 0: none
+    v1::Ack ack{};  ///< with the ids that the command gave out
   };
   /// Values of one sender for one parameter. Tried from the newest on, until the water accepts one.
   struct Values {
@@ -106,7 +106,7 @@ class CommandDesk {
   [[nodiscard]] Outcome refuseValue(const Command& command) const;
   /// Checks the command against the scene again if the scene changed since the command was admitted.
   [[nodiscard]] Outcome checkAgain(const Command& command) const;
-  void answer(Batch batch, const Outcome& outcome, std::uint32_t boat_id = 0);
+  void answer(Batch batch, const Outcome& outcome, const v1::Ack& ack = {});
 
   RoomData& room_;
   RoomActions& actions_;

@@ -37,16 +37,17 @@ class RoomActions {
   Outcome controlBoat(const Command& command);
   Outcome removeBoat(const Command& command);
   Outcome takeBoat(const Command& command);
+  Outcome spawnFloater(const Command& command);
 
-  /// Returns the boat that the last command added, once; 0: none.
-  [[nodiscard]] std::uint32_t takeNewBoatId() { return std::exchange(new_boat_id_, 0); }
+  /// Returns the ids that the last command gave out, once, in an Ack without anything else.
+  [[nodiscard]] v1::Ack takeNewIds() { return std::exchange(new_ids_, {}); }
 
  private:
   [[nodiscard]] Outcome writeAhead(const Command& command) { return room_.diary.writeAhead(command.message); }
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return room_.water->boatIds().contains(boat_id); }
 
   RoomData& room_;
-  std::uint32_t new_boat_id_ = 0;
+  v1::Ack new_ids_;
 };
 
 }  // namespace spindrift::rooms

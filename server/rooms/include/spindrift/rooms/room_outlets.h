@@ -37,8 +37,8 @@ class RoomOutlets {
   /// The room is about to be destroyed.
   virtual void closed(const Room& room) = 0;
 
-  /// `boat_id`: the new boat for SpawnBoat, otherwise 0.
-  virtual void commandApplied(const Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
+  /// The answer contains the command's number.
+  virtual void commandApplied(const Command& command, const v1::Ack& ack) = 0;
   /// The rejection contains the command's number.
   virtual void commandRejected(const Command& command, const wire::CommandRejection& rejection) = 0;
 

@@ -48,18 +48,26 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
 /// The scene has boats and a wave.
 std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene, const std::string& prefix);
 
+/// Returns the violations by a floater's size and position; `prefix` as for boats. The scene has a wave.
+std::vector<FieldIssue> checkFloater(const core::Floater& floater, const v1::Scene& scene, const std::string& prefix);
+
+/// Returns the violations by a position to which a floater is pulled; paths start with "hold_floater".
+std::vector<FieldIssue> checkHold(double x_m, double z_m, const v1::Scene& scene);
+
 /// Fills in the fields that were left out: with their defaults, or where the scene does not permit those, with the
-/// nearest values that it permits. Without a position, a boat is put at the free position nearest to the middle of the
-/// water. `scene` has its defaults filled in; with a boat it has boats and a wave.
+/// nearest values that it permits. Without a position, a boat or a floater is put at the free position nearest to the
+/// middle of the water; without a height, a floater lies on the rest level. `scene` has its defaults filled in; with a
+/// boat it has boats and a wave, with a floater a wave.
 void completeEffect(v1::Splash& splash, const v1::Scene& scene);
 void completeEffect(v1::BreakingWave& wave, const v1::Scene& scene);
 void completeBoat(v1::Boat& boat, const v1::Scene& scene);
+void completeFloater(v1::Floater& floater, const v1::Scene& scene);
 
 /// Fills in what was left out of a stroke: a point in the middle, and a size that suits the water.
 void completeStroke(v1::Stroke& stroke, const v1::Scene& scene);
 
-/// Checks rules between the water and sides, sponge, obstacles, beaches, boats and wave-makers. They hold in a running
-/// scene too, so parameter changes are checked against them.
+/// Checks rules between the water and sides, sponge, obstacles, beaches, boats, floaters and wave-makers. They hold in
+/// a running scene too, so parameter changes are checked against them.
 std::vector<FieldIssue> checkWater(const v1::Scene& scene);
 
 /// Checks rules on texts and on which parts are present, independent of numbers. Defaults are filled in.

@@ -25,7 +25,7 @@ class RemoteAudience {
                             const core::SharedBytes& message) = 0;
   virtual void closed(const rooms::Room& room) = 0;
   /// Returns whether the command came from another process; it gets the answer.
-  virtual bool commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) = 0;
+  virtual bool commandApplied(const rooms::Command& command, const v1::Ack& ack) = 0;
   virtual bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) = 0;
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                        const core::FrameLevels& levels) = 0;

@@ -58,7 +58,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
-  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id) override;
+  void commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
 
   // FrameOutlet interface

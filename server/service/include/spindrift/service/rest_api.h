@@ -44,7 +44,7 @@ class RestApi {
 
   /// Reports the outcome of a request's command, by its request_id. A rejection is counted and entered into the audit
   /// log.
-  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
+  void commandApplied(const rooms::Command& command, const v1::Ack& ack);
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
 
  private:

@@ -53,7 +53,7 @@ class Sessions {
   void dismiss(const std::string& room, net::CloseCode code = net::CloseCode::kRoomClosed,
                const std::string& why = "the room was closed");
   /// Sends the answer to the session that sent the command; counts and the audit log are the caller's.
-  void commandApplied(const rooms::Command& command, std::uint64_t tick, std::uint32_t boat_id);
+  void commandApplied(const rooms::Command& command, const v1::Ack& ack);
   /// Sends the rejection, counts it, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Closes a session in whose place another connection continues.

@@ -96,8 +96,8 @@ class RoomWater {
   [[nodiscard]] std::uint64_t tickOf(std::uint64_t sim_tick) const { return sim_tick + tick_shift_; }
   /// Number of the present state; it grows with every tick and every change by apply() and replaceWater(). Never 0.
   [[nodiscard]] std::uint64_t stateId() const { return state_id_; }
-  /// Boat id of the last applied SpawnBoat.
-  [[nodiscard]] std::uint32_t spawnedBoatId() const { return spawned_boat_id_; }
+  /// Id that the last applied SpawnBoat or SpawnFloater gave out.
+  [[nodiscard]] std::uint32_t spawnedId() const { return spawned_id_; }
   /// The boats on the water now.
   [[nodiscard]] v1::BoatList boats() const;
   [[nodiscard]] std::set<std::uint32_t> boatIds() const;
@@ -107,7 +107,8 @@ class RoomWater {
   /// Returns the handler of a command; null if it does not change the water.
   static Handler handlerOf(v1::Command::ActionCase action);
   Outcome setParameter(const v1::SetParameter& change);
-  Outcome spawnBoat(const v1::SpawnBoat& spawn);
+  /// Keeps the id of what was added, or rejects the command of that name.
+  Outcome spawned(const core::Result<std::uint32_t>& id, const char* action);
   /// Exchanges the waters between two ticks.
   void exchange(std::unique_ptr<Water>& water);
 
@@ -120,7 +121,7 @@ class RoomWater {
   std::uint64_t tick_shift_ = 0;  ///< room tick minus simulation tick, modulo 2^64
   std::uint64_t state_id_ = 1;
   std::uint64_t scene_version_ = 1;
-  std::uint32_t spawned_boat_id_ = 0;
+  std::uint32_t spawned_id_ = 0;
 };
 
 }  // namespace spindrift::water

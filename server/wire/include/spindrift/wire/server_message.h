@@ -15,8 +15,7 @@ namespace spindrift::wire {
 /// Completes the greeting with the protocol version, the scene as clients get it, and the descriptions of its
 /// parameters. `scene` has its defaults filled in.
 core::SharedBytes greeting(v1::Greeting greeting, const v1::Scene& scene);
-/// Makes an Ack. `boat_id`: the new boat, for SpawnBoat.
-core::SharedBytes ack(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0);
+core::SharedBytes ack(const v1::Ack& ack);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 core::SharedBytes roomState(bool paused, double speed);
