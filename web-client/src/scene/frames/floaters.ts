@@ -7,6 +7,9 @@ import { clamp } from "../maths/interpolate";
 export const kFloaterKinds = ["crate", "ball", "barrel", "plank", "duck", "buoy", "raft", "stone"] as const;
 export type FloaterKindName = (typeof kFloaterKinds)[number];
 
+/** Radius of the sphere round the whole object, in sizes. */
+export const kRadiusSizes: Record<FloaterKindName, number> = { crate: 0.87, ball: 0.5, barrel: 0.6, plank: 0.52, duck: 0.52, buoy: 0.58, raft: 0.61, stone: 0.5 };
+
 export interface FloaterPose {
   floaterId: number;
   kind: FloaterKindName;
