@@ -121,7 +121,7 @@ function addLying(builder: MeshBuilder, turns: readonly Turn[], sidesCount: numb
       const angle = (2 * Math.PI * (i % sidesCount)) / sidesCount;
       return [yM, y + radiusM * Math.cos(angle), z + radiusM * Math.sin(angle)];
     });
-  for (let n = 0; n + 1 < turns.length; ++n) builder.ring([[...row(turns[n]!)].reverse(), [...row(turns[n + 1]!)].reverse()], turns[n]!.paint);
+  for (let n = 0; n + 1 < turns.length; ++n) builder.ring([row(turns[n]!), row(turns[n + 1]!)], turns[n]!.paint);
 }
 
 /** Bulging staves, four hoops, ends set in. */
@@ -171,7 +171,7 @@ function makeDuck({ sidesCount, rowsCount }: Detail): BufferGeometry {
   }, () => kOrange);
   for (const side of [-1, 1]) addLobe(builder, 4, 6, onSphere([0.315, 0.31, side * 0.125], [0.035, 0.04, 0.035]), () => kEye);
   // Wings.
-  for (const side of [-1, 1]) addLobe(builder, 4, 8, onSphere([-0.1, -0.06, side * 0.27], [0.21, 0.12, 0.07]), () => own(0.88));
+  for (const side of [-1, 1]) addLobe(builder, 4, 8, onSphere([-0.12, -0.05, side * 0.245], [0.2, 0.1, 0.075]), () => own(0.88));
   return smoothed(builder.build());
 }
 
@@ -214,8 +214,8 @@ function makeStone({ sidesCount, rowsCount }: Detail): BufferGeometry {
   const sphere = onSphere([0, 0, 0], [0.5, 0.5, 0.5]);
   addLobe(builder, rowsCount, sidesCount, (up, around) => {
     const [x, y, z] = sphere(up, around);
-    const rough = 1 + 0.09 * Math.sin(5 * x + 1.3) * Math.cos(6 * z - 0.4) + 0.07 * Math.sin(9 * y + 4 * x) - 0.06;
-    return [x * rough, 0.86 * y * rough, 0.95 * z * rough];
+    const rough = 1 + 0.07 * Math.sin(5 * x + 1.3) * Math.cos(6 * z - 0.4) + 0.05 * Math.sin(9 * y + 4 * x);
+    return [x * rough, 0.88 * y * rough, 0.95 * z * rough];
   }, (row, column) => own(0.9 + 0.2 * hash(row, column, 9), 0.9));
   return smoothed(builder.build());
 }
