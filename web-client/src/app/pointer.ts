@@ -195,10 +195,15 @@ export class PointerHands {
   private heldStill(pointerId: number): void {
     const hand = this.hands.get(pointerId);
     if (!hand?.grip || hand.tool.name !== "float") return this.begin(pointerId);
-    this.taps.cancelled(pointerId);
-    this.floaters.remove(hand.grip.floaterId);
-    this.lift(pointerId);
-    this.app.tools.wasUsed();
+    const { floaterId } = hand.grip;
+    // Moves that a busy page has not heard of come before its next picture.
+    requestAnimationFrame(() => {
+      if (this.hands.get(pointerId) !== hand || hand.draws) return;
+      this.taps.cancelled(pointerId);
+      this.floaters.remove(floaterId);
+      this.lift(pointerId);
+      this.app.tools.wasUsed();
+    });
   }
 
   /** True for a second finger beside one that holds an object, or that has been on one for a while. */
