@@ -79,7 +79,7 @@ export function flickOf(from: WaterPlace, to: WaterPlace, heldS: number, levelM:
   return { from, yM: levelM + shareOf(water, kRelease), velocityMps: [along(to.xM, from.xM), kFlickRise * speedMps, along(to.zM, from.zM)] };
 }
 
-/** A gentle throw from the camera's side that comes down at a place. */
+/** A gentle throw from the camera's side that comes down where one wants it. */
 export function tossTo(target: WaterPlace, camera: WaterPlace, levelM: number, water: Water): Throw {
   const awayM = Math.hypot(camera.xM - target.xM, camera.zM - target.zM) || 1;
   const backM = Math.min(shareOf(water, kToss), awayM);
