@@ -44,12 +44,12 @@ describe("the connection", () => {
     expect(rig.socket.sentOf("subscribe").map(({ value }) => value.layer)).toEqual([Layer.PARTICLES]);
   });
 
-  it("subscribes to foam and bodies at the frame rate where the room offers them", () => {
+  it("subscribes to foam, bodies and floaters at the frame rate where the room offers them", () => {
     const rig = new Rig();
     rig.socket.open();
-    rig.socket.deliver(greeting({ layers: [Layer.FOAM, Layer.BODIES, Layer.SURFACE] }));
+    rig.socket.deliver(greeting({ layers: [Layer.FOAM, Layer.FLOATERS, Layer.BODIES, Layer.SURFACE] }));
     expect(rig.socket.sentOf("subscribe").map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
-      [Layer.SURFACE, 30], [Layer.FOAM, 30], [Layer.BODIES, 30],
+      [Layer.SURFACE, 30], [Layer.FOAM, 30], [Layer.BODIES, 30], [Layer.FLOATERS, 30],
     ]);
   });
 

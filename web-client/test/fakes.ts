@@ -142,3 +142,23 @@ export class Rig {
     return this.eventsOf("stats").at(-1)!.stats;
   }
 }
+
+/** A clock and timers that the test moves. */
+export class World {
+  ms = 0;
+  private timers: { atMs: number; callback: () => void }[] = [];
+  nowMs = (): number => this.ms;
+  setTimer = (callback: () => void, ms: number): number => this.timers.push({ atMs: this.ms + ms, callback });
+  clearTimer = (): void => {};
+  pass(ms: number): void {
+    const endMs = this.ms + ms;
+    for (;;) {
+      const next = this.timers.filter(({ atMs }) => atMs <= endMs).sort((a, b) => a.atMs - b.atMs)[0];
+      if (!next) break;
+      this.timers.splice(this.timers.indexOf(next), 1);
+      this.ms = next.atMs;
+      next.callback();
+    }
+    this.ms = endMs;
+  }
+}

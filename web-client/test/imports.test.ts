@@ -8,7 +8,7 @@ const kSource = join(import.meta.dirname, "..", "src");
 /** Folders from the lowest to the highest; each may import from itself and from those before it. */
 const kFolders = [
   "gen", "codec", "net",
-  "scene/maths", "scene/drawing", "scene/shaders", "scene/meshes", "scene/frames", "scene/light", "scene/landscape", "scene/camera", "scene/sea", "scene/boats", "scene/shore",
+  "scene/maths", "scene/drawing", "scene/shaders", "scene/meshes", "scene/frames", "scene/light", "scene/landscape", "scene/camera", "scene/sea", "scene/boats", "scene/floaters", "scene/shore",
   "scene/shadows", "scene/solids", "scene/water", "scene/rain", "scene/whitewater", "scene/fluid", "scene/looks", "scene",
   "ui", "app", ".",
 ];

@@ -6,26 +6,7 @@ import { parse } from "../src/codec/parse";
 import { ServerMessageSchema, StrokeTool } from "../src/gen/spindrift/v1/wire_pb";
 import { LocalRipple } from "../src/scene/water/local_ripple";
 import { StrokeSender, type StrokeMessage } from "../src/ui/stroke_sender";
-
-/** A clock and timers that the test moves. */
-class World {
-  ms = 0;
-  private timers: { atMs: number; callback: () => void }[] = [];
-  nowMs = (): number => this.ms;
-  setTimer = (callback: () => void, ms: number): number => this.timers.push({ atMs: this.ms + ms, callback });
-  clearTimer = (): void => {};
-  pass(ms: number): void {
-    const endMs = this.ms + ms;
-    for (;;) {
-      const next = this.timers.filter(({ atMs }) => atMs <= endMs).sort((a, b) => a.atMs - b.atMs)[0];
-      if (!next) break;
-      this.timers.splice(this.timers.indexOf(next), 1);
-      this.ms = next.atMs;
-      next.callback();
-    }
-    this.ms = endMs;
-  }
-}
+import { World } from "./fakes";
 
 const kSize = { tool: StrokeTool.FINGER, radiusM: 0.5, depthM: 0.1 };
 const at = (timeMs: number, xM: number) => ({ timeMs, xM, zM: 0, pressureRatio: 1 });

@@ -44,6 +44,7 @@ const kRooms: Record<string, Partial<GreetingInfo>> = {
     setting: "openSea",
     hasParticles: true,
     hasBoats: true,
+    hasFloaters: true,
     obstacles: [{ shape: "rock", xM: 2, zM: 2, radiusM: 1, heightM: 1 }],
     wind: kWind,
   },

@@ -98,6 +98,43 @@ export function bodiesFrame(payload: Uint8Array, change: Partial<FrameInit> = {}
   } as ServerBody;
 }
 
+export interface FloaterRecord {
+  floaterId: number;
+  xMm: number;
+  yMm: number;
+  zMm: number;
+  turn: number[];
+  sizeCm: number;
+  kind: number;
+  flags: number;
+}
+
+/** Writes the 28 bytes per object of the wire. */
+export function floatersPayload(records: Partial<FloaterRecord>[]): Uint8Array<ArrayBuffer> {
+  const view = new DataView(new ArrayBuffer(28 * records.length));
+  records.forEach(({ floaterId = 1, xMm = 0, yMm = 0, zMm = 0, turn = [0, 0, 0, 32767], sizeCm = 60, kind = 1, flags = 0 }, at) => {
+    const from = 28 * at;
+    view.setUint32(from, floaterId, true);
+    [xMm, yMm, zMm].forEach((mm, axis) => view.setInt32(from + 4 + 4 * axis, mm, true));
+    turn.forEach((value, i) => view.setInt16(from + 16 + 2 * i, value, true));
+    view.setUint16(from + 24, sizeCm, true);
+    view.setUint8(from + 26, kind);
+    view.setUint8(from + 27, flags);
+  });
+  return new Uint8Array(view.buffer);
+}
+
+export function floatersFrame(payload: Uint8Array, change: Partial<FrameInit> = {}, count = payload.length / 28): ServerBody {
+  return {
+    case: "frame",
+    value: {
+      layer: Layer.FLOATERS, tick: 9n, timeS: 0.5, keyframe: true, crc32c: crc32c(payload), payload,
+      codec: { case: "floatersFixed28", value: { count } },
+      ...change,
+    },
+  } as ServerBody;
+}
+
 export function greeting(change: Record<string, unknown> = {}): ServerBody {
   return {
     case: "greeting",

@@ -15,6 +15,8 @@ import { byId, setText } from "../ui/dom";
 import { DrawingRow } from "../ui/drawing_row";
 import { EffectsPanel } from "../ui/effects_panel";
 import { FingerTags } from "../ui/finger_tags";
+import { FloaterRows } from "../ui/floater_rows";
+import { kHoldLabel } from "../ui/hold_sender";
 import { Hud } from "../ui/hud";
 import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
@@ -35,6 +37,9 @@ import { nowS } from "./picture_clock";
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
 
+/** Labels of commands that are sent many times per second, whose answers are not reported unless they are refusals. */
+const kQuietLabels = [kHelmLabel, kStrokeLabel, kHoldLabel];
+
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {
   ack(commandId: number, boatId: number): void;
@@ -47,7 +52,8 @@ export class App {
   readonly display: Display;
   readonly effects = new EffectsPanel(byId("effects"));
   readonly drawing = new DrawingRow();
-  readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning());
+  readonly floaterRows: FloaterRows = new FloaterRows(byId("kinds"), byId("object-rows"), this.commands.send);
+  readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning(), (name) => this.floaterRows.show(name === "float"));
   readonly room = new RoomPanel(this.commands.send);
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
@@ -68,7 +74,7 @@ export class App {
   private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
-  private readonly answerListeners: AnswerListener[];
+  readonly answerListeners: AnswerListener[];
   /** The water is drawn over a level bed until the ground is there. */
   private readonly ground = new GroundRequests(
     (room) => requestGround(room, this.identity.token),
@@ -82,11 +88,15 @@ export class App {
   private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
   entered: GreetingInfo | undefined;
-  /** Called before a room is entered; set by input.ts, as the next two. */
+  /** Called before a room is entered; set by input.ts, as the next four. */
   entering: () => void = () => {};
   poll: (atS: number) => void = () => {};
   /** What the tool at the pointer acts on. */
   outline: () => Outline | undefined = () => undefined;
+  /** Turns what is held, positive from +x toward +z; false if nothing is. */
+  turnHeld: (angleRad: number) => boolean = () => false;
+  /** Takes the object out of the water that is held or pointed at. */
+  removePointed: () => void = () => {};
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
@@ -170,8 +180,7 @@ export class App {
         this.hud.acked(commandId, appliedTick);
         for (const listener of this.answerListeners) listener.ack(commandId, boatId);
         const label = this.commands.takeLabel(commandId);
-        // The helm sends up to 20 commands per second, each stroke 30.
-        if (label !== kHelmLabel && label !== kStrokeLabel) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
+        if (!kQuietLabels.includes(label)) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
       },
       reject: ({ reason, message, ...reject }) => {
         const commandId = Number(reject.commandId);
@@ -213,6 +222,7 @@ export class App {
 
   private enter(greeting: GreetingInfo): void {
     if (this.entered?.room !== greeting.room || this.entered.sceneName !== greeting.sceneName) this.entering();
+    this.entered = greeting;
     this.display.enter(greeting);
     this.effects.enter(greeting);
     this.parameters.enter(greeting.parameters);
@@ -234,13 +244,17 @@ export class App {
     this.viewButtons.refresh();
     // The card's height has changed with the text.
     this.display.resize();
-    this.entered = greeting;
     if (greeting.hasBed) this.ground.ask(greeting.room);
   }
 
   /** The server takes effects from this visitor now. */
   get mayDraw(): boolean {
     return this.state.name === "live" && this.role !== "viewer" && this.effects.available;
+  }
+
+  /** There are objects that this visitor may move. */
+  get hasFloaters(): boolean {
+    return this.mayDraw && this.entered?.hasFloaters === true;
   }
 
   /** Shows the quality that is drawn, and asks for as many frames as it needs. */
@@ -264,7 +278,8 @@ export class App {
     const isOperator = this.role === "operator";
     this.effects.setEnabled(this.state.name === "live" && isPlayer);
     this.drawing.setAllowed(this.mayDraw);
-    this.tools.setAllowed(this.mayDraw, isOperator);
+    this.tools.setAllowed(this.mayDraw, isOperator, this.hasFloaters);
+    this.floaterRows.setAllowed(this.hasFloaters, isOperator);
     this.boats.setAllowed(isPlayer);
     this.room.setAllowed(isOperator);
     byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;

@@ -1,15 +1,13 @@
 // The look of the water: the list, the colour bar and the probe, which reads the water under the pointer, under the last touch, or in the
 // middle of the picture while the canvas has the keyboard.
-import { Vector3 } from "three";
-
 import type { GreetingInfo } from "../codec/greeting";
 import { chooseLook, looksOf, needsExactParticles, type LookName } from "../scene/looks/looks";
 import { LookKey } from "../ui/look_key";
 import { LookRow } from "../ui/look_row";
 import { ProbeLabel, type ProbePlace } from "../ui/probe_label";
-import { toDeviceCoordinates } from "../ui/tap";
 import { setAddressParameter } from "./address";
 import type { Display } from "./display";
+import { rayAt } from "./pointer_ray";
 
 /** The probe reads this often, and less often where reading takes long: at most this share of the time. */
 const kProbeEveryS = 0.1;
@@ -84,10 +82,7 @@ export class LookControls {
   }
 
   private read({ xPx, yPx }: ProbePlace): ReturnType<Display["scene"]["probe"]> {
-    const { canvas, scene } = this.display;
-    const at = toDeviceCoordinates(xPx, yPx, canvas.getBoundingClientRect());
-    const direction = new Vector3(at.x, at.y, 0.5).unproject(scene.camera).sub(scene.camera.position).normalize();
-    return scene.probe({ originM: scene.camera.position.toArray(), direction: direction.toArray() });
+    return this.display.scene.probe(rayAt(this.display, xPx, yPx));
   }
 
   private middle(): ProbePlace | undefined {

@@ -1,15 +1,18 @@
 // Pointers on the canvas: a tap, a drag or a long press on the water uses the tool, each finger for itself; everything else is left to the
-// camera: the right button, two fingers that come down together, a drag that begins off the water.
-import { Vector3 } from "three";
-
+// camera: the right button, two fingers that come down together, a drag that begins off the water. A drag that begins on an object holds it
+// (floater_hands.ts).
 import { kClickRadiusPx } from "../scene/camera/camera_hand";
 import { pickWater } from "../scene/frames/pick";
 import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
-import { kTapMs, TapDetector, toDeviceCoordinates, type PointerSample } from "../ui/tap";
+import { floaterLabel } from "../ui/floater_rows";
+import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
+import { kTapMs, TapDetector, type PointerSample } from "../ui/tap";
 import type { Outline } from "../ui/tool_preview";
 import { heldRatio, kTapStrokeS, paddleWave, paddleWidthM, strokeSize, type StrokeSize, type Tool, type ToolScale, type WaterPlace } from "../ui/tools";
 import type { App } from "./app";
+import { FloaterHands, type Grip } from "./floater_hands";
 import { nowS } from "./picture_clock";
+import { rayAt } from "./pointer_ray";
 
 /** Two fingers that come down within this time are a gesture of the camera. */
 const kTogetherMs = 150;
@@ -18,6 +21,10 @@ const kOutlineColor = "#ffffff";
 /** A pointer that began on the water. */
 interface Hand {
   down: PointerEvent;
+  /** Its newest event. */
+  last: PointerEvent;
+  /** The object under it, which a drag holds. */
+  grip: Grip | undefined;
   /** As they were when it came down. */
   tool: Tool;
   scale: ToolScale;
@@ -28,7 +35,7 @@ interface Hand {
   /** What it has drawn before it counts as a stroke. */
   points: FingerPoint[];
   draws: boolean;
-  /** Begins the stroke of a finger that is held still. */
+  /** Begins the stroke, or the hold, of a finger that is held still. */
   timer: number;
 }
 
@@ -36,6 +43,7 @@ export class PointerHands {
   private readonly taps = new TapDetector();
   private readonly hands = new Map<number, Hand>();
   private readonly sender: StrokeSender;
+  private readonly floaters: FloaterHands;
   private isHandingOver = false;
   /** Time at which a touch went to the camera. */
   private cameraTouchMs = -Infinity;
@@ -52,6 +60,8 @@ export class PointerHands {
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     });
+    this.floaters = new FloaterHands(app, (pointerId) => this.lift(pointerId));
+    app.removePointed = () => this.removePointed();
     const { canvas } = app.display;
     // Before the camera, which listens to the same canvas and, while it turns, to the document.
     canvas.addEventListener("pointerdown", (event) => this.pressed(event), { capture: true });
@@ -61,6 +71,7 @@ export class PointerHands {
     canvas.addEventListener("pointerleave", () => (this.hover = undefined));
     canvas.addEventListener("pointercancel", (event) => {
       this.taps.cancelled(event.pointerId);
+      if (this.floaters.isTwisting(event.pointerId)) this.floaters.endTwist();
       this.letGo(event);
     });
     app.outline = () => this.outline();
@@ -82,9 +93,12 @@ export class PointerHands {
     // Keys and gamepads have no other use.
     const isFirst = app.drawing.drawsFirst || !event.isTrusted;
     if (!app.mayDraw || event.button !== (isFirst ? 0 : 2) || (isTouch && !isFirst)) return;
+    if (isTouch && this.twist(event)) return;
     const partner = isTouch ? [...hands.values()].find(({ down, draws }) => !draws && event.timeStamp - down.timeStamp < kTogetherMs && down.pointerType === "touch") : undefined;
     if (partner) return this.handOver(partner.down, event);
-    const place = this.placeUnder(event);
+    const { tool } = app.tools;
+    const grip = this.floaters.under(event, tool.name);
+    const place = this.placeUnder(event) ?? grip?.at;
     if (!place || (isTouch && event.timeStamp - this.cameraTouchMs < kTogetherMs)) {
       if (isTouch) this.cameraTouchMs = event.timeStamp;
       return;
@@ -92,21 +106,22 @@ export class PointerHands {
     app.display.views.takesPointers = false;
     // Those of keys and gamepads exist for this page only.
     if (event.isTrusted) app.display.canvas.setPointerCapture(event.pointerId);
-    const { tool } = app.tools;
     const scale = { ...app.tools.scale };
-    const size = strokeSize(tool, app.entered!, scale);
+    const size = grip ? undefined : strokeSize(tool, app.entered!, scale);
     if (size && tool.name === "finger") app.display.scene.ripple.press(event.pointerId, place.xM, place.zM, size, nowS());
-    const timer = window.setTimeout(() => this.begin(event.pointerId), kTapMs);
-    hands.set(event.pointerId, { down: event, tool, scale, size, from: place, at: place, points: [pointOf(event, place, scale)], draws: false, timer });
+    const timer = window.setTimeout(() => this.heldStill(event.pointerId), kTapMs);
+    hands.set(event.pointerId, { down: event, last: event, grip, tool, scale, size, from: place, at: place, points: [pointOf(event, place, scale)], draws: false, timer });
   }
 
   private moved(event: PointerEvent): void {
     const hand = this.hands.get(event.pointerId);
+    this.floaters.moved(event.pointerId, event);
     if (!hand) {
       if (event.pointerType === "mouse") this.hover = event.buttons === 0 ? event : undefined;
       return;
     }
     event.stopPropagation();
+    hand.last = event;
     const coalesced = event.getCoalescedEvents();
     for (const each of coalesced.length > 0 ? coalesced : [event]) {
       const place = this.placeUnder(each);
@@ -122,6 +137,7 @@ export class PointerHands {
   }
 
   private released(event: PointerEvent): void {
+    if (this.floaters.isTwisting(event.pointerId)) this.floaters.endTwist();
     const isTap = this.taps.released(sampleOf(event));
     const hand = this.hands.get(event.pointerId);
     this.letGo(event);
@@ -132,9 +148,10 @@ export class PointerHands {
   }
 
   /** A press with a tool has ended. */
-  private use({ tool, scale, from, at }: Hand, isTap: boolean, heldMs: number): void {
+  private use(hand: Hand, isTap: boolean, heldMs: number): void {
     const { app } = this;
-    if (!app.mayDraw) return;
+    const { tool, scale, from, at } = hand;
+    if (!app.mayDraw || (hand.grip && !isTap)) return;
     if (tool.name === "splash") {
       this.splash(at, { ...scale, sizeRatio: scale.sizeRatio * heldRatio((heldMs - kTapMs / 2) / 1000) });
     } else if (tool.name === "paddle") {
@@ -142,6 +159,10 @@ export class PointerHands {
       if (!wave) return app.tools.explain();
       app.commands.send(wave, "Paddle");
       app.tools.wasUsed();
+    } else if (tool.name === "throw") {
+      this.launch(this.throwOf(hand, isTap), scale);
+    } else if (tool.name === "float") {
+      this.drop(at, scale);
     } else if (isTap) {
       this.tap(at, tool, scale);
     }
@@ -153,6 +174,8 @@ export class PointerHands {
     const forS = kTapStrokeS[tool.name];
     const size = strokeSize(tool, this.app.entered!, scale);
     if (tool.name === "paddle") this.app.tools.explain();
+    else if (tool.name === "float") this.drop(place, scale);
+    else if (tool.name === "throw") this.launch(this.tossTo(place), scale);
     else if (forS === undefined || !size) this.splash(place, tool.name === "splash" ? scale : undefined);
     else this.sender.stay(place, size, forS, scale.strengthRatio);
   }
@@ -164,17 +187,83 @@ export class PointerHands {
   private letGo(event: PointerEvent): void {
     if (!this.hands.has(event.pointerId)) return;
     event.stopPropagation();
+    this.floaters.end(event.pointerId, event);
     this.lift(event.pointerId);
+  }
+
+  /** A press has not moved. */
+  private heldStill(pointerId: number): void {
+    const hand = this.hands.get(pointerId);
+    if (!hand?.grip || hand.tool.name !== "float") return this.begin(pointerId);
+    const { floaterId } = hand.grip;
+    // Moves that a busy page has not heard of come before its next picture.
+    requestAnimationFrame(() => {
+      if (this.hands.get(pointerId) !== hand || hand.draws) return;
+      this.taps.cancelled(pointerId);
+      this.floaters.remove(floaterId);
+      this.lift(pointerId);
+      this.app.tools.wasUsed();
+    });
+  }
+
+  /** True for a second finger beside one that holds an object, or that has been on one for a while. */
+  private twist(event: PointerEvent): boolean {
+    const owner = [...this.hands].find(([, { grip, draws, down }]) => grip && down.pointerType === "touch" && (draws || event.timeStamp - down.timeStamp >= kTogetherMs));
+    if (!owner) return false;
+    const [ownerId, { last }] = owner;
+    this.begin(ownerId);
+    this.app.display.views.takesPointers = false;
+    this.floaters.beginTwist(ownerId, last, event.pointerId, event);
+    return true;
+  }
+
+  private removePointed(): void {
+    const { app, hover, floaters } = this;
+    if (floaters.removeHeld()) return;
+    const middle = { clientX: window.innerWidth / 2, clientY: window.innerHeight / 2, pointerType: "mouse" };
+    const pointer = hover ?? (app.display.canvas.matches(":focus-visible") ? middle : undefined);
+    const grip = pointer && floaters.under(pointer, "float");
+    if (grip) floaters.remove(grip.floaterId);
+  }
+
+  private drop(place: WaterPlace, scale: ToolScale): void {
+    const { app } = this;
+    const { kind, densityRatio } = app.floaterRows;
+    const sizeM = floaterSizeM("float", app.entered!, scale)!;
+    const headingDeg = Math.round(360 * Math.random() - 180);
+    app.commands.send(dropOf(kind, place, app.display.scene.heightAtM(place.xM, place.zM), sizeM, densityRatio, headingDeg), floaterLabel(kind));
+    app.tools.wasUsed();
+  }
+
+  private launch(thrown: Throw | undefined, scale: ToolScale): void {
+    const { app } = this;
+    if (!thrown) return app.tools.explain();
+    app.commands.send(throwOf(thrown, floaterSizeM("throw", app.entered!, scale)!), "Stone");
+    app.tools.wasUsed();
+  }
+
+  private tossTo(target: WaterPlace): Throw {
+    const { entered, display: { scene } } = this.app;
+    const { x: xM, z: zM } = scene.camera.position;
+    return tossTo(target, { xM, zM }, scene.heightAtM(target.xM, target.zM), entered!);
+  }
+
+  /** The throw of a hand that lets go now. */
+  private throwOf({ from, at, down, last, scale }: Hand, isTap: boolean): Throw | undefined {
+    const { entered, display: { scene } } = this.app;
+    const isFlick = !isTap && Math.hypot(last.clientX - down.clientX, last.clientY - down.clientY) > kClickRadiusPx;
+    return isFlick ? flickOf(from, at, (performance.now() - down.timeStamp) / 1000, scene.heightAtM(from.xM, from.zM), entered!, scale) : this.tossTo(at);
   }
 
   /** The pointer draws from now on, if its tool draws. */
   private begin(pointerId: number): void {
     const hand = this.hands.get(pointerId);
-    if (!hand || hand.draws || !hand.size) return;
+    if (!hand || hand.draws || (!hand.size && !hand.grip)) return;
     hand.draws = true;
     window.clearTimeout(hand.timer);
     this.taps.cancelled(pointerId);
-    this.sender.begin(pointerId, hand.points.splice(0), hand.size);
+    if (hand.grip) this.floaters.hold(pointerId, hand.grip, () => hand.last);
+    if (hand.size) this.sender.begin(pointerId, hand.points.splice(0), hand.size);
     this.app.tools.wasUsed();
   }
 
@@ -184,6 +273,7 @@ export class PointerHands {
     window.clearTimeout(hand.timer);
     this.hands.delete(pointerId);
     this.sender.end(pointerId);
+    this.floaters.end(pointerId);
     this.app.display.scene.ripple.lift(pointerId, nowS());
   }
 
@@ -200,26 +290,30 @@ export class PointerHands {
   private outline(): Outline | undefined {
     const { app } = this;
     const [hand] = this.hands.values();
-    const at = hand?.at ?? (this.hover && this.placeUnder(this.hover));
     const { tool, scale } = hand ?? app.tools;
+    const grip = hand?.grip ?? (!hand && this.hover ? this.floaters.under(this.hover, tool.name) : undefined);
+    if (grip) return this.floaters.outlineOf(grip);
+    const at = hand?.at ?? (this.hover && this.placeUnder(this.hover));
     if (!at || !app.entered || tool.name === "finger") return undefined;
     if (tool.name === "paddle") {
       const widthM = paddleWidthM(app.entered.waterExtents.sideM, scale.sizeRatio);
       return hand && { kind: "paddle", from: hand.from, to: at, widthM, color: kOutlineColor };
     }
+    const sizeM = floaterSizeM(tool.name, app.entered, scale);
+    if (sizeM !== undefined && tool.name === "throw") {
+      const thrown = hand ? this.throwOf(hand, false) : this.tossTo(at);
+      return thrown && { kind: "arc", points: arcOf(thrown, app.display.scene.heightAtM(at.xM, at.zM), app.entered), radiusM: sizeM, color: kOutlineColor };
+    }
+    if (sizeM !== undefined) return { kind: "disc", at, radiusM: sizeM / 2, color: kOutlineColor };
     const heldS = hand ? (performance.now() - hand.down.timeStamp - kTapMs / 2) / 1000 : 0;
     const radiusM = strokeSize(tool, app.entered, scale)?.radiusM ?? app.effects.splashRadiusM * scale.sizeRatio * heldRatio(heldS);
     return { kind: "disc", at, radiusM, color: kOutlineColor };
   }
 
   private placeUnder(event: PointerEvent): WaterPlace | undefined {
-    const { canvas, scene } = this.app.display;
-    const shape = scene.shape();
-    if (!shape) return undefined;
-    const at = toDeviceCoordinates(event.clientX, event.clientY, canvas.getBoundingClientRect());
-    const { camera } = scene;
-    const direction = new Vector3(at.x, at.y, 0.5).unproject(camera).sub(camera.position).normalize();
-    return pickWater({ originM: camera.position.toArray(), direction: direction.toArray() }, shape);
+    const { display } = this.app;
+    const shape = display.scene.shape();
+    return shape && pickWater(rayAt(display, event.clientX, event.clientY), shape);
   }
 }
 

@@ -53,6 +53,7 @@ function stats(app: App) {
     quality: quality.tier,
     paused: app.room.paused,
     boats: scene.drawnBoats(),
+    floaters: scene.drawnFloaters().map((pose) => ({ ...pose, turn: [...pose.turn] })),
     dents: scene.ripple.count.value,
     whitewater: scene.whitewaterCounts(),
     role: app.role,

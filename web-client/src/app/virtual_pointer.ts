@@ -1,7 +1,11 @@
 // The tools without a pointer: Enter or the space bar on the water, and a gamepad. Both act as a pointer of their own would.
 //
+// Keys while an object is held: the arrows move it, Q and E turn it. Delete takes out what is held or under the mouse; comma and full stop
+// choose what the tool Float drops.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
-// would; LB and RB choose the tool. In the boat's view the stick and the cross are the helm.
+// would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind. In the boat's view the stick
+// and the cross are the helm.
+import { isTyping } from "../ui/dom";
 import type { App } from "./app";
 
 /** Far from the ids that browsers give. */
@@ -15,7 +19,13 @@ const kDeadZone = 0.15;
 const kCursorPerS = 0.6;
 const kLongestStepS = 0.1;
 
-const kButtons = { use: 0, previousTool: 4, nextTool: 5, up: 12, down: 13, left: 14, right: 15 };
+/** What is held: turn per press of a key, and per second of a gamepad's button; pixels per press of an arrow key. */
+const kKeyTurnRad = 0.2;
+const kTurnRadps = 2;
+const kKeyStepPx = 16;
+const kArrows: Record<string, readonly [right: number, down: number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+
+const kButtons = { use: 0, takeOut: 2, nextKind: 3, previousTool: 4, nextTool: 5, up: 12, down: 13, left: 14, right: 15 };
 /** Keys of the helm (ui/helm.ts). */
 const kHelm = { up: "ArrowUp", down: "ArrowDown", left: "ArrowLeft", right: "ArrowRight" } as const;
 
@@ -50,17 +60,37 @@ class VirtualPointer {
   }
 }
 
-export function connectKeyboardTools({ display: { canvas }, tools }: App): void {
+export function connectKeyboardTools(app: App): void {
+  const { display: { canvas }, tools } = app;
   const pointer = new VirtualPointer(canvas, kKeyboardId);
   const middle = (): [number, number] => [window.innerWidth / 2, window.innerHeight / 2];
+  /** How far the arrow keys have moved what is held. */
+  let movedPx = [0, 0] as [number, number];
   const isUse = ({ code, ctrlKey, altKey, metaKey }: KeyboardEvent): boolean => (code === "Enter" || code === "Space") && !ctrlKey && !altKey && !metaKey;
   canvas.addEventListener("keydown", (event) => {
     if (!isUse(event)) return;
     event.preventDefault();
+    if (!pointer.isDown) movedPx = [0, 0];
     pointer.press(...middle());
   });
+  canvas.addEventListener("keydown", (event) => {
+    const arrow = event.shiftKey ? undefined : kArrows[event.code];
+    // Held by this pointer or another; a turn of nothing tells.
+    if (!pointer.isDown || !arrow || !app.turnHeld(0)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    movedPx = [movedPx[0] + kKeyStepPx * arrow[0], movedPx[1] + kKeyStepPx * arrow[1]];
+    pointer.move(middle()[0] + movedPx[0], middle()[1] + movedPx[1]);
+  }, { capture: true });
+  window.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event.target)) return;
+    if (event.code === "Delete") app.removePointed();
+    else if (event.code === "KeyQ" || event.code === "KeyE") app.turnHeld(event.code === "KeyQ" ? -kKeyTurnRad : kKeyTurnRad);
+    else if (event.key === "," || event.key === ".") app.floaterRows.step(event.key === "," ? -1 : 1);
+  });
   const release = (): void => {
-    const [xPx, yPx] = middle();
+    const xPx = middle()[0] + movedPx[0];
+    const yPx = middle()[1] + movedPx[1];
     const toPx = tools.tool.name === "paddle" ? yPx - kPushShare * window.innerHeight : yPx;
     if (pointer.isDown && toPx !== yPx) pointer.move(xPx, toPx);
     pointer.release(xPx, toPx);
@@ -100,8 +130,13 @@ export class GamepadTools {
     const isNew = (button: number): boolean => pressed.has(button) && !this.held.has(button);
     const [x = 0, y = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));
     const { app } = this;
-    if (isNew(kButtons.previousTool)) app.tools.step(-1);
-    if (isNew(kButtons.nextTool)) app.tools.step(1);
+    const turn = Number(pressed.has(kButtons.nextTool)) - Number(pressed.has(kButtons.previousTool));
+    if (!app.turnHeld(turn * kTurnRadps * stepS)) {
+      if (isNew(kButtons.previousTool)) app.tools.step(-1);
+      if (isNew(kButtons.nextTool)) app.tools.step(1);
+    }
+    if (isNew(kButtons.takeOut)) app.removePointed();
+    if (isNew(kButtons.nextKind)) app.floaterRows.step(1);
     const isHelm = app.display.views.view === "boat";
     this.steer(isHelm ? { up: y < 0 || pressed.has(kButtons.up), down: y > 0 || pressed.has(kButtons.down), left: x < 0 || pressed.has(kButtons.left), right: x > 0 || pressed.has(kButtons.right) } : {});
     if (!isHelm && (x !== 0 || y !== 0)) {

@@ -6,9 +6,11 @@ import type { FrameLayer, LevelName } from "./layers";
 export const kMaxResolutionCount = 4096;
 export const kMaxParticleCount = 4 * 1024 * 1024;
 export const kMaxBodyCount = 1024;
+export const kMaxFloaterCount = 1024;
 /** Size of one record in a plain payload. */
 export const kParticleBytes = 12;
 export const kBodyBytes = 28;
+export const kFloaterBytes = 28;
 
 /** 64-bit integers stay bigint: a number would round them beyond 2^53. */
 export interface FrameHeader {
@@ -62,12 +64,17 @@ interface BodiesHeader extends FrameHeader {
   count: number;
 }
 
+interface FloatersHeader extends FrameHeader {
+  count: number;
+}
+
 /** The header of each layer's plain frames. */
 export interface FrameHeaders extends Record<FrameLayer, FrameHeader> {
   surface: SurfaceHeader;
   particles: ParticleHeader;
   foam: FoamHeader;
   bodies: BodiesHeader;
+  floaters: FloatersHeader;
 }
 
 export type PlainFrame = { [L in FrameLayer]: { kind: L; header: FrameHeaders[L]; payload: Uint8Array } }[FrameLayer];

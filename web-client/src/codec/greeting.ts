@@ -20,7 +20,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 5;
+export const kWireMinor = 6;
 
 export interface ParameterInfo {
   path: string;
@@ -91,6 +91,8 @@ export interface GreetingInfo {
   isTwoWay: boolean;
   /** The scene allows boats. */
   hasBoats: boolean;
+  /** The scene allows objects in the water, and the server streams them. */
+  hasFloaters: boolean;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
   /** The scene has a bed: the ground does not follow from depth and beaches alone. */
@@ -183,6 +185,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       gravityMps2: finiteAbove0(scene?.gravityMps2),
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,
+      hasFloaters: scene?.floaters !== undefined && greeting.layers.includes(kLayers.floaters),
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
       hasBed: scene?.wave !== undefined && scene.bed !== undefined,

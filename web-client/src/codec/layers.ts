@@ -7,6 +7,7 @@ export const kLayers = {
   foam: Layer.FOAM,
   bodies: Layer.BODIES,
   diagnostics: Layer.DIAGNOSTICS,
+  floaters: Layer.FLOATERS,
 } as const;
 
 export type LayerName = keyof typeof kLayers;

@@ -3,7 +3,9 @@ import { Layer, type LayerFrame } from "../gen/spindrift/v1/wire_pb";
 import { crc32c, kWeightCount } from "./frame_reader";
 import {
   kBodyBytes,
+  kFloaterBytes,
   kMaxBodyCount,
+  kMaxFloaterCount,
   kMaxParticleCount,
   kMaxResolutionCount,
   kParticleBytes,
@@ -41,6 +43,8 @@ export function parseFrame(frame: LayerFrame): PlainFrame | PackedFrame | Malfor
       return parsePackedFoam(frame, header, codec.value);
     case "bodiesFixed28":
       return parseBodies(frame, header, codec.value);
+    case "floatersFixed28":
+      return parseFloaters(frame, header, codec.value);
     case "particlesFixed12":
       return parseParticles(frame, header, codec.value);
     case "particlesByCell":
@@ -93,6 +97,12 @@ function parseBodies(frame: LayerFrame, header: FrameHeader, { count }: CodecOf<
   if (count > kMaxBodyCount) return malformed(`${count} bodies, at most ${kMaxBodyCount} are taken`);
   const fault = plainFault(frame, Layer.BODIES, "bodies", count * kBodyBytes);
   return fault ? malformed(fault) : { kind: "bodies", header: { ...header, count }, payload: frame.payload };
+}
+
+function parseFloaters(frame: LayerFrame, header: FrameHeader, { count }: CodecOf<"floatersFixed28">): PlainFrame | Malformed {
+  if (count > kMaxFloaterCount) return malformed(`${count} floaters, at most ${kMaxFloaterCount} are taken`);
+  const fault = plainFault(frame, Layer.FLOATERS, "floaters", count * kFloaterBytes);
+  return fault ? malformed(fault) : { kind: "floaters", header: { ...header, count }, payload: frame.payload };
 }
 
 function parseParticles(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"particlesFixed12">): PlainFrame | Malformed {

@@ -197,6 +197,7 @@ export class Connection implements ConnectionCalls {
       case "particles":
       case "foam":
       case "bodies":
+      case "floaters":
         return this.deliver(parsed);
       case "levelChanged":
         this.linkLevel = parsed.level;

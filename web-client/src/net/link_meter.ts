@@ -10,7 +10,7 @@ type MeteredStats = Omit<LinkStats, "level" | "levelLimitedBy">;
 const kSameFrameStates = 30n;
 
 export class LinkMeter {
-  private readonly receivedCount = { surface: 0, particles: 0, foam: 0, bodies: 0, diagnostics: 0 };
+  private readonly receivedCount = { surface: 0, particles: 0, foam: 0, bodies: 0, diagnostics: 0, floaters: 0 };
   private malformedCount = 0;
   private lastMalformed = "";
   private bytesCount = 0;

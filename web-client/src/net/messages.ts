@@ -40,6 +40,7 @@ export type SurfaceFrame = FrameOf<"surface">;
 export type ParticleFrame = FrameOf<"particles">;
 export type FoamFrame = FrameOf<"foam">;
 export type BodiesFrame = FrameOf<"bodies">;
+export type FloatersFrame = FrameOf<"floaters">;
 export type Frame = { [L in FrameLayer]: FrameOf<L> }[FrameLayer];
 
 /** Rates over the last half second; counts since the page was opened. */

@@ -19,12 +19,13 @@ function makeHandover(isGrowing: boolean): FrameHandover<Frame> {
   return new FrameHandover<Frame>((frame) => post({ kind: "frame", frame }, [frame.buffer]), kMaxFramesUnderWay, isGrowing);
 }
 
-// The number of particles and boats changes from frame to frame, the size of a plane does not.
+// The number of particles, boats and objects changes from frame to frame, the size of a plane does not.
 const handovers: Record<FrameLayer, FrameHandover<Frame>> = {
   surface: makeHandover(false),
   particles: makeHandover(true),
   foam: makeHandover(false),
   bodies: makeHandover(true),
+  floaters: makeHandover(true),
 };
 
 const world: ConnectionWorld = {

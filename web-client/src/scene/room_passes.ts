@@ -5,7 +5,7 @@
 //   foam         frames -> foam
 //   sea          time -> the sea around the square, in an open sea
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
-//   solids       sky, ground, rocks, boats -> solids (linear light, depth)
+//   solids       sky, ground, rocks, boats, objects -> solids (linear light, depth)
 //   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
 //   whitewater   frames, boats -> drops, foam, bubbles; froth; bubbles -> solids (whitewater/whitewater.ts)
 //   flat shadow  solids -> froth; in the tiers below
@@ -81,7 +81,7 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
-  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, frames.bodies, quality);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, frames, quality);
   shadow?.setCasters(solids);
   return { field, foam, solids, passes: [field, shore, caustics, foam, solids.surroundings.sea, shadow, solids].filter((pass) => pass !== undefined) };
 }

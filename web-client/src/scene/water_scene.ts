@@ -11,6 +11,7 @@ import { makeNoiseTexture } from "./drawing/noise_texture";
 import type { Pass, Picture } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
 import type { BodyPose } from "./frames/bodies";
+import type { FloaterPose } from "./frames/floaters";
 import { elevationAtM, elevationRangeM } from "./frames/height_field";
 import type { Ray, WaterShape } from "./frames/pick";
 import { StreamedFrames } from "./frames/streamed_frames";
@@ -187,6 +188,11 @@ export class WaterScene {
 
   drawnBoats(): BodyPose[] {
     return this.base?.solids.drawnBoats() ?? [];
+  }
+
+  /** Returns the objects in the water as they are drawn now. The next picture overwrites them. */
+  drawnFloaters(): FloaterPose[] {
+    return this.base?.solids.drawnFloaters() ?? [];
   }
 
   /** Returns how many drops, patches of foam and bubbles the page has added to the streamed water. */

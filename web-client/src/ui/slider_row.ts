@@ -7,6 +7,8 @@ export interface SliderRange {
   min: number;
   max: number;
   step: number;
+  /** The value as text; by default with its unit. */
+  describe?: (value: number) => string;
 }
 
 export class SliderRow {
@@ -53,7 +55,7 @@ export class SliderRow {
   }
 
   private writeOutput(value: number): void {
-    const text = `${formatBy(this.range.step, value)}${this.range.unit ? ` ${this.range.unit}` : ""}`;
+    const text = this.range.describe?.(value) ?? `${formatBy(this.range.step, value)}${this.range.unit ? ` ${this.range.unit}` : ""}`;
     setText(this.output, text);
     this.input.setAttribute("aria-valuetext", text);
     const span = this.range.max - this.range.min;

@@ -1,4 +1,4 @@
-// The row of tools at the edge of the water, the line that says what the chosen one does, and its sliders. Keys 1 to 5 choose, too.
+// The row of tools at the edge of the water, the line that says what the chosen one does, and its sliders. Keys 1 to 7 choose, too.
 import { byId, isTyping, make, setText } from "./dom";
 import { keepChoice, keptChoice } from "./kept";
 import { SliderRow } from "./slider_row";
@@ -7,6 +7,8 @@ import { kTools, type Tool, type ToolName, type ToolScale } from "./tools";
 const kToolKey = "tool";
 const kHintKey = "has-drawn";
 const kHintS = 12;
+/** Of the finger, in scenes with objects. */
+const kMovesObjects = "Drag an object to move it; the wheel or a second finger turns it.";
 const kSizeRange = { label: "Tool size", unit: "%", min: 40, max: 250, step: 5 };
 const kStrengthRange = { label: "Tool strength", unit: "%", min: 20, max: 100, step: 5 };
 
@@ -19,12 +21,15 @@ export class ToolBar {
   private current: Tool = kTools[0]!;
   private hintTimer = 0;
   private isGreeted = false;
+  private hasFloaters = false;
 
   /** `bar`: where the buttons go; `rows`: the sliders. */
   constructor(
     private readonly bar: HTMLElement,
     rows: HTMLElement,
     private readonly viewTurns: () => string,
+    /** Called with the tool that is chosen, or undefined while there is none to choose. */
+    private readonly changed: (name: ToolName | undefined) => void,
   ) {
     for (const [k, { name, label, does }] of kTools.entries()) {
       const button = make("button", { type: "button", "data-testid": `tool-${name}`, title: `${does} (key ${k + 1})`, class: "glass" }, [label]);
@@ -50,12 +55,14 @@ export class ToolBar {
     return this.scales.get(this.current.name)!;
   }
 
-  /** `mayDraw`: there is water that this visitor may change. */
-  setAllowed(mayDraw: boolean, isOperator: boolean): void {
+  /** `mayDraw`: there is water that this visitor may change; `hasFloaters`: and objects in it. */
+  setAllowed(mayDraw: boolean, isOperator: boolean, hasFloaters: boolean): void {
+    this.hasFloaters = hasFloaters;
     this.bar.hidden = !mayDraw;
-    this.size.element.hidden = this.strength.element.hidden = !mayDraw;
-    for (const { name, isOperators } of kTools) this.buttons.get(name)!.hidden = isOperators === true && !isOperator;
-    if (mayDraw && this.current.isOperators && !isOperator) this.choose("finger", false);
+    const isBarred = ({ isOperators, needsFloaters }: Tool): boolean => (isOperators === true && !isOperator) || (needsFloaters === true && !hasFloaters);
+    for (const tool of kTools) this.buttons.get(tool.name)!.hidden = isBarred(tool);
+    if (mayDraw && isBarred(this.current)) this.choose("finger", false);
+    this.showRows();
     if (!mayDraw) this.hint.hidden = true;
     else if (!this.isGreeted) this.greet();
   }
@@ -74,7 +81,7 @@ export class ToolBar {
   }
 
   /** Says what the tool does. */
-  explain(text = this.current.does): void {
+  explain(text = this.does): void {
     setText(this.hint, text);
     this.hint.hidden = false;
     window.clearTimeout(this.hintTimer);
@@ -87,14 +94,26 @@ export class ToolBar {
     const { sizeRatio, strengthRatio } = this.scale;
     this.size.show(100 * sizeRatio, "");
     this.strength.show(100 * strengthRatio, "");
+    this.showRows();
     if (!isByUser) return;
     keepChoice(kToolKey, name);
     this.explain();
   }
 
+  private get does(): string {
+    return this.current.name === "finger" && this.hasFloaters ? `${this.current.does} ${kMovesObjects}` : this.current.does;
+  }
+
+  private showRows(): void {
+    const isShown = !this.bar.hidden;
+    this.size.element.hidden = !isShown;
+    this.strength.element.hidden = !isShown || this.current.name === "float";
+    this.changed(isShown ? this.current.name : undefined);
+  }
+
   /** On the first visit. */
   private greet(): void {
     this.isGreeted = true;
-    if (keptChoice(kHintKey) === undefined) this.explain(`${this.current.does} ${this.viewTurns()}`);
+    if (keptChoice(kHintKey) === undefined) this.explain(`${this.does} ${this.viewTurns()}`);
   }
 }

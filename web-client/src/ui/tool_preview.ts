@@ -15,10 +15,11 @@ const kFallRadii = 1;
 export type Outline =
   | { kind: "disc"; at: WaterPlace; radiusM: number; color: string }
   | { kind: "rain"; at: WaterPlace; radiusM: number; color: string }
+  | { kind: "arc"; points: readonly (WaterPlace & { yM: number })[]; radiusM: number; color: string }
   | { kind: "paddle"; from: WaterPlace; to: WaterPlace; widthM: number; color: string };
 
-/** A point over the water. */
-type Point = WaterPlace & { aboveM?: number };
+/** A point over the water, or at a height of its own. */
+type Point = WaterPlace & { aboveM?: number; yM?: number };
 
 export class ToolPreview {
   private readonly svg = document.createElementNS(kSvg, "svg");
@@ -50,8 +51,8 @@ export class ToolPreview {
   /** A line through these points; empty where one is behind the camera. */
   private draw(line: readonly Point[], heightAtM: (xM: number, zM: number) => number): string {
     const points: string[] = [];
-    for (const { xM, zM, aboveM = 0 } of line) {
-      const { x, y, w } = this.point.set(xM, heightAtM(xM, zM) + aboveM, zM, 1).applyMatrix4(this.seen);
+    for (const { xM, zM, aboveM = 0, yM = heightAtM(xM, zM) + aboveM } of line) {
+      const { x, y, w } = this.point.set(xM, yM, zM, 1).applyMatrix4(this.seen);
       if (!(w > 1e-6)) return "";
       points.push(`${((0.5 + (0.5 * x) / w) * window.innerWidth).toFixed(1)} ${((0.5 - (0.5 * y) / w) * window.innerHeight).toFixed(1)}`);
     }
@@ -61,6 +62,10 @@ export class ToolPreview {
 
 /** The lines of an outline, along the water. */
 export function linesOf(outline: Outline): Point[][] {
+  if (outline.kind === "arc") {
+    const { xM, zM } = outline.points.at(-1)!;
+    return [[...outline.points], ...linesOf({ ...outline, kind: "disc", at: { xM, zM } })];
+  }
   if (outline.kind !== "paddle") {
     const { at, radiusM } = outline;
     const corner = (k: number): WaterPlace => {

@@ -8,7 +8,7 @@ import { StrokeSchema, StrokeTool } from "../gen/spindrift/v1/wire_pb";
 import type { CommandAction } from "../net/messages";
 import { clampTo, type EffectLimits } from "./effect_limits";
 
-export type ToolName = "finger" | "splash" | "paddle" | "rain" | "calm";
+export type ToolName = "finger" | "splash" | "paddle" | "rain" | "calm" | "float" | "throw";
 
 export interface Tool {
   name: ToolName;
@@ -19,6 +19,8 @@ export interface Tool {
   stroke?: StrokeTool;
   /** Only operators may use it. */
   isOperators?: true;
+  /** Only in scenes with objects in the water. */
+  needsFloaters?: true;
 }
 
 export const kTools: readonly Tool[] = [
@@ -27,6 +29,8 @@ export const kTools: readonly Tool[] = [
   { name: "paddle", label: "Paddle", does: "Drag to send a wave that way; a longer drag makes it higher." },
   { name: "rain", label: "Rain", does: "Drag to move the rain; tap for a cloud of 8 seconds.", stroke: StrokeTool.RAIN },
   { name: "calm", label: "Calm", does: "Drag to smooth the water; tap to calm a place for 4 seconds.", stroke: StrokeTool.CALM, isOperators: true },
+  { name: "float", label: "Float", does: "Tap to drop an object; drag one to move it, the wheel or a second finger turns it; hold one still to take it out.", needsFloaters: true },
+  { name: "throw", label: "Throw", does: "Flick to throw a stone that way, faster the quicker the flick; tap to toss one there.", needsFloaters: true },
 ];
 
 /** What the user chose for a tool, over what suits the water. */

@@ -1,6 +1,7 @@
 // The frames that the server streamed: the newest few of every layer, and the clock that chooses the time shown.
-import type { BodiesFrame, FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../../net/messages";
+import type { BodiesFrame, FloatersFrame, FoamFrame, Frame, ParticleFrame, SurfaceFrame } from "../../net/messages";
 import { unpackBodies, type BodiesState } from "./bodies";
+import { unpackFloaters, type FloatersState } from "./floaters";
 import { FrameRing } from "./frame_ring";
 import { PlayoutClock } from "./playout_clock";
 
@@ -13,6 +14,7 @@ export class StreamedFrames {
   readonly particles: FrameRing<ParticleFrame>;
   readonly foam: FrameRing<FoamFrame>;
   readonly bodies = new FrameRing<BodiesState>(kRingCount, () => {});
+  readonly floaters = new FrameRing<FloatersState>(kRingCount, () => {});
   private clockLayer: Frame["layer"] = "surface";
 
   /** `release` takes back the frames that are not needed any more. */
@@ -25,7 +27,7 @@ export class StreamedFrames {
   /** `hasWave`: the room sends surfaces. Unless it has the same water as the one before, the frames of that one are returned. */
   enter(hasWave: boolean, isSameWater: boolean): void {
     if (!isSameWater) {
-      for (const ring of [this.surfaces, this.particles, this.foam, this.bodies]) ring.clear();
+      for (const ring of [this.surfaces, this.particles, this.foam, this.bodies, this.floaters]) ring.clear();
       this.clock.reset();
     }
     // Only one layer sets the clock: the layers of a tick arrive one after the other, and a late one would look like time going back.
@@ -37,12 +39,18 @@ export class StreamedFrames {
     if (frame.layer === "surface") this.surfaces.push(frame);
     else if (frame.layer === "particles") this.particles.push(frame);
     else if (frame.layer === "foam") this.foam.push(frame);
+    else if (frame.layer === "floaters") this.takeFloaters(frame);
     else this.takeBodies(frame);
     if (frame.layer === this.clockLayer) this.clock.noteFrame(frame.timeS, frame.serverTimeS, nowS);
   }
 
   private takeBodies(frame: BodiesFrame): void {
     this.bodies.push(unpackBodies(frame));
+    this.release(frame);
+  }
+
+  private takeFloaters(frame: FloatersFrame): void {
+    this.floaters.push(unpackFloaters(frame));
     this.release(frame);
   }
 }

@@ -27,6 +27,7 @@ import fluidTileVert from "./fluid_tile.vert?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
+import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
 import lampVert from "./lamp.vert?raw";
 import levelFrag from "./level.frag?raw";
@@ -111,6 +112,7 @@ const kShared: Record<string, string> = {
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
+  instance,
   look_map: lookMap,
   sea_blend: seaBlend,
   shadow,

@@ -1,11 +1,16 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
 // SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
-// PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
+// INSTANCES: the grain turns with the object. PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
 in vec3 v_world;
 in vec3 v_normal;
 in vec4 v_color;
+#ifdef INSTANCES
+in vec3 v_own;
+in vec3 v_own_normal;
+const float kGrainSizes = 1.6;  // size of one tile of the noise over the object's
+#endif
 uniform vec3 u_camera_m;
 uniform sampler2D u_noise;
 uniform vec2 u_extent_m;  // length and width of the water
@@ -34,10 +39,19 @@ void main() {
   float grain = max(v_color.a, 0.0);
   float wet_film = 0.0;
   if (grain > 0.0) {
+#ifdef INSTANCES
+    vec3 steep = abs(v_own_normal);
+    // Wood has fibres along x.
+    vec3 grain_at = v_own * vec3(grain < 0.8 ? 0.15 : 1.0, 1.0, 1.0);
+    float grain_m = kGrainSizes;
+#else
     vec3 steep = abs(normal);
-    vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
-    float fine = texture(u_noise, at / u_grain_m).r - 0.5;
-    float coarse = texture(u_noise, at.yx / (5.3 * u_grain_m) + 0.37).r - 0.5;
+    vec3 grain_at = v_world;
+    float grain_m = u_grain_m;
+#endif
+    vec2 at = steep.y > max(steep.x, steep.z) ? grain_at.xz : steep.x > steep.z ? grain_at.zy : grain_at.xy;
+    float fine = texture(u_noise, at / grain_m).r - 0.5;
+    float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
     float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
 #ifdef SHORE

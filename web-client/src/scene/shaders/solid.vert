@@ -1,4 +1,5 @@
-// Boats, rocks, walls and the bed: coloured triangles. FLOATS: a buoy, which rises and tilts with the water's surface.
+// Boats, rocks, walls and the bed: coloured triangles. FLOATS: a buoy, which rises and tilts with the water's surface. INSTANCES: objects in the
+// water, drawn as instances of one mesh.
 in vec3 position;
 in vec3 normal;
 in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone, -1 lamp)
@@ -8,6 +9,11 @@ uniform mat4 projectionMatrix;
 out vec3 v_world;
 out vec3 v_normal;
 out vec4 v_color;
+#ifdef INSTANCES
+#include <instance>
+out vec3 v_own;         // position and normal along the object's own axes
+out vec3 v_own_normal;
+#endif
 #ifdef FLOATS
 uniform sampler2D u_field;
 uniform vec2 u_extent_m;  // length and width of the water
@@ -37,5 +43,12 @@ void main() {
   v_normal = tilt * normal;
 #endif
   v_color = color;
+#ifdef INSTANCES
+  v_world = placed(position);
+  v_normal = turned(normal);
+  v_color.rgb = painted(color.rgb);
+  v_own = position + paint.rgb;
+  v_own_normal = normal;
+#endif
   gl_Position = projectionMatrix * viewMatrix * vec4(v_world, 1.0);
 }

@@ -1,4 +1,4 @@
-// Depth of boats, buoys, rocks, walls and stands as the sun or the moon sees them, from which solids and water tell whether they are in the
+// Depth of boats, buoys, objects, rocks, walls and stands as the sun or the moon sees them, from which solids and water tell whether they are in the
 // shade (shadow.glsl). Reads the frames and the field, which move boats and buoys. Writes the shadow.
 import { Camera, DepthTexture, DoubleSide, LessEqualCompare, LinearFilter, Matrix4, RedFormat, UnsignedIntType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Scene, type Texture, type Vector3 } from "three";
 
@@ -50,7 +50,11 @@ export class ShadowPass implements Pass {
     this.uniforms = { u_shadow: { value: depth }, u_shadow_matrix: { value: new Matrix4() }, u_shadow_texel_m: { value: new Vector2() } };
     const moved = { u_field: { value: field ?? null }, u_extent_m: { value: new Vector2(sideM, widthM) } };
     const parameters = { side: DoubleSide, colorWrite: false, polygonOffset: true, polygonOffsetFactor: 1.2, polygonOffsetUnits: 4 };
-    this.materials = { solid: makeMaterial("shadow", moved, parameters), float: makeMaterial("shadow", moved, { ...parameters, defines: { FLOATS: 1 } }) };
+    this.materials = {
+      solid: makeMaterial("shadow", moved, parameters),
+      float: makeMaterial("shadow", moved, { ...parameters, defines: { FLOATS: 1 } }),
+      instance: makeMaterial("shadow", moved, { ...parameters, defines: { INSTANCES: 1 } }),
+    };
   }
 
   setCasters(casters: Casters): void {
@@ -70,7 +74,7 @@ export class ShadowPass implements Pass {
     (uniforms["u_shadow_texel_m"]!.value as Vector2).set(perTexelM(0), perTexelM(1));
     // The whole transformation, so that three's culling sees the same box.
     camera.projectionMatrix.copy(toClip(toMap));
-    for (const layer of ["solid", "float"] as const) {
+    for (const layer of ["solid", "float", "instance"] as const) {
       camera.layers.set(kCasterLayers[layer]);
       casters.scene.overrideMaterial = this.materials[layer];
       renderer.render(casters.scene, camera);

@@ -1,5 +1,5 @@
-// Everything but water: the sky, what is around the water, boats and buoys. Reads the field, for buoys, the shore, the caustics, the shadow, and the
-// frames of the boats.
+// Everything but water: the sky, what is around the water, boats, buoys and objects. Reads the field, for buoys, the shore, the caustics, the shadow, and the
+// frames of boats and objects.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
@@ -8,8 +8,10 @@ import { Boats } from "../boats/boats";
 import { buoyPlaces, Buoys } from "../boats/buoys";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
-import type { BodiesState, BodyPose } from "../frames/bodies";
-import type { FrameRing } from "../frames/frame_ring";
+import { Floaters } from "../floaters/floaters";
+import type { BodyPose } from "../frames/bodies";
+import type { FloaterPose } from "../frames/floaters";
+import type { StreamedFrames } from "../frames/streamed_frames";
 import { bedOf } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
@@ -45,6 +47,7 @@ export class SolidsPass implements Pass {
   private readonly material: RawShaderMaterial;
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
+  private readonly floaters: Floaters | undefined;
 
   /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. */
   constructor(
@@ -53,7 +56,7 @@ export class SolidsPass implements Pass {
     noise: Texture,
     field: Texture | undefined,
     sunlight: LitBy,
-    private readonly bodies: FrameRing<BodiesState>,
+    private readonly frames: Pick<StreamedFrames, "bodies" | "floaters">,
     quality: Quality,
   ) {
     const { sideM, widthM } = greeting;
@@ -81,6 +84,7 @@ export class SolidsPass implements Pass {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
     }
+    if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, makeMaterial("solid", uniforms, { defines: { ...defines, INSTANCES: 1 } }), greeting, quality.plain);
     const buoys = field ? buoyPlaces(greeting) : [];
     if (buoys.length > 0) {
       this.buoys = new Buoys(buoys, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
@@ -120,11 +124,18 @@ export class SolidsPass implements Pass {
     return this.boats?.drawn() ?? [];
   }
 
-  /** Moves the boats to where they are at a time of the scene. */
+  /** Returns the objects in the water as they are drawn now. The next picture overwrites them. */
+  drawnFloaters(): FloaterPose[] {
+    return this.floaters?.drawn() ?? [];
+  }
+
+  /** Moves boats and objects to where they are at a time of the scene. */
   place(shownS: number | undefined): void {
-    const bodies = this.boats && shownS !== undefined ? this.bodies.around(shownS) : undefined;
+    const bodies = this.boats && shownS !== undefined ? this.frames.bodies.around(shownS) : undefined;
     if (bodies) this.boats!.show(bodies.from, bodies.to, bodies.mix);
     if (this.boats) this.buoys?.pushAside(this.boats.hulls());
+    const floaters = this.floaters && shownS !== undefined ? this.frames.floaters.around(shownS) : undefined;
+    if (floaters) this.floaters!.show(floaters.from, floaters.to, floaters.mix);
   }
 
   draw({ renderer, camera, sizePx, shownS }: Picture): void {
@@ -142,6 +153,7 @@ export class SolidsPass implements Pass {
   dispose(): void {
     this.boats?.dispose();
     this.buoys?.dispose();
+    this.floaters?.dispose();
     this.surroundings.dispose();
     this.material.dispose();
     this.target.dispose();
