@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <ranges>
@@ -11,6 +12,10 @@
 namespace spindrift::sim {
 namespace {
 
+bool everHadFloaters(const HostState& host) {
+  return host.floaters.next_id > 1;
+}
+
 /// 64-bit FNV-1a over 32-bit words. Visits every field of a plain struct, so that none can be forgotten.
 class Hash {
   /// Fields that count only where they are used, so that states without them keep the hash that they had before.
@@ -22,6 +27,7 @@ class Hash {
   static bool omits(const Stroke& stroke, std::size_t field) {
     return stroke.tool == StrokeTool::kFinger && field == 2;
   }
+  static bool omits(const HostState& host, std::size_t field) { return !everHadFloaters(host) && field == 2; }
 
  public:
   template <typename T>
@@ -63,6 +69,12 @@ class Hash {
 }  // namespace
 
 std::uint64_t hashOf(const SavedState& state) {
+  const auto is_floaters = [](const SavedBuffer& buffer) { return buffer.name == "floaters"; };
+  if (!everHadFloaters(state.host) && std::ranges::any_of(state.buffers, is_floaters)) {
+    SavedState without = state;
+    std::erase_if(without.buffers, is_floaters);
+    return hashOf(without);
+  }
   Hash hash;
   hash(state);
   return hash.value();

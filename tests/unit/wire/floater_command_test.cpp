@@ -18,14 +18,14 @@ namespace {
 
 using testing::HasSubstr;
 
-v1::Scene sceneOf(const std::string& text) {
+v1::Scene basinOf(const std::string& text) {
   const auto scene = scene::parseSceneText(text, "cove.textproto");
   EXPECT_TRUE(scene) << scene.error().message;
   return scene ? *scene : v1::Scene{};
 }
 
 v1::Scene cove() {
-  return sceneOf(
+  return basinOf(
       "wave { side_m: 16 depth_m: 2 }\nobstacles { rock { x_m: 4 radius_m: 1 } }\n"
       "obstacles { breakwater { x_m: -4 length_m: 4 width_m: 1 } }\nfloaters {}");
 }
@@ -88,14 +88,14 @@ TEST(FloaterCommands, OutOfRangeValueIsRejectedWithItsField) {
 }
 
 TEST(FloaterCommands, NeedASceneWithFloaters) {
-  const v1::Scene pool = sceneOf("wave {}");
+  const v1::Scene pool = basinOf("wave {}");
   const std::pair<v1::Command, std::string> cases[] = {{test::spawnFloater(0, 0), "spawn_floater"},
                                                        {test::holdFloater(1, 0, 0), "hold_floater"},
                                                        {test::removeFloater(1), "remove_floater"}};
   for (const auto& [command, field] : cases) {
     const auto rejection = checkAgainstScene(test::numbered(2, command), pool);
     ASSERT_TRUE(rejection) << field;
-    EXPECT_EQ(rejection->command_id, 2u);
+    EXPECT_EQ(rejection->command_id(), 2u);
     EXPECT_EQ(rejection->reason(), v1::REJECT_REASON_ABSENT_PART);
     EXPECT_EQ(rejection->field(), field);
     EXPECT_THAT(rejection->message(), HasSubstr("no floaters"));
@@ -105,24 +105,24 @@ TEST(FloaterCommands, NeedASceneWithFloaters) {
 }
 
 TEST(FloaterCommands, AreRejectedWhereTheSceneForbidsAFloater) {
-  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.8); }).field, "spawn_floater.floater.x_m");
-  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_z_m(-8.0); }).field, "spawn_floater.floater.z_m");
+  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.8); }).field(), "spawn_floater.floater.x_m");
+  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_z_m(-8.0); }).field(), "spawn_floater.floater.z_m");
   const CommandRejection big = rejectionFor([](v1::Floater& f) { f.set_size_m(4.5); });
-  EXPECT_EQ(big.field, "spawn_floater.floater.size_m");
-  EXPECT_THAT(big.message, HasSubstr("choose at most 4 m"));
+  EXPECT_EQ(big.field(), "spawn_floater.floater.size_m");
+  EXPECT_THAT(big.message(), HasSubstr("choose at most 4 m"));
   const CommandRejection high = rejectionFor([](v1::Floater& f) { f.set_y_m(20.5); });
-  EXPECT_EQ(high.field, "spawn_floater.floater.y_m");
-  EXPECT_THAT(high.message, HasSubstr("choose at most 20 m"));
+  EXPECT_EQ(high.field(), "spawn_floater.floater.y_m");
+  EXPECT_THAT(high.message(), HasSubstr("choose at most 20 m"));
   const CommandRejection low = rejectionFor([](v1::Floater& f) { f.set_y_m(-2.1); });
-  EXPECT_EQ(low.field, "spawn_floater.floater.y_m");
-  EXPECT_THAT(low.message, HasSubstr("below the bed; choose at least -2 m"));
+  EXPECT_EQ(low.field(), "spawn_floater.floater.y_m");
+  EXPECT_THAT(low.message(), HasSubstr("below the bed; choose at least -2 m"));
   for (const auto& [x_m, obstacle] : {std::pair(4.0, "obstacles[0]"), std::pair(-4.0, "obstacles[1]")}) {
     const CommandRejection aground = rejectionFor([x = x_m](v1::Floater& f) { f.set_x_m(x); });
-    EXPECT_EQ(aground.reason, v1::REJECT_REASON_OUT_OF_RANGE);
-    EXPECT_THAT(aground.message, HasSubstr(obstacle));
+    EXPECT_EQ(aground.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
+    EXPECT_THAT(aground.message(), HasSubstr(obstacle));
   }
-  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.7); }).reason, v1::REJECT_REASON_UNSPECIFIED) << "0.6 m wide";
-  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_y_m(-2.0); }).reason, v1::REJECT_REASON_UNSPECIFIED);
+  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.7); }).reason(), v1::REJECT_REASON_UNSPECIFIED) << "0.6 m wide";
+  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_y_m(-2.0); }).reason(), v1::REJECT_REASON_UNSPECIFIED);
 }
 
 TEST(FloaterCommands, HoldWithinTheWater) {
@@ -148,12 +148,12 @@ TEST(FloaterCommands, WhatIsLeftOutSuitsTheWater) {
 
   v1::Command small;
   small.mutable_spawn_floater();
-  const v1::Scene basin = sceneOf("wave { resolution_count: 32 side_m: 2 depth_m: 0.2 width_m: 1 } floaters {}");
+  const v1::Scene basin = basinOf("wave { resolution_count: 32 side_m: 2 depth_m: 0.2 width_m: 1 } floaters {}");
   EXPECT_FALSE(completeCommand(small, basin));
   EXPECT_DOUBLE_EQ(small.spawn_floater().floater().size_m(), 0.25);
   EXPECT_DOUBLE_EQ(small.spawn_floater().floater().y_m(), 0.125);
 
-  const v1::Scene rocky = sceneOf("wave { side_m: 16 } floaters {} obstacles { rock { radius_m: 2 } }");
+  const v1::Scene rocky = basinOf("wave { side_m: 16 } floaters {} obstacles { rock { radius_m: 2 } }");
   v1::Command beside;
   beside.mutable_spawn_floater();
   EXPECT_FALSE(completeCommand(beside, rocky));

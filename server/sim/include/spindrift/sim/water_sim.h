@@ -65,7 +65,7 @@ struct FrameRequest {
   [[nodiscard]] LayerRequest& at(core::Level level) { return levels[indexOf(level)]; }
 };
 
-/// Where somebody pulls a floater to; as v1::HoldFloater.
+/// The position to which somebody pulls a floater; as v1::HoldFloater.
 struct FloaterHold {
   std::uint32_t floater_id = 0;
   double x_m = 0.0;
