@@ -136,7 +136,7 @@ void Diagnostics::resize(Creation& create, const Derived& derived) {
 
 void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const Derived& derived,
                           const ParticleBuffers* particles, const Population* population, const NeighborGrid* grid,
-                          Wave* wave, Breakers* breakers, const Boats* boats) {
+                          Wave* wave, Breakers* breakers, const Boats* boats, const Floaters* floaters) {
   auto slot = ring_->begin();
   if (!slot) return;
   Scale scale{.tick = tick, .gravity_mps2 = scene.gravity_mps2, .density_kgpm3 = kWaterDensity_kgpm3};
@@ -162,6 +162,7 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
     wave->bindBasin();
     if (breakers) breakers->state().bindTexel(BREAKING);
     if (boats) boats->bind();
+    if (floaters) floaters->bindTo(surface_pass_);
     if (auto* outflow = wave->outflow()) outflow->bindTexel(OUTFLOW);
     surface_sums_.bindStorage(PARTIAL_SUM);
     surface_pass_.dispatch(surface_shares_);

@@ -15,6 +15,7 @@
 #include "boats.h"
 #include "breakers.h"
 #include "creation.h"
+#include "floaters.h"
 #include "neighbor_grid.h"
 #include "particle_buffers.h"
 #include "particle_pool.h"
@@ -35,7 +36,7 @@ class Diagnostics {
   /// every tick is measured if poll() is called before each call.
   void measure(std::uint64_t tick, const core::Scene& scene, const Derived& derived, const ParticleBuffers* particles,
                const Population* population, const NeighborGrid* grid, Wave* wave, Breakers* breakers,
-               const Boats* boats);
+               const Boats* boats, const Floaters* floaters);
   /// Returns the results that have arrived, oldest first.
   std::vector<Health> poll();
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <numbers>
 #include <span>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <shared/bindings.h>
@@ -79,8 +78,7 @@ FloaterState startingFloater(const core::Floater& floater, std::uint32_t floater
 }
 
 int contactSteps(double tick_s) {
-  const int steps = static_cast<int>(std::ceil(tick_s / kContactStep_s));
-  return std::min(steps + steps % 2, kMaxContactSteps);  // even: the last one writes state_
+  return std::min(static_cast<int>(std::ceil(tick_s / kContactStep_s)), kMaxContactSteps);
 }
 
 }  // namespace
@@ -89,16 +87,18 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
     : places_(std::min<std::size_t>(scene.floaters->capacity_count, core::kMaxFloaters)),
       tile_words_count_(static_cast<std::uint32_t>((places_.size() + 31) / 32)),
       state_(create.texels("floaters", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
-      next_(create.scratch("floaters next", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
       reach_(create.scratch("floater places", places_.size(), gpu::TexelFormat::kRGBA32F)),
       tiles_(create.buffer("floater tiles",
                            std::size_t{FLOATER_TILES_PER_AXIS} * FLOATER_TILES_PER_AXIS * tile_words_count_ * 4,
                            gpu::BufferContent::kScratch)),
       near_(create.buffer("floater neighbours", places_.size() * FLOATER_NEAR_WORDS * 4, gpu::BufferContent::kScratch)),
-      touching_(create.buffer("floaters that touch", (FLOATER_TOUCHING_FIRST + places_.size()) * 4)),
+      touching_(create.buffer("floaters that touch", (FLOATER_TOUCHING_FIRST + places_.size()) * 4,
+                              gpu::BufferContent::kScratch)),
+      push_(create.buffer("floater push", places_.size() * 8 * 4)),
       mark_tiles_(create.pass("bodies/floater_tiles.comp")),
       find_near_(create.pass("bodies/floater_near.comp")),
       contacts_(create.pass("bodies/floater_contacts.comp")),
+      move_(create.pass("bodies/floater_move.comp")),
       water_(create.pass("bodies/floater_water.comp")),
       press_(create.pass("bodies/floater_press.comp")) {
   static_assert(core::kMaxFloaters <= 32 * 32, "bodies/floater_near.comp has an invocation per word");
@@ -107,6 +107,11 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
         fmt::format("floaters.floaters: {} objects are more than floaters.capacity_count = {}: remove some or raise it",
                     scene.floaters->floaters.size(), places_.size())));
   }
+}
+
+void Floaters::declareState(StateBuffers& out) {
+  out.push_back({.buffer = &state_, .carried = true});
+  out.push_back({.buffer = &push_, .lasts = false});
 }
 
 void Floaters::reset(const core::Scene& scene) {
@@ -231,13 +236,14 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
   find_near_.run(slot_count_);
   contacts_.barrier(gpu::Barrier::kIndirect);
   const int steps = contactSteps(tick_s);
-  contacts_.setUniform("step_s", static_cast<float>(tick_s / steps));
+  for (Pass* pass : {&contacts_, &move_}) pass->setUniform("step_s", static_cast<float>(tick_s / steps));
+  push_.bindStorage(FLOATER_PUSH);
   for (int step = 0; step < steps; ++step) {
-    const auto& [from, to] = step % 2 == 0 ? std::tie(state_, next_) : std::tie(next_, state_);
-    from.bindTexel(FLOATERS);
-    to.bindStorage(FLOATERS_NEXT);
-    contacts_.dispatchIndirect(touching_);
-    contacts_.barrier();
+    for (Pass* pass : {&contacts_, &move_}) {
+      if (pass == &move_) state_.bindStorage(FLOATERS);
+      pass->dispatchIndirect(touching_);
+      pass->barrier();
+    }
   }
 }
 
@@ -260,12 +266,9 @@ void Floaters::press(const gpu::TexelBuffer& pressure_head) {
   press_.runGroups(slot_count_);
 }
 
-std::uint32_t Floaters::pack(Pass& pass, std::size_t first_word) const {
+void Floaters::bindTo(Pass& pass) const {
   state_.bindTexel(FLOATERS);
-  pass.setUniform("first_word", static_cast<std::uint32_t>(first_word));
   pass.setUniform("slot_count", slot_count_);
-  pass.dispatchGroups(1);
-  return count();
 }
 
 std::uint32_t Floaters::count() const {

@@ -21,7 +21,7 @@ class Floaters {
 
   /// Keeps only the scene's own floaters, as at the start. Ids of others are not reused.
   void reset(const core::Scene& scene);
-  void declareState(StateBuffers& out) { out.push_back({.buffer = &state_, .carried = true}); }
+  void declareState(StateBuffers& out);
   /// Everything but the device's state, and its replacement.
   [[nodiscard]] CarriedFloaters carried() const { return {places_, next_id_}; }
   void takeOver(const CarriedFloaters& carried);
@@ -43,8 +43,8 @@ class Floaters {
   void feel(double tick_s, Wave& wave);
   /// Adds their pressure to the pressure head.
   void press(const gpu::TexelBuffer& pressure_head);
-  /// Packs them for a frame, from a word of PACKED_WORDS on; returns how many.
-  std::uint32_t pack(Pass& pass, std::size_t first_word) const;
+  /// Binds FLOATERS for a pass over all slots.
+  void bindTo(Pass& pass) const;
   [[nodiscard]] std::uint32_t count() const;
 
  private:
@@ -56,9 +56,9 @@ class Floaters {
   std::uint32_t slot_count_ = 0;  ///< slots to look at: all floaters are below
   std::uint32_t next_id_ = 1;     ///< never decreases
   std::uint32_t tile_words_count_;
-  gpu::TexelBuffer state_, next_, reach_;
-  gpu::Buffer tiles_, near_, touching_;
-  Pass mark_tiles_, find_near_, contacts_, water_, press_;
+  gpu::TexelBuffer state_, reach_;
+  gpu::Buffer tiles_, near_, touching_, push_;
+  Pass mark_tiles_, find_near_, contacts_, move_, water_, press_;
 };
 
 }  // namespace spindrift::sim

@@ -106,7 +106,10 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const core::Scene& sce
     at += kBodyWords;
   }
   if (parts.floaters && request.floaters) {
-    frame.floaters = core::FloatersView{.count = parts.floaters->pack(pack_floaters_, at), .words = {}};
+    parts.floaters->bindTo(pack_floaters_);
+    pack_floaters_.setUniform("first_word", static_cast<std::uint32_t>(at));
+    pack_floaters_.dispatchGroups(1);
+    frame.floaters = core::FloatersView{.count = parts.floaters->count(), .words = {}};
     pending.floaters = at;
     at += floater_words_;
   }

@@ -56,6 +56,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"WAVE", flag(scene.wave.has_value())},
           {"POOL_PARTICLES", flag(isTwoWay(scene))},
           {"FOLLOW", std::to_string(followNumber(scene))},
+          {"FLOATING", flag(scene.floaters.has_value())},
           {"PUSHED", flag(scene.boats && scene.floaters)},
           {"HULLS", flag(scene.boats.has_value())},
           {"SURFACE_FOAM", flag(hasSurfaceFoam(scene))},

@@ -161,7 +161,8 @@ void WaterSim::measure() {
   std::optional<Population> population;
   if (parts_->particles) population = parts_->population(derived_);
   parts_->diagnostics->measure(tick_, scene_, derived_, parts_->particlesOrNull(), population ? &*population : nullptr,
-                               parts_->grid.get(), parts_->wave.get(), parts_->breakers.get(), parts_->boats.get());
+                               parts_->grid.get(), parts_->wave.get(), parts_->breakers.get(), parts_->boats.get(),
+                               parts_->floaters.get());
 }
 
 // Setting up

@@ -116,7 +116,7 @@ void main() {
     vec2 shift_m = vec2(0.0);
     vec2 velocity_mps = velocityOf(b);
 #if PUSHED
-    velocity_mps += vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / BOAT_PUSH_UNITS;
+    velocity_mps += vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / PUSH_UNITS;
 #endif
     meetBoats(b, own, shift_m, velocity_mps);
 #if VARIED

@@ -1,10 +1,9 @@
-// A part of a tick of every floater that can touch something: the points at which it does push it back, and it moves. One invocation
-// per floater.
-// Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Writes FLOATERS_NEXT; adds to BOAT_PUSH.
-// Contacts are springs and dampers between a point of one floater and the surface of another, pulling never, with Coulomb friction. All
-// act at once, on the state before; both floaters of a pair compute the same impulse, so that momentum stays. The factors
-// are those of a contact in units of the mass m that it moves and of the step h: an impulse of m (STIFFNESS overlap / h + DAMPING
-// approach), divided among neighbours, stays stable for a floater that is touched on all sides.
+// What the contacts of every floater that can touch something change in a part of a tick. One invocation per floater: the contacts of
+// its points with surfaces.
+// Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Adds to FLOATER_PUSH (bodies/floater_move.comp applies it), BOAT_PUSH.
+// Contacts are springs and dampers that never pull, with Coulomb friction. All act at once, and both sides of a contact get the same
+// impulse: momentum stays. The factors are in units of the mass m that a contact moves and of the step h: an impulse of
+// m (STIFFNESS overlap / h + DAMPING approach), divided among neighbours, is stable for a floater that is touched on all sides.
 #include "bodies/floater_shape.glsl"
 #if HULLS
 #include "bodies/boat.glsl"
@@ -16,7 +15,7 @@
 layout(local_size_x = FLOATER_GROUP) in;
 
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
-layout(std430, binding = FLOATERS_NEXT) restrict writeonly buffer FloatersNext { vec4 floaters_next[]; };
+layout(std430, binding = FLOATER_PUSH) restrict buffer FloaterPush { int floater_push[]; };
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 layout(std430, binding = FLOATER_TOUCHING) restrict readonly buffer FloaterTouching { uint touching[]; };
 #if HULLS
@@ -29,8 +28,6 @@ const float kStiffness = 0.08;
 const float kDamping = 0.2;
 const float kFriction = 0.5;          // of wood on wood
 const float kShareFrom = 3.0;         // neighbours from which on they share the impulse
-const float kRestSpeed_mps = 0.03;    // slower than this, a floater that is touched comes to rest
-const float kRestKept = 0.9;
 
 Floater floaterAt(uint slot) {
   vec4 t[FLOATER_TEXELS];
@@ -38,12 +35,25 @@ Floater floaterAt(uint slot) {
   return unpackFloater(t);
 }
 
-/// Change of velocity and of spin, and whether there is any.
+/// Change of velocity and of spin, and number of contacts.
 struct Push {
   vec3 velocity_mps;
   vec3 spin_radps;
-  bool touches;
+  int contacts;
 };
+
+ivec3 pushUnits(vec3 change) { return ivec3(round(clamp(change, vec3(-64.0), vec3(64.0)) * PUSH_UNITS)); }
+
+void give(uint slot, Push push) {
+  if (push.contacts == 0) return;
+  const ivec3 velocity = pushUnits(push.velocity_mps);
+  const ivec3 spin = pushUnits(push.spin_radps);
+  for (int axis = 0; axis < 3; ++axis) {
+    atomicAdd(floater_push[8u * slot + axis], velocity[axis]);
+    atomicAdd(floater_push[8u * slot + 3u + axis], spin[axis]);
+  }
+  atomicAdd(floater_push[8u * slot + 6u], push.contacts);
+}
 
 /// Inverse of the mass that an impulse along n at r moves, over the mass. [1]
 float yieldOf(Floater b, vec3 r, vec3 n) {
@@ -51,48 +61,52 @@ float yieldOf(Floater b, vec3 r, vec3 n) {
   return 1.0 + dot(lever, spinOf(b, lever));
 }
 
-/// Adds a contact at r from the centre of mass, pushed along n, against something that moves with other_mps. `lightness` is the
-/// other's inverse mass along n over the inverse mass of this one; `share` the part of the impulse that is applied.
-void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m, vec3 other_mps, float lightness, float share) {
-  if (!(overlap_m > 0.0)) return;
+/// Impulse over the mass [m/s] of a contact at r from the centre of mass, pushed along n, against something that moves with other_mps.
+/// `lightness` is the other's inverse mass along n over the inverse mass of this one; `share` the part of the impulse that is applied.
+vec3 impulseOf(Floater b, vec3 r, vec3 n, float overlap_m, vec3 other_mps, float lightness, float share) {
   const vec3 relative_mps = b.velocity_mps + cross(b.spin_radps, r) - other_mps;
   const float approach_mps = -dot(relative_mps, n);
-  const float mass = 1.0 / (yieldOf(b, r, n) + lightness);
-  const float pressed = share * mass * max(kStiffness * min(overlap_m, 0.2 * b.half_m.x) / step_s + kDamping * approach_mps, 0.0);
+  const float mass = share / (yieldOf(b, r, n) + lightness);
+  const float pressed = mass * max(kStiffness * min(overlap_m, 0.2 * b.half_m.x) / step_s + kDamping * approach_mps, 0.0);
   const vec3 sliding_mps = relative_mps + approach_mps * n;
   const float speed_mps = length(sliding_mps);
-  const float held = min(kFriction * pressed, share * mass * kDamping * speed_mps);
-  const vec3 impulse = pressed * n - held / max(speed_mps, 1e-6) * sliding_mps;
-  push.velocity_mps += impulse;
-  push.spin_radps += spinOf(b, cross(r, impulse));
-  push.touches = true;
+  const float held = min(kFriction * pressed, mass * kDamping * speed_mps);
+  return overlap_m > 0.0 ? pressed * n - held / max(speed_mps, 1e-6) * sliding_mps : vec3(0.0);
 }
 
-/// Contact of the points of one floater with the surface of another; `is_own`: whose points they are.
-void meetPoints(inout Push push, Floater b, Floater o, vec3 apart_m, float mass_ratio, float share, bool is_own) {
-  const Floater pointed = is_own ? b : o;
-  const float radius_m = pointRadius(pointed);
-  const vec3 from_pointed_m = is_own ? -apart_m : apart_m;
-  const float away = is_own ? 1.0 : -1.0;
-  const int count = pointCount(pointed);
-  for (int k = 0; k < count; ++k) {
-    const vec3 r = pointOf(pointed, k);
-    const vec4 there = is_own ? surfaceOf(o, r + from_pointed_m) : surfaceOf(b, r + from_pointed_m);
-    const vec3 at = (is_own ? r : r + apart_m) - radius_m * there.xyz;
-    const vec3 n = away * there.xyz;
-    touch(push, b, at, n, radius_m - there.w, o.velocity_mps + cross(o.spin_radps, at - apart_m), mass_ratio * yieldOf(o, at - apart_m, n),
-          share);
-  }
+/// Adds an impulse over the mass of a floater at r from its centre.
+void add(inout Push push, Floater b, vec3 r, vec3 impulse_mps, bool touches) {
+  push.velocity_mps += impulse_mps;
+  push.spin_radps += spinOf(b, cross(r, impulse_mps));
+  push.contacts += touches ? 1 : 0;
 }
 
-void meetFloater(inout Push push, Floater b, Floater o, float share) {
+/// Contact with something that does not move.
+void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m) {
+  add(push, b, r, impulseOf(b, r, n, overlap_m, vec3(0.0), 0.0, 1.0), overlap_m > 0.0);
+}
+
+/// Contact of the points of one floater with the surface of another.
+void meetFloater(inout Push push, Floater b, uint other, float share) {
+  const Floater o = floaterAt(other);
+  Push other_push = Push(vec3(0.0), vec3(0.0), 0);
   vec3 apart_m = o.centre_m - b.centre_m;
   apart_m.xz = acrossSides(apart_m.xz);
-  const float reach_m = reachOf(b) + reachOf(o);
-  if (dot(apart_m, apart_m) > reach_m * reach_m) return;
   const float mass_ratio = b.density_ratio * volumeOf(b) / (o.density_ratio * volumeOf(o));
-  meetPoints(push, b, o, apart_m, mass_ratio, share, true);
-  meetPoints(push, b, o, apart_m, mass_ratio, share, false);
+  const float radius_m = pointRadius(b);
+  const int count = pointCount(b);
+  for (int k = 0; k < count; ++k) {
+    const vec3 point = pointOf(b, k);
+    const vec4 there = surfaceOf(o, point - apart_m);
+    const vec3 r = point - radius_m * there.xyz;
+    const vec3 ro = r - apart_m;
+    const float overlap_m = radius_m - there.w;
+    const vec3 impulse_mps =
+        impulseOf(b, r, there.xyz, overlap_m, o.velocity_mps + cross(o.spin_radps, ro), mass_ratio * yieldOf(o, ro, there.xyz), share);
+    add(push, b, r, impulse_mps, overlap_m > 0.0);
+    add(other_push, o, ro, -mass_ratio * impulse_mps, overlap_m > 0.0);
+  }
+  give(other, other_push);
 }
 
 /// Contact of a point with the bed, rocks and the sides.
@@ -108,7 +122,7 @@ void meetGround(inout Push push, Floater b, int k) {
   const bool is_in_rock = t.x < radius_m && t.w <= 0.0;
   if (is_in_rock && radius_m - t.x < bed_m - at.y + radius_m) {
     const vec3 n = vec3(t.y, 0.0, t.z);
-    touch(push, b, r - radius_m * n, n, radius_m - t.x, vec3(0.0), 0.0, 1.0);
+    touch(push, b, r - radius_m * n, n, radius_m - t.x);
     bed_m = -1e6;
   } else if (at.y - radius_m < bed_m) {
     const float cell_m = sim.wave_cell_m;
@@ -117,14 +131,14 @@ void meetGround(inout Push push, Floater b, int k) {
     up = normalize(vec3(deeper.x, 2.0 * cell_m, deeper.y));
   }
 #endif
-  touch(push, b, r - radius_m * up, up, (bed_m - at.y + radius_m) * up.y, vec3(0.0), 0.0, 1.0);
+  touch(push, b, r - radius_m * up, up, (bed_m - at.y + radius_m) * up.y);
   const vec2 beyond_m = abs(at.xz) + radius_m - waveHalf_m();
   const vec2 inward = -sign(at.xz);
 #if !WAVE_PERIODIC_X
-  touch(push, b, r - vec3(radius_m * inward.x, 0.0, 0.0), vec3(inward.x, 0.0, 0.0), beyond_m.x, vec3(0.0), 0.0, 1.0);
+  touch(push, b, r - vec3(radius_m * inward.x, 0.0, 0.0), vec3(inward.x, 0.0, 0.0), beyond_m.x);
 #endif
 #if !WAVE_PERIODIC_Z
-  touch(push, b, r - vec3(0.0, 0.0, radius_m * inward.y), vec3(0.0, 0.0, inward.y), beyond_m.y, vec3(0.0), 0.0, 1.0);
+  touch(push, b, r - vec3(0.0, 0.0, radius_m * inward.y), vec3(0.0, 0.0, inward.y), beyond_m.y);
 #endif
 }
 
@@ -149,11 +163,12 @@ void meetBoats(inout Push push, Floater b, int k) {
     const vec2 hull_mps = velocityOf(boat);
     const float boat_mass = boat.hull_m.x * boat.hull_m.y * boat.hull_m.w;
     const float mass_ratio = b.density_ratio * volumeOf(b) / boat_mass;
-    const vec3 before = push.velocity_mps;
-    touch(push, b, r - radius_m * n, n, overlap_m, vec3(hull_mps.x, boat.speed_mps.z, hull_mps.y), mass_ratio, 1.0);
-    const vec2 given_mps = clamp(-mass_ratio * (push.velocity_mps - before).xz, vec2(-4.0), vec2(4.0));
-    atomicAdd(boat_push[2 * slot], int(round(given_mps.x * BOAT_PUSH_UNITS)));
-    atomicAdd(boat_push[2 * slot + 1], int(round(given_mps.y * BOAT_PUSH_UNITS)));
+    const vec3 at = r - radius_m * n;
+    const vec3 impulse_mps = impulseOf(b, at, n, overlap_m, vec3(hull_mps.x, boat.speed_mps.z, hull_mps.y), mass_ratio, 1.0);
+    add(push, b, at, impulse_mps, true);
+    const vec2 given_mps = clamp(-mass_ratio * impulse_mps.xz, vec2(-4.0), vec2(4.0));
+    atomicAdd(boat_push[2 * slot], int(round(given_mps.x * PUSH_UNITS)));
+    atomicAdd(boat_push[2 * slot + 1], int(round(given_mps.y * PUSH_UNITS)));
   }
 }
 #endif
@@ -162,13 +177,13 @@ void main() {
   if (gl_GlobalInvocationID.x >= touching[FLOATER_TOUCHING_COUNT]) return;
   const uint own = touching[FLOATER_TOUCHING_FIRST + gl_GlobalInvocationID.x];
   const Floater b = floaterAt(own);
-  Push push = Push(vec3(0.0), vec3(0.0), false);
+  Push push = Push(vec3(0.0), vec3(0.0), 0);
   const uint list = own * FLOATER_NEAR_WORDS;
   const uint near_count = near[list] & (FLOATER_GROUNDED - 1u);
   for (uint k = 0u; k < near_count; ++k) {
     const uint other = near[list + 1u + k];
     const uint crowd = max(near_count, near[other * FLOATER_NEAR_WORDS] & (FLOATER_GROUNDED - 1u));
-    meetFloater(push, b, floaterAt(other), min(1.0, kShareFrom / float(crowd)));
+    meetFloater(push, b, other, min(1.0, kShareFrom / float(crowd)));
   }
   const int ground_points = near[list] >= FLOATER_GROUNDED ? pointCount(b) : 0;
   for (int k = 0; k < ground_points; ++k) {
@@ -177,22 +192,5 @@ void main() {
     meetBoats(push, b, k);
 #endif
   }
-  vec3 velocity_mps = b.velocity_mps + step_s * b.acceleration_mps2 + push.velocity_mps;
-  vec3 spin_radps = b.spin_radps + step_s * b.spin_up_radps2 + push.spin_radps;
-  if (push.touches && b.hold.w <= 0.0) {
-    const float fastest_mps = max(length(velocity_mps), reachOf(b) * length(spin_radps));
-    const float kept = fastest_mps < kRestSpeed_mps ? kRestKept : 1.0;
-    velocity_mps *= kept;
-    spin_radps *= kept;
-  }
-  Floater after = b;
-  after.velocity_mps = limited(velocity_mps, FLOATER_MAX_MPS);
-  after.spin_radps = limited(spin_radps, FLOATER_MAX_RADPS);
-  after = drifted(after, step_s);
-  const uint at = own * FLOATER_TEXELS;
-  floaters_next[at] = vec4(after.centre_m, b.age_s + step_s);
-  floaters_next[at + 1u] = after.rotation;
-  floaters_next[at + 2u] = vec4(after.velocity_mps, b.id);
-  floaters_next[at + 3u] = vec4(after.spin_radps, b.dent);
-  for (uint k = 4u; k < FLOATER_TEXELS; ++k) floaters_next[at + k] = texelFetch(floaters, int(at + k));
+  give(own, push);
 }

@@ -1,7 +1,8 @@
 // Lists for each floater what it can touch in this tick. One invocation per slot.
-// Reads FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR, and adds to FLOATER_TOUCHING
+// Reads FLOATERS, FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR, and adds to FLOATER_TOUCHING
 // (cleared before) the slots of those that can touch something, in any order.
 // Two floaters list each other, unless one has more neighbours than words: it keeps those of the lowest slots.
+#include "bodies/floater.glsl"
 #include "bodies/floater_tiles.glsl"
 #if VARIED
 #include "common/terrain.glsl"
@@ -12,6 +13,7 @@
 
 layout(local_size_x = FLOATER_GROUP) in;
 
+layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(binding = FLOATER_PLACES) uniform samplerBuffer places;
 layout(std430, binding = FLOATER_TILES) restrict readonly buffer FloaterTiles { uint tiles[]; };
 layout(std430, binding = FLOATER_NEAR) restrict writeonly buffer FloaterNear { uint near[]; };
@@ -50,10 +52,28 @@ bool isGrounded(vec4 place) {
   return false;
 }
 
+Floater floaterAt(uint slot) {
+  vec4 t[FLOATER_TEXELS];
+  for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
+  return unpackFloater(t);
+}
+
+/// Largest gap between the boxes around two floaters along the axes of the first. [m]
+float gapAlong(Floater b, Floater o, vec3 apart_m) {
+  const vec3 d = abs(rotatedBack(b.rotation, apart_m));
+  vec3 reach_m = b.half_m;
+  for (int axis = 0; axis < 3; ++axis)
+    reach_m += o.half_m[axis] * abs(rotatedBack(b.rotation, rotated(o.rotation, vec3(axis == 0, axis == 1, axis == 2))));
+  const vec3 gap_m = d - reach_m;
+  return max(gap_m.x, max(gap_m.y, gap_m.z));
+}
+
 void main() {
   const uint own = gl_GlobalInvocationID.x;
   if (own >= slot_count) return;
   const vec4 place = texelFetch(places, int(own));
+  const Floater b = floaterAt(own);
+  const float margin_m = place.w - reachOf(b);
   const uint first = own * FLOATER_NEAR_WORDS;
   uint count = 0u;
   if (place.w > 0.0) {
@@ -70,6 +90,10 @@ void main() {
         d.xz = acrossSides(d.xz);
         const float reach_m = at.w + place.w;
         if (other == own || dot(d, d) > reach_m * reach_m) continue;
+        const Floater o = floaterAt(other);
+        vec3 apart_m = middleOf(o) - middleOf(b);
+        apart_m.xz = acrossSides(apart_m.xz);
+        if (max(gapAlong(b, o, apart_m), gapAlong(o, b, -apart_m)) > margin_m + at.w - reachOf(o)) continue;
         ++count;
         near[first + count] = other;
       }

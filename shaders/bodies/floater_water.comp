@@ -1,5 +1,5 @@
 // What the water, gravity and a hand do to every floater: its acceleration for the next tick. Floaters that cannot have touched anything
-// move before, as in bodies/floater_contacts.comp. One invocation per slot, with columns of its volume.
+// move before, as in bodies/floater_move.comp. One invocation per slot, with columns of its volume.
 // Reads FLOATER_NEAR, SURFACE, SURFACE_FLOW, PRESSURE_HEAD (that of the wave steps behind SURFACE), TERRAIN. Updates FLOATERS.
 // With phi = elevation + head, the level of the water if nothing pressed on it, each column feels
 //   buoyancy   rho (-g dphi/dx, g, -g dphi/dz) of the volume of it that is under phi

@@ -1,6 +1,6 @@
 // Health of the wave: one partial result per invocation, summed on the host in double and 64-bit integer precision.
-// Reads ELEVATION [nx x nz, units], FLOW, BASIN, OUTFLOW, BREAKING. Writes PARTIAL_SUM, 12 words per invocation, floats
-// as their bits: breaches (flows not finite or out of range, elevations out of range, non-finite boats), 0, max |eta|,
+// Reads ELEVATION [nx x nz, units], FLOW, BASIN, OUTFLOW, BREAKING, BOATS, FLOATERS. Writes PARTIAL_SUM, 12 words per invocation, floats
+// as their bits: breaches (flows not finite or out of range, elevations out of range, non-finite boats and floaters), 0, max |eta|,
 // number of breaking cells; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0; sum of ELEVATION >> 16, sum
 // of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers, so the volume is exact).
 #include "shared/groups.h"
@@ -20,6 +20,12 @@ layout(binding = OUTFLOW) uniform usamplerBuffer outflow;
 #if HULLS
 #include "bodies/boat.glsl"
 layout(binding = BOATS) uniform samplerBuffer boats;
+#endif
+#if FLOATING
+#include "common/finite.glsl"
+#include "shared/floaters.h"
+layout(binding = FLOATERS) uniform samplerBuffer floaters;
+uniform uint slot_count;
 #endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
@@ -92,6 +98,13 @@ void main() {
       const vec4 t = texelFetch(boats, at);
       worst.x += isnan(t.x + t.y + t.z + t.w) || isinf(t.x + t.y + t.z + t.w) ? 1.0 : 0.0;
     }
+  }
+#endif
+#if FLOATING
+  for (uint slot = share; slot < slot_count; slot += shares) {
+    vec4 all = vec4(0.0);  // not finite if a part is not: position, rotation, velocity, spin
+    for (int k = 0; k < 4; ++k) all += texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
+    worst.x += isFinite(all.xyz) && isFinite(all.w) ? 0.0 : 1.0;
   }
 #endif
   partial_sum[3u * share] = floatBitsToUint(worst);

@@ -97,10 +97,10 @@
 // Boats; shared/boats.h. Their controls are a uniform block.
 #define BOATS 27
 #define BOAT_CONTROLS 2
-// Floaters; shared/floaters.h. The same after a step of contacts; what each can touch in a tick; floaters in each tile; centre and
+// Floaters; shared/floaters.h. What contacts change in a step; what each can touch in a tick; floaters in each tile; centre and
 // reach of each [m]; those that can touch something; push of floaters on boats. The numbers are those of particles and grid; only passes over floaters use these buffers.
 #define FLOATERS 0
-#define FLOATERS_NEXT 1
+#define FLOATER_PUSH 1
 #define FLOATER_NEAR 2
 #define FLOATER_TILES 3
 #define FLOATER_PLACES 4

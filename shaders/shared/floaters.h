@@ -34,8 +34,9 @@
 // FLOATER_TOUCHING: three words for the dispatch over floaters that can touch something, their number, and their slots.
 #define FLOATER_TOUCHING_COUNT 3
 #define FLOATER_TOUCHING_FIRST 4
-// Of the velocity that floaters give to boats: 2^-20 m/s.
-#define BOAT_PUSH_UNITS 1048576.0f
+// FLOATER_PUSH, 8 words per slot, zero between steps: change of velocity, of spin, number of contacts, 0. BOAT_PUSH, 2 words per slot:
+// change of velocity along x and z. In units of 2^-20 m/s and rad/s, because sums of integers do not depend on their order.
+#define PUSH_UNITS 1048576.0f
 // Squares of the water that list which floaters are there, per axis; one bit per slot in each.
 #define FLOATER_TILES_PER_AXIS 16
 

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -37,6 +38,22 @@ struct StepResult {
   std::vector<gpu::PassCost> passes;  ///< total_ms: per tick
 };
 
+/// The scene with so many floaters of seven kinds in rows, that many sizes apart.
+core::Scene withFloaters(core::Scene scene, std::uint32_t count, double sizes_apart) {
+  constexpr double kSize_m = 0.3;
+  scene.floaters.emplace().capacity_count = count;
+  const int row = static_cast<int>(std::ceil(std::sqrt(count)));
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    scene.floaters->floaters.push_back({.kind = static_cast<core::FloaterKind>(i % 7),
+                                        .x_m = sizes_apart * kSize_m * (i % row - row / 2),
+                                        .y_m = 0.05,
+                                        .z_m = sizes_apart * kSize_m * (i / row - row / 2),
+                                        .heading_deg = 7.0 * (i % 25),
+                                        .size_m = kSize_m});
+  }
+  return scene;
+}
+
 /// The scene, its parts alone, and, if the number of particles is fixed, the thesis's numbers.
 std::vector<StepCase> stepCases(const core::Scene& base) {
   std::vector<StepCase> cases = {{"scene as it is", base}};
@@ -45,12 +62,14 @@ std::vector<StepCase> stepCases(const core::Scene& base) {
   wave_only.coupling.reset();
   wave_only.foam.reset();
   wave_only.boats.reset();
+  wave_only.floaters.reset();
   wave_only.storm.reset();
   const bool two_way = base.coupling && base.coupling->mode == core::CouplingMode::kTwoWay;
-  if (base.boats || base.storm || base.particles) {
+  if (base.boats || base.floaters || base.storm || base.particles) {
     core::Scene calm = base;
     calm.events.clear();
     calm.boats.reset();
+    calm.floaters.reset();
     calm.storm.reset();
     cases.push_back({"calm", calm});
   }
@@ -59,6 +78,12 @@ std::vector<StepCase> stepCases(const core::Scene& base) {
     core::Scene uncoupled = base;
     uncoupled.coupling.reset();
     cases.push_back({"not coupled", uncoupled});
+  }
+  if (base.floaters) {
+    for (const std::uint32_t count : {256u, core::kMaxFloaters}) {
+      cases.push_back({fmt::format("{} floaters", count), withFloaters(wave_only, count, 2.2)});
+      cases.push_back({fmt::format("{} packed", count), withFloaters(wave_only, count, 0.9)});
+    }
   }
   if (base.particles && !two_way) {
     for (const std::uint32_t count : {8192u, 16384u, 32768u, 65536u}) {

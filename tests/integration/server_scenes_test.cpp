@@ -191,7 +191,8 @@ class ShippedScenes : public ServerTest {
 
 TEST_F(ShippedScenes, AllRunInOneRoomOneAfterTheOther) {
   ScriptedClient one = client();
-  for (const auto layer : {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_BODIES, v1::LAYER_FOAM})
+  for (const auto layer :
+       {v1::LAYER_SURFACE, v1::LAYER_PARTICLES, v1::LAYER_BODIES, v1::LAYER_FOAM, v1::LAYER_FLOATERS})
     one.subscribe(layer);
   for (const std::string name : {"harbor", "splash", "dam_break", "harbor"}) {
     std::optional<std::uint64_t> applied;
@@ -223,6 +224,9 @@ TEST_F(ShippedScenes, AllRunInOneRoomOneAfterTheOther) {
       }
       if (layer == v1::LAYER_PARTICLES) {
         EXPECT_TRUE(codec::decodeParticles(frame->frame()));
+      }
+      if (layer == v1::LAYER_FLOATERS) {
+        EXPECT_TRUE(codec::decodeFloaters(frame->frame()));
       }
     }
     const auto splashed = one.apply(splash(0.3, 0.3));

@@ -28,11 +28,12 @@ std::vector<std::uint32_t> wordsOf(const gpu::Buffer& buffer) {
   return buffer.downloadVector<std::uint32_t>(buffer.sizeBytes() / sizeof(std::uint32_t));
 }
 
-/// Effects, a frame of all layers and a driven boat: every pass of the scene runs.
+/// Effects, a frame of all layers, a driven boat and a floater: every pass of the scene runs.
 void runEveryPass(WaterSim& water) {
   (void)water.start(core::Splash{0.3, -0.2, 1.2, 0.5, 0.1});
   (void)water.start(core::BreakingWave{core::Side::kMinusX, 0.3, 2.0, 0.3});
   (void)water.controlBoat(1, 1.0, -0.5);
+  (void)water.spawnFloater(core::Floater{});
   for (int tick = 0; tick < 3; ++tick) {
     water.step();
     (void)water.requestFrame(FrameRequest::allLayers());
