@@ -7,7 +7,7 @@
 
 uniform uint tile_words_count;
 
-/// First and last tile along x, and along z. Beyond the sides they go on, and tileAt() wraps or clamps them. `place`: centre, reach.
+/// First and last tile along x, and along z. They may lie beyond the sides: tileAt() wraps or clamps them. `place`: centre, reach.
 ivec4 tileSpan(vec4 place) {
   const vec2 per_m = float(FLOATER_TILES_PER_AXIS) / (2.0 * waveHalf_m());
   const vec2 low = (place.xz - place.w + waveHalf_m()) * per_m;

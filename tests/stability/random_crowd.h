@@ -62,6 +62,22 @@ class Crowd {
       }
       case v1::Command::kRemoveBoat:
         return static_cast<bool>(water.removeBoat(command.remove_boat().boat_id()));
+      case v1::Command::kSpawnFloater: {
+        const auto floater_id = water.spawnFloater(scene::toCore(command.spawn_floater().floater()));
+        if (floater_id) last_floater_id_ = *floater_id;
+        return static_cast<bool>(floater_id);
+      }
+      case v1::Command::kHoldFloater: {
+        const v1::HoldFloater& hold = command.hold_floater();
+        return static_cast<bool>(water.holdFloater({.floater_id = hold.floater_id(),
+                                                    .x_m = hold.x_m(),
+                                                    .z_m = hold.z_m(),
+                                                    .lift_m = hold.lift_m(),
+                                                    .turn_radps = hold.turn_radps(),
+                                                    .ends = hold.ends()}));
+      }
+      case v1::Command::kRemoveFloater:
+        return static_cast<bool>(water.removeFloater(command.remove_floater().floater_id()));
       case v1::Command::kSetParameter: {
         const v1::SetParameter& set = command.set_parameter();
         v1::Scene changed = scene_;
@@ -90,6 +106,37 @@ class Crowd {
   [[nodiscard]] const v1::Scene& scene() const { return scene_; }
 
  private:
+  /// Five of eight drop or throw something, the others hold what is there, or take it out.
+  v1::Command anyOfFloaters(double half_m, double half_z_m) {
+    v1::Command out;
+    const int kind = dice_.upTo(8);
+    const auto any_id = static_cast<std::uint32_t>(1 + dice_.upTo(static_cast<int>(last_floater_id_) + 1));
+    if (kind < 5) {
+      v1::Floater& floater = *out.mutable_spawn_floater()->mutable_floater();
+      floater.set_kind(static_cast<v1::FloaterKind>(1 + dice_.upTo(8)));
+      floater.set_x_m(dice_.between(-half_m, half_m));
+      floater.set_y_m(dice_.between(-0.5, 3.0));
+      floater.set_z_m(dice_.between(-half_z_m, half_z_m));
+      floater.set_heading_deg(dice_.between(-180, 180));
+      floater.set_size_m(dice_.between(0.1, 2.0));
+      floater.set_density_ratio(dice_.between(0.02, 6.0));
+      floater.set_ballast_ratio(dice_.between(-1.0, 1.0));
+      floater.set_velocity_x_mps(dice_.between(-20.0, 20.0));
+      floater.set_velocity_y_mps(dice_.between(-20.0, 20.0));
+      floater.set_velocity_z_mps(dice_.between(-20.0, 20.0));
+    } else if (kind < 7) {
+      v1::HoldFloater& hold = *out.mutable_hold_floater();
+      hold.set_floater_id(any_id);
+      hold.set_x_m(dice_.between(-half_m, half_m));
+      hold.set_z_m(dice_.between(-half_z_m, half_z_m));
+      hold.set_lift_m(dice_.between(-2.0, 5.0));
+      hold.set_turn_radps(dice_.between(-10.0, 10.0));
+    } else {
+      out.mutable_remove_floater()->set_floater_id(any_id);
+    }
+    return out;
+  }
+
   v1::Command any(const sim::WaterSim& water) {
     const core::WaveCells cells = scene::waveCellsOf(scene_.wave());
     const double half_m = cells.length_m / 2, half_z_m = cells.width_m / 2;
@@ -114,6 +161,8 @@ class Crowd {
         point.set_z_m(dice_.between(-half_z_m, half_z_m));
         point.set_pressure_ratio(dice_.between(0.0, 1.0));
       }
+    } else if (kind < 180 && scene_.has_floaters()) {
+      out = anyOfFloaters(half_m, half_z_m);
     } else if (kind < 250) {
       v1::Splash& splash = *out.mutable_splash();
       splash.set_x_m(dice_.between(-half_m, half_m));
@@ -188,6 +237,7 @@ class Crowd {
   double costly_value_before_ = 0.0;
   std::size_t next_parameter_ = 0;
   std::uint32_t stroke_id_ = 0;
+  std::uint32_t last_floater_id_ = 0;
   std::map<std::string, int> accepted_;  ///< changes of each parameter that the room took
   Dice dice_{20231121};
 };

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include <shared/boats.h>
 #include <shared/fixed_point.h>
+#include <shared/floaters.h>
 
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/fill_up.h>
@@ -91,7 +93,25 @@ class Storm : public Endurance {
         static_cast<unsigned long long>(water.recoveredCount()));
     EXPECT_EQ(water.recoveredCount(), 0u);
     EXPECT_EQ(water.nonfiniteCount(), 0u);
+    expectBodiesInTheBasin(water);
     return out;
+  }
+
+  /// Whatever is thrown, held and drawn: what has sides, keeps its boats and floaters. The first texel of both is the
+  /// position.
+  static void expectBodiesInTheBasin(sim::WaterSim& water) {
+    const sim::StateCopy state = water.copyState();
+    const double half_x_m = water.derived().wave->length_m / 2, half_z_m = water.derived().wave->width_m / 2;
+    const auto expectInside = [&](const std::vector<float>& bodies, std::size_t words, std::size_t age) {
+      for (std::size_t at = 0; at < bodies.size(); at += words) {
+        if (bodies[at + age] < 0) continue;
+        EXPECT_LE(std::abs(bodies[at]), half_x_m + 0.3) << "body " << at / words;
+        EXPECT_LE(std::abs(bodies[at + 2]), half_z_m + 0.3) << "body " << at / words;
+        EXPECT_LE(std::abs(bodies[at + 1]), 60.0) << "body " << at / words;
+      }
+    };
+    expectInside(state.boats, std::size_t{BOAT_TEXELS} * 4, 6);
+    expectInside(state.floaters, std::size_t{FLOATER_TEXELS} * 4, 3);
   }
 
   struct Energies {
