@@ -7,7 +7,7 @@ import { kFile, write } from "./pictures.mjs";
 import { setUp, shotOf } from "./shots.mjs";
 
 const kFolder = join(repository, "web-client/screenshots");
-const kScenes = ["splash", "breaking_wave", "splash_particles", "dam_break", "kelvin", "rain_rings", "beach", "island"];
+const kScenes = ["splash", "breaking_wave", "flotsam", "dam_break", "kelvin", "rain_rings", "beach", "island"];
 const kSize = { width: 880, height: 495 };
 
 /** @param {import("playwright-core").BrowserContext} context */

@@ -23,6 +23,7 @@ const kShots = {
   breaking_wave_wave: { tick: 120 },
   dam_break: { tick: 84 },
   flume: { tick: 900, camera: { eyeM: [1.5, 1.7, 4.2], targetM: [4.2, -0.1, 0] } },
+  flotsam: { tick: 300, camera: { eyeM: [2, 2.6, 8.5], targetM: [0, 0, 0] } },
   harbor: { tick: 330 },
   island: { tick: 540, historyTicks: 300, camera: { eyeM: [9, 4, 13.5], targetM: [0.5, 0, 1] } },
   kelvin: { tick: 840, camera: { view: "overview" } },

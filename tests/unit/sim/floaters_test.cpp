@@ -1,4 +1,5 @@
-// Floaters: against closed forms, contacts, and what they do to the water.
+// Floaters: against closed forms, contacts, and what they do to the water. One long file, because all tests share its basin and its
+// reading of the state.
 #include <cmath>
 #include <limits>
 #include <numbers>

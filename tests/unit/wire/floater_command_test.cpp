@@ -121,7 +121,8 @@ TEST(FloaterCommands, AreRejectedWhereTheSceneForbidsAFloater) {
     EXPECT_EQ(aground.reason(), v1::REJECT_REASON_OUT_OF_RANGE);
     EXPECT_THAT(aground.message(), HasSubstr(obstacle));
   }
-  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.7); }).reason(), v1::REJECT_REASON_UNSPECIFIED) << "0.6 m wide";
+  EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_x_m(7.7); }).reason(), v1::REJECT_REASON_UNSPECIFIED)
+      << "0.6 m wide";
   EXPECT_EQ(rejectionFor([](v1::Floater& f) { f.set_y_m(-2.0); }).reason(), v1::REJECT_REASON_UNSPECIFIED);
 }
 

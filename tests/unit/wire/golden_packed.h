@@ -1,4 +1,5 @@
-// Golden frames in files of their own, most of them packed: a keyframe and two deltas of the surface, two frames of foam, and particles.
+// Golden frames in files of their own, most of them packed: a keyframe and two deltas of the surface, two frames of
+// foam, and particles.
 #pragma once
 
 #include <vector>

@@ -66,7 +66,7 @@ class PassTimers {
   std::size_t openQuery(std::string_view name);
   void collect();
 
-  Context& ctx_;
+  [[maybe_unused]] Context& ctx_;  ///< for assertions
   std::vector<PassCost> costs_;
   std::vector<Query> queries_;
   std::size_t next_query_ = 0;

@@ -60,7 +60,9 @@ struct FrameRequest {
     return out;
   }
 
-  [[nodiscard]] bool isEmpty() const { return !bodies && !floaters && std::ranges::all_of(levels, &LayerRequest::isEmpty); }
+  [[nodiscard]] bool isEmpty() const {
+    return !bodies && !floaters && std::ranges::all_of(levels, &LayerRequest::isEmpty);
+  }
   [[nodiscard]] const LayerRequest& at(core::Level level) const { return levels[indexOf(level)]; }
   [[nodiscard]] LayerRequest& at(core::Level level) { return levels[indexOf(level)]; }
 };
@@ -112,8 +114,8 @@ class WaterSim {
   /// Returns a number above every id in use; in a scene without boats that of numberBoatsFrom().
   [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
-  /// Adds a floater and returns its id. kInvalidInput in a scene without floaters, kUnavailable when all slots are taken
-  /// and none by a stone.
+  /// Adds a floater and returns its id. kInvalidInput in a scene without floaters, kUnavailable when all slots are
+  /// taken and none by a stone.
   core::Result<std::uint32_t> spawnFloater(const core::Floater& floater);
   /// kInvalidInput for an unknown floater.
   core::Result<void> holdFloater(const FloaterHold& hold);
