@@ -340,7 +340,7 @@ class Runner {
                      .answer_p50_ms = quantile(received.answer_times_ms, 0.5),
                      .answer_p99_ms = quantile(received.answer_times_ms, 0.99)};
     for (const auto& [layer, tally] : received.tallies) {
-      if (tally.frame_count > 0)
+      if (layer != v1::LAYER_UNSPECIFIED && tally.frame_count > 0)
         out.layers.push_back({v1::Layer_Name(layer), tally.frame_count, tally.state_count, tally.longest_gap_ever_s});
     }
     return out;

@@ -109,6 +109,7 @@ ClientMessage parseChecked(core::ByteView bytes) {
   switch (message.message_case()) {
     case v1::ClientMessage::kHello: {
       v1::Hello& hello = *message.mutable_hello();
+      hello.DiscardUnknownFields();  // rooms of a cluster keep it while they are asked
       hello.set_client(core::cleanName(hello.client(), kClientNameMaxBytes));
       hello.set_name(core::cleanName(hello.name(), kPersonNameMaxBytes));
       hello.set_color_rgb(hello.color_rgb() & 0xFFFFFFu);

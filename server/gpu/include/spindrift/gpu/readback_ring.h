@@ -28,6 +28,8 @@ class ReadbackRing {
   class Slot {
    public:
     Slot(std::uint64_t tag, std::span<const std::byte> bytes) : tag_(tag), bytes_(bytes) {}
+    Slot(const Slot&) = delete;  // a copy would outlive the lease
+    Slot& operator=(const Slot&) = delete;
 
     [[nodiscard]] std::uint64_t tag() const { return tag_; }
     /// Bytes of the slot up to the end of the last copied range.
