@@ -45,7 +45,10 @@ void findPlace(Message& message, const v1::Scene& scene, const IssuesOf& issues_
     const double out = std::sqrt(static_cast<double>(k) / kPlaceMaxCount);
     tried.set_x_m(0.5 * water.side_x_m * out * std::cos(k * golden_angle));
     tried.set_z_m(0.5 * water.side_z_m * out * std::sin(k * golden_angle));
-    if (!issues_of(tried).empty()) continue;
+    const std::vector<FieldIssue> issues = issues_of(tried);
+    const auto is_of_place = [](const FieldIssue& issue) { return issue.path == "x_m" || issue.path == "z_m"; };
+    if (!std::ranges::all_of(issues, is_of_place)) return;  // no position mends the others
+    if (!issues.empty()) continue;
     message = std::move(tried);
     return;
   }

@@ -21,6 +21,7 @@ constexpr double kFittingDraughtRatio = 0.6;
 /// Maximum size of a floater over the water's shorter side, and its maximum height over the rest level.
 constexpr double kMaxFloaterSideRatio = 0.25;
 constexpr double kMaxFloaterHeight_m = 20.0;
+constexpr double kMinFloaterDensity = 0.02;  ///< foam of polystyrene
 
 using core::metres;
 
@@ -325,6 +326,12 @@ std::vector<FieldIssue> checkFloater(const core::Floater& floater, const v1::Sce
   const WaterExtents water = waterExtentsOf(scene);
   checkAtMost(floater.size_m, kMaxFloaterSideRatio * water.shorterSide_m(), prefix + "size_m",
               "is more than a quarter of the water's shorter side of " + metres(water.shorterSide_m()), issues);
+  if (floater.density_ratio > 0 && floater.density_ratio < kMinFloaterDensity) {
+    addRange(issues, prefix + "density_ratio",
+             core::formatNumber(floater.density_ratio) + " is lighter than anything; choose at least " +
+                 core::formatNumber(kMinFloaterDensity) + ", or 0 for what suits its kind",
+             kMinFloaterDensity);
+  }
   checkAtMost(floater.y_m, kMaxFloaterHeight_m, prefix + "y_m", "is too high above the rest level", issues);
   if (floater.y_m < -water.depth_m) {
     addRange(issues, prefix + "y_m",

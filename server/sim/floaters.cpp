@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <utility>
 
 #include <fmt/format.h>
 #include <shared/bindings.h>
@@ -20,6 +21,7 @@ constexpr std::uint32_t kIdMax = 1u << 24;
 /// A step of contacts lasts at most this long, unless a tick would have too many.
 constexpr double kContactStep_s = 0.0084;
 constexpr int kMaxContactSteps = 8;
+constexpr double kDensityMin = 0.02;  ///< scene rules ask for as much; states of other servers may not
 
 using FloaterState = std::array<float, std::size_t{FLOATER_TEXELS} * 4>;
 
@@ -71,7 +73,7 @@ FloaterState startingFloater(const core::Floater& floater, std::uint32_t floater
   s[11] = f(floater_id);
   for (std::size_t axis = 0; axis < 3; ++axis) s[16 + axis] = f(kind.half[axis] * floater.size_m);
   s[19] = f(kind.shape + 8 * (static_cast<int>(floater.kind) + 1));
-  s[20] = f(floater.density_ratio > 0 ? floater.density_ratio : kind.density_ratio);
+  s[20] = f(floater.density_ratio > 0 ? std::max(floater.density_ratio, kDensityMin) : kind.density_ratio);
   s[21] = f(ballast_m);
   s[22] = f(floater.size_m);
   return s;
@@ -85,6 +87,7 @@ int contactSteps(double tick_s) {
 
 Floaters::Floaters(Creation& create, const core::Scene& scene)
     : places_(std::min<std::size_t>(scene.floaters->capacity_count, core::kMaxFloaters)),
+      own_count_(static_cast<std::uint32_t>(scene.floaters->floaters.size())),
       tile_words_count_(static_cast<std::uint32_t>((places_.size() + 31) / 32)),
       state_(create.texels("floaters", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
       reach_(create.scratch("floater places", places_.size(), gpu::TexelFormat::kRGBA32F)),
@@ -124,7 +127,7 @@ void Floaters::reset(const core::Scene& scene) {
     places_[at] = {floater_id, scene.floaters->floaters[at]};
     states[at] = startingFloater(places_[at].floater, floater_id);
   }
-  next_id_ = std::max(next_id_, floater_id);
+  next_id_ = next_id_ > kIdMax ? floater_id : std::max(next_id_, floater_id);
   state_.upload(states);
   countSlots();
 }
@@ -138,7 +141,8 @@ void Floaters::takeOver(const CarriedFloaters& carried) {
 core::Result<std::size_t> Floaters::find(std::uint32_t floater_id) const {
   const auto it = std::ranges::find(places_, floater_id, &FloaterPlace::floater_id);
   if (floater_id == 0 || it == places_.end())
-    return core::invalid(fmt::format("floater_id: {} is not in the water", floater_id));
+    return core::invalid(fmt::format(
+        "{} is not in the water: it was taken out, or the scene began again; see the layer of floaters", floater_id));
   return static_cast<std::size_t>(it - places_.begin());
 }
 
@@ -149,13 +153,18 @@ core::Result<std::uint32_t> Floaters::spawn(const core::Floater& floater) {
   }
   auto place = std::ranges::find(places_, 0u, &FloaterPlace::floater_id);
   if (place == places_.end()) {
-    const auto age = [](const FloaterPlace& p) {
-      return p.floater.kind == core::FloaterKind::kStone ? p.floater_id : kIdMax + 1;
+    // Stones first, then what was dropped, the oldest first; the scene's own last.
+    const auto order = [&](const FloaterPlace& p) {
+      const bool is_own = p.floater_id <= own_count_;
+      return std::pair(is_own ? 2 : (p.floater.kind == core::FloaterKind::kStone ? 0 : 1), p.floater_id);
     };
-    place = std::ranges::min_element(places_, {}, age);
-    if (place->floater.kind != core::FloaterKind::kStone) {
-      return core::Error{ErrorCode::kUnavailable,
-                         fmt::format("floaters: the limit of {} objects is reached; remove one first", places_.size())};
+    place = std::ranges::min_element(places_, {}, order);
+    if (place->floater_id <= own_count_) {
+      return core::Error{
+          ErrorCode::kUnavailable,
+          fmt::format("floaters: the limit of {} objects is reached, and all of them are the scene's own; "
+                      "remove one first",
+                      places_.size())};
     }
   }
   put(static_cast<std::size_t>(place - places_.begin()), next_id_, floater);
@@ -180,20 +189,17 @@ core::Result<void> Floaters::hold(const FloaterHold& hold) {
 }
 
 core::Result<void> Floaters::remove(std::uint32_t floater_id) {
+  FloaterState free{};
+  free[3] = kFreeSlot;
   if (floater_id == 0) {
     std::ranges::fill(places_, FloaterPlace{});
-    state_.upload(std::vector<FloaterState>(places_.size(), [] {
-      FloaterState free{};
-      free[3] = kFreeSlot;
-      return free;
-    }()));
-    countSlots();
-    return {};
+    state_.upload(std::vector<FloaterState>(places_.size(), free));
+  } else {
+    const auto at = find(floater_id);
+    if (!at) return at.error();
+    places_[*at] = {};
+    state_.upload(free, *at * sizeof(FloaterState));
   }
-  const auto at = find(floater_id);
-  if (!at) return at.error();
-  places_[*at] = {};
-  state_.uploadValue(kFreeSlot, *at * sizeof(FloaterState) + 3 * sizeof(float));
   countSlots();
   return {};
 }

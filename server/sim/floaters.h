@@ -19,7 +19,7 @@ class Floaters {
  public:
   Floaters(Creation& create, const core::Scene& scene);
 
-  /// Keeps only the scene's own floaters, as at the start. Ids of others are not reused.
+  /// Keeps only the scene's own floaters, as at the start. Ids of others are not reused, unless all have been used.
   void reset(const core::Scene& scene);
   void declareState(StateBuffers& out);
   /// Everything but the device's state, and its replacement.
@@ -27,7 +27,8 @@ class Floaters {
   void takeOver(const CarriedFloaters& carried);
   /// Returns whether takeOver() may be called: as many slots as here.
   [[nodiscard]] bool fits(const CarriedFloaters& carried) const { return carried.places.size() == places_.size(); }
-  /// Returns the new floater's id. When all slots are taken it replaces the oldest stone; kUnavailable without one.
+  /// Returns the new floater's id. When all slots are taken it replaces the oldest stone, or else the oldest floater
+  /// that is not the scene's own; kUnavailable when all are.
   core::Result<std::uint32_t> spawn(const core::Floater& floater);
   /// kInvalidInput for an unknown floater.
   core::Result<void> hold(const FloaterHold& hold);
@@ -54,7 +55,8 @@ class Floaters {
 
   std::vector<FloaterPlace> places_;
   std::uint32_t slot_count_ = 0;  ///< slots to look at: all floaters are below
-  std::uint32_t next_id_ = 1;     ///< never decreases
+  std::uint32_t own_count_;       ///< the scene's own have the ids from 1 to this one
+  std::uint32_t next_id_ = 1;
   std::uint32_t tile_words_count_;
   gpu::TexelBuffer state_, reach_;
   gpu::Buffer tiles_, near_, touching_, push_;

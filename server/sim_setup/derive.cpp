@@ -1,4 +1,5 @@
-// Everything that follows from a scene, in the order in which it follows; in one file, because each value needs those before it.
+// Everything that follows from a scene, in the order in which it follows; in one file, because each value needs those
+// before it.
 #include <algorithm>
 #include <cmath>
 

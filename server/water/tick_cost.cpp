@@ -63,7 +63,10 @@ double TickCost::estimate_ms(const TickWork& wanted) const {
 
 core::Result<v1::Scene> sceneAt(const SceneCatalog& scenes, const v1::Scene& now, v1::Fidelity level) {
   auto scene = scenes.load(now.name(), level);
-  if (scene) scene::keepParameters(now, *scene);
+  if (!scene) return scene;
+  scene::keepParameters(now, *scene);
+  // Waters that began before their scene had floaters continue without.
+  if (!now.has_floaters()) scene->clear_floaters();
   return scene;
 }
 

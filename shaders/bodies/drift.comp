@@ -22,6 +22,7 @@ layout(std430, binding = BOAT_PUSH) restrict readonly buffer BoatPush { int boat
 #endif
 
 const float kBounce = 0.3;
+const float kPushMax_mps = 4.0;       // by floaters in a tick
 const float kGroundingDepth = 1.1;    // depth over draught at which a boat runs aground
 
 BoatState boatAt(uint place) {
@@ -116,7 +117,8 @@ void main() {
     vec2 shift_m = vec2(0.0);
     vec2 velocity_mps = velocityOf(b);
 #if PUSHED
-    velocity_mps += vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / PUSH_UNITS;
+    const vec2 push_mps = vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / PUSH_UNITS;
+    velocity_mps += push_mps * min(1.0, kPushMax_mps / max(length(push_mps), 1e-6));
 #endif
     meetBoats(b, own, shift_m, velocity_mps);
 #if VARIED

@@ -87,11 +87,15 @@ void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m) {
 }
 
 /// Contact of the points of one floater with the surface of another.
-void meetFloater(inout Push push, Floater b, uint other, float share) {
+void meetFloater(inout Push push, Floater b, uint own, uint other, float share) {
+  // Only lists that differ by a rounding leave the other one out: nobody would apply its push.
+  if (near[other * FLOATER_NEAR_WORDS] == 0u) return;
   const Floater o = floaterAt(other);
   Push other_push = Push(vec3(0.0), vec3(0.0), 0);
   vec3 apart_m = o.centre_m - b.centre_m;
   apart_m.xz = acrossSides(apart_m.xz);
+  // Two at one position separate by their order.
+  if (dot(apart_m, apart_m) < 1e-6 * b.half_m.x * b.half_m.x) apart_m.x += (own < other ? 1e-3 : -1e-3) * b.half_m.x;
   const float mass_ratio = b.density_ratio * volumeOf(b) / (o.density_ratio * volumeOf(o));
   const float radius_m = pointRadius(b);
   const int count = pointCount(b);
@@ -143,32 +147,56 @@ void meetGround(inout Push push, Floater b, int k) {
 }
 
 #if HULLS
-/// Contact of a point with the hulls of boats: boxes that turn about the vertical only.
-void meetBoats(inout Push push, Floater b, int k) {
+/// A hull as a box that turns about the vertical only, for the contacts of this step.
+struct Hull {
+  vec3 centre_m, half_m, velocity_mps;
+  vec2 forward, starboard;
+  float mass_ratio;  // of the floater over the boat
+};
+
+/// Adds an impulse at `at` from the floater's centre, along n from the hull; the boat gets the opposite.
+void meetHull(inout Push push, inout vec2 given_mps, Floater b, Hull hull, vec3 at, vec3 n, float overlap_m) {
+  // A boat moves once per tick: its share of an impulse must last for all steps.
+  const vec3 impulse_mps = impulseOf(b, at, n, overlap_m, hull.velocity_mps, hull.mass_ratio, step_s / sim.tick_s);
+  add(push, b, at, impulse_mps, overlap_m > 0.0);
+  given_mps -= hull.mass_ratio * impulse_mps.xz;
+}
+
+vec3 fromHull(Hull hull, vec3 v) {
+  return vec3(hull.forward.x * v.x + hull.starboard.x * v.z, v.y, hull.forward.y * v.x + hull.starboard.y * v.z);
+}
+
+/// Contacts with the hulls of boats: points of the floater with the hull, and 12 points of the hull with the floater.
+void meetBoats(inout Push push, Floater b) {
   const float radius_m = pointRadius(b);
-  const vec3 r = pointOf(b, k);
+  const int count = pointCount(b);
   for (int slot = 0; slot < int(boat_place_count); ++slot) {
     vec4 t[BOAT_TEXELS];
     for (int i = 0; i < BOAT_TEXELS; ++i) t[i] = texelFetch(boats, slot * BOAT_TEXELS + i);
     const BoatState boat = unpackBoat(t);
     if (boat.age_s < 0.0) continue;
-    vec3 d = b.centre_m + r - boat.centre_m;
-    d.xz = acrossSides(d.xz);
-    const vec2 f = forwardOf(boat.heading);
-    const vec2 s = starboardOf(boat.heading);
-    const vec4 hull = boxDistance(vec3(dot(d.xz, f), d.y, dot(d.xz, s)), 0.5 * boat.hull_m.xzy);
-    const float overlap_m = radius_m - hull.w;
-    if (!(overlap_m > 0.0)) continue;
-    const vec3 n = vec3(f.x * hull.x + s.x * hull.z, hull.y, f.y * hull.x + s.y * hull.z);
     const vec2 hull_mps = velocityOf(boat);
-    const float boat_mass = boat.hull_m.x * boat.hull_m.y * boat.hull_m.w;
-    const float mass_ratio = b.density_ratio * volumeOf(b) / boat_mass;
-    const vec3 at = r - radius_m * n;
-    const vec3 impulse_mps = impulseOf(b, at, n, overlap_m, vec3(hull_mps.x, boat.speed_mps.z, hull_mps.y), mass_ratio, 1.0);
-    add(push, b, at, impulse_mps, true);
-    const vec2 given_mps = clamp(-mass_ratio * impulse_mps.xz, vec2(-4.0), vec2(4.0));
-    atomicAdd(boat_push[2 * slot], int(round(given_mps.x * PUSH_UNITS)));
-    atomicAdd(boat_push[2 * slot + 1], int(round(given_mps.y * PUSH_UNITS)));
+    const Hull hull = Hull(boat.centre_m, 0.5 * boat.hull_m.xzy, vec3(hull_mps.x, boat.speed_mps.z, hull_mps.y), forwardOf(boat.heading),
+                           starboardOf(boat.heading), b.density_ratio * volumeOf(b) / (boat.hull_m.x * boat.hull_m.y * boat.hull_m.w));
+    vec3 apart_m = b.centre_m - hull.centre_m;
+    apart_m.xz = acrossSides(apart_m.xz);
+    vec2 given_mps = vec2(0.0);
+    for (int k = 0; k < count; ++k) {
+      const vec3 r = pointOf(b, k);
+      const vec3 d = apart_m + r;
+      const vec4 local = boxDistance(vec3(dot(d.xz, hull.forward), d.y, dot(d.xz, hull.starboard)), hull.half_m);
+      const vec3 n = fromHull(hull, local.xyz);
+      meetHull(push, given_mps, b, hull, r - radius_m * n, n, radius_m - local.w);
+    }
+    for (int k = 0; k < 12; ++k) {
+      const vec3 corner = vec3(float(k % 3 - 1), float(((k / 3) & 1) * 2 - 1), float((k / 6) * 2 - 1));
+      const vec3 at = fromHull(hull, corner * hull.half_m) - apart_m;
+      const vec4 here = surfaceOf(b, at);
+      meetHull(push, given_mps, b, hull, at, -here.xyz, -here.w);
+    }
+    const ivec2 given = ivec2(round(clamp(given_mps, vec2(-64.0), vec2(64.0)) * PUSH_UNITS));
+    atomicAdd(boat_push[2 * slot], given.x);
+    atomicAdd(boat_push[2 * slot + 1], given.y);
   }
 }
 #endif
@@ -183,14 +211,12 @@ void main() {
   for (uint k = 0u; k < near_count; ++k) {
     const uint other = near[list + 1u + k];
     const uint crowd = max(near_count, near[other * FLOATER_NEAR_WORDS] & (FLOATER_GROUNDED - 1u));
-    meetFloater(push, b, other, min(1.0, kShareFrom / float(crowd)));
+    meetFloater(push, b, own, other, min(1.0, kShareFrom / float(crowd)));
   }
   const int ground_points = near[list] >= FLOATER_GROUNDED ? pointCount(b) : 0;
-  for (int k = 0; k < ground_points; ++k) {
-    meetGround(push, b, k);
+  for (int k = 0; k < ground_points; ++k) meetGround(push, b, k);
 #if HULLS
-    meetBoats(push, b, k);
+  if (ground_points > 0) meetBoats(push, b);
 #endif
-  }
   give(own, push);
 }

@@ -19,7 +19,7 @@ void main() {
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(gl_WorkGroupID.x) * FLOATER_TEXELS + k);
   Floater b = unpackFloater(t);
   const float pressing_m3 = b.dent * min(b.density_ratio, 1.0) * volumeOf(b);
-  if (b.age_s < 0.0 || pressing_m3 == 0.0) return;
+  if (b.age_s < 0.0 || !(pressing_m3 > 0.0)) return;  // also one with a non-finite state
   b = drifted(b, 0.5 * (sim.tick_s - sim.wave_dt_s));
   // Second moments over x and z: half extents squared over 3 for a box, and so on.
   const vec3 inertia_m2 = inertiaOf(b);

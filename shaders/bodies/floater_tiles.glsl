@@ -14,7 +14,13 @@ ivec4 tileSpan(vec4 place) {
   const vec2 high = (place.xz + place.w + waveHalf_m()) * per_m;
   const float n = float(FLOATER_TILES_PER_AXIS);
   // Clamped, because a non-finite position becomes an index.
-  const ivec2 first = ivec2(floor(clamp(low, vec2(-n), vec2(2.0 * n - 1.0))));
+  ivec2 first = ivec2(floor(clamp(low, vec2(-n), vec2(2.0 * n - 1.0))));
+#if !WAVE_PERIODIC_X
+  first.x = max(first.x, 0);
+#endif
+#if !WAVE_PERIODIC_Z
+  first.y = max(first.y, 0);
+#endif
   const ivec2 last = min(ivec2(floor(clamp(high, vec2(-n), vec2(2.0 * n - 1.0)))), first + FLOATER_TILES_PER_AXIS - 1);
   return ivec4(first.x, last.x, first.y, last.y);
 }

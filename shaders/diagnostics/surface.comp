@@ -104,7 +104,8 @@ void main() {
   for (uint slot = share; slot < slot_count; slot += shares) {
     vec4 all = vec4(0.0);  // not finite if a part is not: position, rotation, velocity, spin
     for (int k = 0; k < 4; ++k) all += texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
-    worst.x += isFinite(all.xyz) && isFinite(all.w) ? 0.0 : 1.0;
+    const bool is_here = !(texelFetch(floaters, int(slot) * FLOATER_TEXELS).w < 0.0);
+    worst.x += is_here && !(isFinite(all.xyz) && isFinite(all.w)) ? 1.0 : 0.0;
   }
 #endif
   partial_sum[3u * share] = floatBitsToUint(worst);

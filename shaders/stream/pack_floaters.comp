@@ -14,12 +14,13 @@ uniform uint slot_count;
 
 shared uint here_count[kGroup];
 
-bool isHere(uint slot) { return texelFetch(floaters, int(slot) * FLOATER_TEXELS).w >= 0.0; }
+bool isHere(uint slot) { return !(texelFetch(floaters, int(slot) * FLOATER_TEXELS).w < 0.0); }
 
 void pack(uint slot, uint at) {
   vec4 t[FLOATER_TEXELS];
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
-  const Floater b = unpackFloater(t);
+  Floater b = unpackFloater(t);
+  if (!(dot(b.rotation, b.rotation) > 0.5)) b.rotation = vec4(0.0, 0.0, 0.0, 1.0);  // until the watchdog mends it
   const vec3 middle_m = middleOf(b);
   const uint size_cm = uint(clamp(round(100.0 * t[5].z), 0.0, 65535.0));
   packed_words[at] = uint(b.id);

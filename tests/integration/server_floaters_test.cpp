@@ -85,16 +85,15 @@ TEST_F(Floaters, DroppedByOneAreSeenAndHeldByAnother) {
   EXPECT_THAT(idsOf(floatersWhen(two, [&](const auto& all) { return isIn(all) == 0; })), ElementsAre(1u));
 }
 
-TEST_F(Floaters, BeyondTheCapacityAreRefusedUnlessAStoneMakesRoom) {
+TEST_F(Floaters, BeyondTheCapacityReplaceTheOldest) {
   ScriptedClient one = client();
   ASSERT_TRUE(one.apply(spawnFloater(0, 4)));
   v1::Command stone = spawnFloater(0, -4);
   stone.mutable_spawn_floater()->mutable_floater()->set_kind(v1::FLOATER_KIND_STONE);
   ASSERT_TRUE(one.apply(stone));
   EXPECT_TRUE(one.apply(spawnFloater(2, 4))) << "in place of the stone";
-  const v1::Reject full = one.rejected(spawnFloater(-2, 4));
-  EXPECT_EQ(full.reason(), v1::REJECT_REASON_BUSY);
-  EXPECT_EQ(full.field(), "spawn_floater");
+  EXPECT_TRUE(one.apply(spawnFloater(-2, 4))) << "in place of the oldest that is not the scene's own";
+  EXPECT_THAT(idsOf(floatersWhen(one, [](const auto& all) { return all.size() == 3; })), ElementsAre(1u, 4u, 5u));
 }
 
 TEST_F(Floaters, UnknownIdsAreRejectedAndNamed) {

@@ -28,10 +28,10 @@ describe("the tools for objects", () => {
   it("name densities", () => expect([0, 0.15, 0.7, 0.92, 2.6].map(densityName)).toEqual(["what suits its kind", "balsa", "oak", "ice", "stone"]));
 
   it("drop the chosen kind from over the water", () => {
-    expect(dropOf("duck", { xM: 1, zM: 2 }, 0.3, 0.5, 0.7, 30)).toEqual({
+    expect(dropOf("duck", { xM: 1, zM: 2 }, 0.3, 0.5, 0.7, 30, kWater)).toEqual({
       case: "spawnFloater", value: { floater: { kind: FloaterKind.DUCK, xM: 1, yM: 0.75, zM: 2, sizeM: 0.5, densityRatio: 0.7, headingDeg: 30 } },
     });
-    expect(dropOf("crate", { xM: 0, zM: 0 }, 0, 1, 0, 0)).toMatchObject({ value: { floater: { kind: FloaterKind.CRATE } } });
+    expect(dropOf("crate", { xM: 0, zM: 0 }, 0, 1, 0, 0, kWater)).toMatchObject({ value: { floater: { kind: FloaterKind.CRATE } } });
   });
 
   it("throw a stone the way of the flick, faster the quicker it was, within the server's range", () => {
@@ -48,7 +48,7 @@ describe("the tools for objects", () => {
     expect(flick(2, 9).velocityMps).toEqual(flick(2, 0.6).velocityMps);
     expect(horizontal(flick(2, 0.2, 0.5).velocityMps)).toBeCloseTo(2.5, 9);
     expect(horizontal(flick(500, 0.01).velocityMps)).toBeLessThanOrEqual(20);
-    expect(throwOf(quick, 0.3)).toMatchObject({ case: "spawnFloater", value: { floater: { kind: FloaterKind.STONE, xM: 1, zM: 1, sizeM: 0.3, velocityXMps: quick.velocityMps[0], yM: quick.yM } } });
+    expect(throwOf(quick, 0.3, kWater)).toMatchObject({ case: "spawnFloater", value: { floater: { kind: FloaterKind.STONE, xM: 1, zM: 1, sizeM: 0.3, velocityXMps: quick.velocityMps[0], yM: quick.yM } } });
   });
 
   it("toss a stone gently from the camera's side to where one taps", () => {
@@ -105,7 +105,7 @@ describe("HoldSender", () => {
     for (const angleRad of [0.3, -0.3, 4]) {
       const { world, sent, sender } = begin();
       sender.begin(1, 7, () => ({ xM: 0, zM: 0 }));
-      sender.turn(angleRad);
+      sender.turn(angleRad, 1);
       world.pass(3000);
       expect(sent.reduce((sum, { turnRadps }) => sum + 0.04 * turnRadps!, 0)).toBeCloseTo(angleRad, 2);
       for (const { turnRadps } of sent) expect(Math.abs(turnRadps!)).toBeLessThanOrEqual(10);

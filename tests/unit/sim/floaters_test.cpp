@@ -1,5 +1,5 @@
-// Floaters: against closed forms, contacts, and what they do to the water. One long file, because all tests share its basin and its
-// reading of the state.
+// Floaters: against closed forms, contacts, and what they do to the water. One long file, because all tests share its
+// basin and its reading of the state.
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -326,6 +326,31 @@ TEST_F(FloatersOnDevice, PushABoatAndAreStoppedByIt) {
   EXPECT_LT(pose(sim).x_m + 0.75, boat[0] - 0.3) << "the raft is beside the boat";
 }
 
+TEST_F(FloatersOnDevice, AreNotPassedByABoatThatIsLowerThanThey) {
+  core::Scene scene = floaterScene({core::Floater{.x_m = 1.5, .y_m = 0.1, .size_m = 1.2}});
+  scene.boats.emplace();
+  scene.boats->boats = {core::Boat{
+      .x_m = -2.0, .length_m = 2.0, .beam_m = 0.6, .height_m = 0.4, .max_speed_mps = 3.0, .throttle_ratio = 1.0}};
+  WaterSim& sim = make(scene);
+  for (int i = 0; i < 240; ++i) {
+    sim.step();
+    const auto boat = sim.copyState().boats;
+    const FloaterPose crate = pose(sim);
+    EXPECT_GT(std::hypot(crate.x_m - boat[0], crate.z_m - boat[2]), 0.55) << "tick " << i;
+    EXPECT_LT(crate.speed_mps(), 4.0);
+    if (HasFailure()) break;
+  }
+  EXPECT_GT(pose(sim).x_m, 1.6) << "the crate was pushed";
+}
+
+TEST_F(FloatersOnDevice, SeparateWhenTheyBeginAtOnePosition) {
+  const core::Floater ball{.kind = core::FloaterKind::kBall, .y_m = 0.2};
+  WaterSim& sim = make(floaterScene({ball, ball}));
+  run(sim, 4);
+  const auto both = poses(sim);
+  EXPECT_GT(std::hypot(both[0].x_m - both[1].x_m, both[0].y_m - both[1].y_m, both[0].z_m - both[1].z_m), 0.5);
+}
+
 TEST_F(FloatersOnDevice, FollowAHandTurnAndAreReleased) {
   WaterSim& sim = make(floaterScene({core::Floater{.kind = core::FloaterKind::kPlank, .y_m = 0.0, .size_m = 1.0}}));
   run(sim, 1);
@@ -349,27 +374,35 @@ TEST_F(FloatersOnDevice, FollowAHandTurnAndAreReleased) {
   EXPECT_THAT(unknown.error().message, HasSubstr("7"));
 }
 
-TEST_F(FloatersOnDevice, MakeRoomOnlyByTheOldestStone) {
-  core::Scene scene = floaterScene();
-  scene.floaters->capacity_count = 2;
+TEST_F(FloatersOnDevice, MakeRoomByTheOldestStoneAndNeverByTheScenesOwn) {
+  core::Scene scene = floaterScene({core::Floater{.x_m = -3, .y_m = 0.1}});
+  scene.floaters->capacity_count = 3;
   WaterSim& sim = make(scene);
-  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kStone}), 1u);
-  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kStone, .x_m = 2}), 2u);
-  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kDuck}), 3u) << "the first stone goes";
-  EXPECT_FALSE(sim.removeFloater(1));
-  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kCrate, .x_m = -2}), 4u);
-  const auto full = sim.spawnFloater({});
-  ASSERT_FALSE(full);
-  EXPECT_EQ(full.error().code, core::ErrorCode::kUnavailable);
-  EXPECT_THAT(full.error().message, HasSubstr("limit of 2 objects"));
-  EXPECT_TRUE(sim.removeFloater(3));
-  EXPECT_EQ(sim.floaterCount(), 1u);
-  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kBall}), 5u) << "ids are not used again";
+  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kBall}), 2u);
+  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kStone, .x_m = 2}), 3u);
+  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kDuck}), 4u) << "the stone goes";
+  const auto gone = sim.removeFloater(3);
+  ASSERT_FALSE(gone);
+  EXPECT_THAT(gone.error().message, HasSubstr("3 is not in the water"));
+  EXPECT_EQ(*sim.spawnFloater({.x_m = -2}), 5u) << "the ball goes";
+  EXPECT_FALSE(sim.removeFloater(2));
+  EXPECT_TRUE(sim.removeFloater(4));
+  EXPECT_EQ(sim.floaterCount(), 2u);
+  EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kBall}), 6u) << "ids are not used again";
   EXPECT_TRUE(sim.removeFloater(0));
   EXPECT_EQ(sim.floaterCount(), 0u);
   run(sim, 0.5);
   sim.reset();
-  EXPECT_EQ(sim.floaterCount(), 0u);
+  EXPECT_EQ(sim.floaterCount(), 1u);
+}
+
+TEST_F(FloatersOnDevice, AreRejectedWhenAllSlotsAreTheScenesOwn) {
+  core::Scene scene = floaterScene({core::Floater{}});
+  scene.floaters->capacity_count = 1;
+  const auto full = make(scene).spawnFloater({});
+  ASSERT_FALSE(full);
+  EXPECT_EQ(full.error().code, core::ErrorCode::kUnavailable);
+  EXPECT_THAT(full.error().message, HasSubstr("limit of 1 objects"));
 }
 
 TEST_F(FloatersOnDevice, ASceneWithoutFloatersRejectsThem) {

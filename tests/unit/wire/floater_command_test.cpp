@@ -113,6 +113,11 @@ TEST(FloaterCommands, AreRejectedWhereTheSceneForbidsAFloater) {
   const CommandRejection high = rejectionFor([](v1::Floater& f) { f.set_y_m(20.5); });
   EXPECT_EQ(high.field(), "spawn_floater.floater.y_m");
   EXPECT_THAT(high.message(), HasSubstr("choose at most 20 m"));
+  for (const double density : {1e-50, 1e-38, 1e-30, 0.01}) {
+    const CommandRejection light = rejectionFor([density](v1::Floater& f) { f.set_density_ratio(density); });
+    EXPECT_EQ(light.field(), "spawn_floater.floater.density_ratio");
+    EXPECT_THAT(light.message(), HasSubstr("choose at least 0.02"));
+  }
   const CommandRejection low = rejectionFor([](v1::Floater& f) { f.set_y_m(-2.1); });
   EXPECT_EQ(low.field(), "spawn_floater.floater.y_m");
   EXPECT_THAT(low.message(), HasSubstr("below the bed; choose at least -2 m"));

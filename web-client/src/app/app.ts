@@ -97,6 +97,8 @@ export class App {
   turnHeld: (angleRad: number) => boolean = () => false;
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
+  /** Whether a pointer is down on an object. */
+  isOnObject: (pointerId: number) => boolean = () => false;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;

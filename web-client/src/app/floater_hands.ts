@@ -46,6 +46,8 @@ export class FloaterHands {
   private readonly sender: HoldSender;
   private readonly bin = byId<HTMLButtonElement>("bin");
   private twist: Twist | undefined;
+  /** Pointers that have been beside the bin since they hold: it appears under some. */
+  private readonly beside = new Set<number>();
 
   /** `lost`: this pointer's object is held no longer, because the server refused it. */
   constructor(
@@ -80,6 +82,7 @@ export class FloaterHands {
     let last = grip.at;
     this.sender.begin(pointerId, grip.floaterId, () => (last = this.placeOf(grip, pointerNow()) ?? last));
     this.bin.hidden = false;
+    if (!this.isOverBin(pointerNow())) this.beside.add(pointerId);
   }
 
   isHolding(pointerId: number): boolean {
@@ -89,7 +92,7 @@ export class FloaterHands {
   /** Lets go; over the bin, the object is taken out of the water. */
   end(pointerId: number, pointer?: PointerAt): void {
     if (!this.isHolding(pointerId)) return;
-    if (pointer && this.isOverBin(pointer)) this.remove(this.sender.heldBy(pointerId));
+    if (pointer && this.beside.delete(pointerId) && this.isOverBin(pointer)) this.remove(this.sender.heldBy(pointerId));
     else this.sender.end(pointerId);
     this.refresh();
   }
@@ -106,12 +109,13 @@ export class FloaterHands {
 
   /** Follows both fingers of a twist, and none else. */
   moved(pointerId: number, pointer: PointerAt): void {
+    if (this.isHolding(pointerId) && !this.isOverBin(pointer)) this.beside.add(pointerId);
     const { twist } = this;
     if (!twist || (pointerId !== twist.ownerId && pointerId !== twist.partnerId)) return;
     const before = angleOf(twist);
     if (pointerId === twist.ownerId) twist.owner = pointer;
     else twist.partner = pointer;
-    this.sender.turn(wrapAngle(angleOf(twist) - before));
+    this.sender.turn(wrapAngle(angleOf(twist) - before), twist.ownerId);
   }
 
   endTwist(): void {
@@ -122,6 +126,12 @@ export class FloaterHands {
   remove(floaterId: number): void {
     this.app.commands.send({ case: "removeFloater", value: { floaterId } }, "Remove object");
     for (const pointerId of this.sender.pointers()) if (this.sender.heldBy(pointerId) === floaterId) this.sender.drop(pointerId);
+    this.refresh();
+  }
+
+  /** Holds nothing any more, and says nothing. */
+  forget(): void {
+    for (const pointerId of this.sender.pointers()) this.sender.drop(pointerId);
     this.refresh();
   }
 
@@ -148,13 +158,15 @@ export class FloaterHands {
   private refresh(): void {
     const isHolding = this.sender.pointers().length > 0;
     this.bin.hidden = !isHolding;
-    if (!isHolding) this.twist = undefined;
+    if (!isHolding) this.beside.clear();
+    if (this.twist && !this.isHolding(this.twist.ownerId)) this.twist = undefined;
   }
 
+  /** Turns what was taken last; false if nothing is held. */
   private turn(angleRad: number): boolean {
-    if (this.sender.pointers().length === 0) return false;
-    this.sender.turn(angleRad);
-    return true;
+    const pointerId = this.sender.pointers().at(-1);
+    if (pointerId !== undefined) this.sender.turn(angleRad, pointerId);
+    return pointerId !== undefined;
   }
 
   private wheeled(event: WheelEvent): void {

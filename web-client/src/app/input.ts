@@ -6,7 +6,7 @@ import { connectKeyboardTools, GamepadTools } from "./virtual_pointer";
 
 export function connectInput(app: App): void {
   const hands = new PointerHands(app);
-  app.entering = () => hands.liftAll();
+  app.entering = () => hands.liftAll(true);
   connectButtons(app);
   connectHelmKeys(app);
   connectKeyboardTools(app);

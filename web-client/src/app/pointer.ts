@@ -72,13 +72,15 @@ export class PointerHands {
     canvas.addEventListener("pointercancel", (event) => {
       this.taps.cancelled(event.pointerId);
       if (this.floaters.isTwisting(event.pointerId)) this.floaters.endTwist();
-      this.letGo(event);
+      this.letGo(event, true);
     });
+    app.isOnObject = (pointerId) => this.hands.get(pointerId)?.grip !== undefined;
     app.outline = () => this.outline();
   }
 
-  /** Lifts all fingers. */
-  liftAll(): void {
+  /** Lifts all fingers. `isNewWater`: what they held is gone. */
+  liftAll(isNewWater = false): void {
+    if (isNewWater) this.floaters.forget();
     for (const pointerId of [...this.hands.keys()]) this.lift(pointerId);
   }
 
@@ -137,7 +139,10 @@ export class PointerHands {
   }
 
   private released(event: PointerEvent): void {
-    if (this.floaters.isTwisting(event.pointerId)) this.floaters.endTwist();
+    if (this.floaters.isTwisting(event.pointerId)) {
+      this.floaters.endTwist();
+      return this.taps.cancelled(event.pointerId);
+    }
     const isTap = this.taps.released(sampleOf(event));
     const hand = this.hands.get(event.pointerId);
     this.letGo(event);
@@ -184,10 +189,10 @@ export class PointerHands {
     this.app.commands.send(this.app.effects.splashAt(place, scale), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
   }
 
-  private letGo(event: PointerEvent): void {
+  private letGo(event: PointerEvent, isCancelled = false): void {
     if (!this.hands.has(event.pointerId)) return;
     event.stopPropagation();
-    this.floaters.end(event.pointerId, event);
+    this.floaters.end(event.pointerId, isCancelled ? undefined : event);
     this.lift(event.pointerId);
   }
 
@@ -231,14 +236,14 @@ export class PointerHands {
     const { kind, densityRatio } = app.floaterRows;
     const sizeM = floaterSizeM("float", app.entered!, scale)!;
     const headingDeg = Math.round(360 * Math.random() - 180);
-    app.commands.send(dropOf(kind, place, app.display.scene.heightAtM(place.xM, place.zM), sizeM, densityRatio, headingDeg), floaterLabel(kind));
+    app.commands.send(dropOf(kind, place, app.display.scene.heightAtM(place.xM, place.zM), sizeM, densityRatio, headingDeg, app.entered!), floaterLabel(kind));
     app.tools.wasUsed();
   }
 
   private launch(thrown: Throw | undefined, scale: ToolScale): void {
     const { app } = this;
     if (!thrown) return app.tools.explain();
-    app.commands.send(throwOf(thrown, floaterSizeM("throw", app.entered!, scale)!), "Stone");
+    app.commands.send(throwOf(thrown, floaterSizeM("throw", app.entered!, scale)!, app.entered!), "Stone");
     app.tools.wasUsed();
   }
 

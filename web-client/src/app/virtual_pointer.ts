@@ -75,8 +75,7 @@ export function connectKeyboardTools(app: App): void {
   });
   canvas.addEventListener("keydown", (event) => {
     const arrow = event.shiftKey ? undefined : kArrows[event.code];
-    // Held by this pointer or another; a turn of nothing tells.
-    if (!pointer.isDown || !arrow || !app.turnHeld(0)) return;
+    if (!pointer.isDown || !arrow || !app.isOnObject(kKeyboardId)) return;
     event.preventDefault();
     event.stopImmediatePropagation();
     movedPx = [movedPx[0] + kKeyStepPx * arrow[0], movedPx[1] + kKeyStepPx * arrow[1]];
@@ -84,7 +83,7 @@ export function connectKeyboardTools(app: App): void {
   }, { capture: true });
   window.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event.target)) return;
-    if (event.code === "Delete") app.removePointed();
+    if (event.code === "Delete" && !event.repeat) app.removePointed();
     else if (event.code === "KeyQ" || event.code === "KeyE") app.turnHeld(event.code === "KeyQ" ? -kKeyTurnRad : kKeyTurnRad);
     else if (event.key === "," || event.key === ".") app.floaterRows.step(event.key === "," ? -1 : 1);
   });

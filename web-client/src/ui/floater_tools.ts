@@ -16,6 +16,8 @@ type Velocity = readonly [x: number, y: number, z: number];
 /** Size at 100 %, as a share of the shorter side within bounds [m]; never more than the largest share. */
 const kSizes = { float: { sides: 0.04, limitsM: [0.2, 1.5] }, throw: { sides: 0.015, limitsM: [0.1, 0.5] } } as const;
 const kLargestSides = 0.2;
+/** An object's middle is at least half of this many sizes from a side, a little more than the server asks for. */
+const kSideGapSizes = 1.02;
 /** Height of a dropped object's middle over the water, in sizes. */
 const kDropSizes = 0.9;
 /** Where a stone is released over the water, as a share of the shorter side within bounds [m]. */
@@ -53,9 +55,15 @@ function wireKind(kind: FloaterKindName): FloaterKind {
   return (kFloaterKinds.indexOf(kind) + 1) as FloaterKind;
 }
 
+/** The nearest position that an object of this size can have: half of it from the sides. */
+function inside({ xM, zM }: WaterPlace, sizeM: number, { sideM, widthM }: Water): WaterPlace {
+  const within = (atM: number, lengthM: number): number => clamp(atM, -(lengthM - kSideGapSizes * sizeM) / 2, (lengthM - kSideGapSizes * sizeM) / 2);
+  return { xM: within(xM, sideM), zM: within(zM, widthM) };
+}
+
 /** An object that falls onto the water; `levelM`: of the water there. `densityRatio` 0: what suits its kind. */
-export function dropOf(kind: FloaterKindName, place: WaterPlace, levelM: number, sizeM: number, densityRatio: number, headingDeg: number): CommandAction {
-  return { case: "spawnFloater", value: { floater: { kind: wireKind(kind), ...place, yM: levelM + kDropSizes * sizeM, sizeM, densityRatio, headingDeg } } };
+export function dropOf(kind: FloaterKindName, place: WaterPlace, levelM: number, sizeM: number, densityRatio: number, headingDeg: number, water: Water): CommandAction {
+  return { case: "spawnFloater", value: { floater: { kind: wireKind(kind), ...inside(place, sizeM, water), yM: levelM + kDropSizes * sizeM, sizeM, densityRatio, headingDeg } } };
 }
 
 /** A stone at its release. */
@@ -65,8 +73,9 @@ export interface Throw {
   velocityMps: Velocity;
 }
 
-export function throwOf({ from, yM, velocityMps: [velocityXMps, velocityYMps, velocityZMps] }: Throw, sizeM: number): CommandAction {
-  return { case: "spawnFloater", value: { floater: { kind: FloaterKind.STONE, ...from, yM, sizeM, velocityXMps, velocityYMps, velocityZMps } } };
+export function throwOf({ from, yM, velocityMps }: Throw, sizeM: number, water: Water): CommandAction {
+  const [velocityXMps, velocityYMps, velocityZMps] = velocityMps.map((each) => clampTo(each, getOption(FloaterSchema.field.velocityXMps, parameter)));
+  return { case: "spawnFloater", value: { floater: { kind: FloaterKind.STONE, ...inside(from, sizeM, water), yM, sizeM, velocityXMps, velocityYMps, velocityZMps } } };
 }
 
 /** The throw of a flick from one place to another that took `heldS`; undefined if it did not move. */
@@ -83,11 +92,8 @@ export function flickOf(from: WaterPlace, to: WaterPlace, heldS: number, levelM:
 export function tossTo(target: WaterPlace, camera: WaterPlace, levelM: number, water: Water): Throw {
   const awayM = Math.hypot(camera.xM - target.xM, camera.zM - target.zM) || 1;
   const backM = Math.min(shareOf(water, kToss), awayM);
-  const inside = (atM: number, sideM: number): number => clamp(atM, -0.49 * sideM, 0.49 * sideM);
-  const from = {
-    xM: inside(target.xM + (backM * (camera.xM - target.xM)) / awayM, water.sideM),
-    zM: inside(target.zM + (backM * (camera.zM - target.zM)) / awayM, water.widthM),
-  };
+  const back = { xM: target.xM + (backM * (camera.xM - target.xM)) / awayM, zM: target.zM + (backM * (camera.zM - target.zM)) / awayM };
+  const from = inside(back, 0.04 * water.waterExtents.sideM, water);
   const highM = shareOf(water, kRelease);
   const forS = 0.25 + 0.4 * Math.sqrt(backM);
   return { from, yM: levelM + highM, velocityMps: [(target.xM - from.xM) / forS, (gravityOf(water) * forS) / 2 - highM / forS, (target.zM - from.zM) / forS] };

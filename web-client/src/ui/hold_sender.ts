@@ -56,9 +56,10 @@ export class HoldSender {
     return [...this.holds.keys()];
   }
 
-  /** Turns what is held; positive from +x toward +z. */
-  turn(angleRad: number): void {
-    for (const hold of this.holds.values()) hold.angleRad += angleRad;
+  /** Turns what a pointer holds; positive from +x toward +z. */
+  turn(angleRad: number, pointerId: number): void {
+    const hold = this.holds.get(pointerId);
+    if (hold) hold.angleRad += angleRad;
   }
 
   end(pointerId: number): void {

@@ -115,7 +115,7 @@ class WaterSim {
   [[nodiscard]] std::uint32_t nextBoatId() const;
   [[nodiscard]] std::uint32_t boatCount() const { return static_cast<std::uint32_t>(boats().size()); }
   /// Adds a floater and returns its id. kInvalidInput in a scene without floaters, kUnavailable when all slots are
-  /// taken and none by a stone.
+  /// taken by the scene's own.
   core::Result<std::uint32_t> spawnFloater(const core::Floater& floater);
   /// kInvalidInput for an unknown floater.
   core::Result<void> holdFloater(const FloaterHold& hold);
