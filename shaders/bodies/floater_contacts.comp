@@ -26,6 +26,7 @@ uniform float step_s;
 
 const float kStiffness = 0.08;
 const float kDamping = 0.2;
+const float kOverlapMost = 0.2;       // of half the length, with what moves: the ground pushes back from any depth
 const float kFriction = 0.5;          // of wood on wood
 const float kShareFrom = 3.0;         // neighbours from which on they share the impulse
 
@@ -67,7 +68,7 @@ vec3 impulseOf(Floater b, vec3 r, vec3 n, float overlap_m, vec3 other_mps, float
   const vec3 relative_mps = b.velocity_mps + cross(b.spin_radps, r) - other_mps;
   const float approach_mps = -dot(relative_mps, n);
   const float mass = share / (yieldOf(b, r, n) + lightness);
-  const float pressed = mass * max(kStiffness * min(overlap_m, 0.2 * b.half_m.x) / step_s + kDamping * approach_mps, 0.0);
+  const float pressed = mass * max(kStiffness * overlap_m / step_s + kDamping * approach_mps, 0.0);
   const vec3 sliding_mps = relative_mps + approach_mps * n;
   const float speed_mps = length(sliding_mps);
   const float held = min(kFriction * pressed, mass * kDamping * speed_mps);
@@ -104,7 +105,7 @@ void meetFloater(inout Push push, Floater b, uint own, uint other, float share) 
     const vec4 there = surfaceOf(o, point - apart_m);
     const vec3 r = point - radius_m * there.xyz;
     const vec3 ro = r - apart_m;
-    const float overlap_m = radius_m - there.w;
+    const float overlap_m = min(radius_m - there.w, kOverlapMost * b.half_m.x);
     const vec3 impulse_mps =
         impulseOf(b, r, there.xyz, overlap_m, o.velocity_mps + cross(o.spin_radps, ro), mass_ratio * yieldOf(o, ro, there.xyz), share);
     add(push, b, r, impulse_mps, overlap_m > 0.0);
@@ -157,7 +158,7 @@ struct Hull {
 /// Adds an impulse at `at` from the floater's centre, along n from the hull; the boat gets the opposite.
 void meetHull(inout Push push, inout vec2 given_mps, Floater b, Hull hull, vec3 at, vec3 n, float overlap_m) {
   // A boat moves once per tick: its share of an impulse must last for all steps.
-  const vec3 impulse_mps = impulseOf(b, at, n, overlap_m, hull.velocity_mps, hull.mass_ratio, step_s / sim.tick_s);
+  const vec3 impulse_mps = impulseOf(b, at, n, min(overlap_m, kOverlapMost * b.half_m.x), hull.velocity_mps, hull.mass_ratio, step_s / sim.tick_s);
   add(push, b, at, impulse_mps, overlap_m > 0.0);
   given_mps -= hull.mass_ratio * impulse_mps.xz;
 }

@@ -285,6 +285,7 @@ TEST_F(FloatersOnDevice, KeepTheVolumeOfTheWaterToTheUnit) {
   const auto eta = sim.copyState().elevation_m;
   EXPECT_EQ(std::accumulate(eta.begin(), eta.end(), 0.0), 0.0);
   EXPECT_EQ(sim.recoveredCount(), 0u);
+  run(sim, 4);  // a stone that has just fallen on something presses it into the bed for a moment
   for (const FloaterPose& p : poses(sim)) {
     EXPECT_LT(std::abs(p.x_m), 4.0);
     EXPECT_LT(std::abs(p.z_m), 4.0);
