@@ -162,7 +162,7 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
     wave->bindBasin();
     if (breakers) breakers->state().bindTexel(BREAKING);
     if (boats) boats->bind();
-    if (floaters) floaters->bindTo(surface_pass_);
+    if (floaters) floaters->bind();
     if (auto* outflow = wave->outflow()) outflow->bindTexel(OUTFLOW);
     surface_sums_.bindStorage(PARTIAL_SUM);
     surface_pass_.dispatch(surface_shares_);

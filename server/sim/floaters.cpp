@@ -88,15 +88,13 @@ int contactSteps(double tick_s) {
 Floaters::Floaters(Creation& create, const core::Scene& scene)
     : places_(std::min<std::size_t>(scene.floaters->capacity_count, core::kMaxFloaters)),
       own_count_(static_cast<std::uint32_t>(scene.floaters->floaters.size())),
-      tile_words_count_(static_cast<std::uint32_t>((places_.size() + 31) / 32)),
       state_(create.texels("floaters", places_.size() * FLOATER_TEXELS, gpu::TexelFormat::kRGBA32F)),
       reach_(create.scratch("floater places", places_.size(), gpu::TexelFormat::kRGBA32F)),
-      tiles_(create.buffer("floater tiles",
-                           std::size_t{FLOATER_TILES_PER_AXIS} * FLOATER_TILES_PER_AXIS * tile_words_count_ * 4,
-                           gpu::BufferContent::kScratch)),
+      tiles_(
+          create.buffer("floater tiles",
+                        std::size_t{FLOATER_TILES_PER_AXIS} * FLOATER_TILES_PER_AXIS * ((places_.size() + 31) / 32) * 4,
+                        gpu::BufferContent::kScratch)),
       near_(create.buffer("floater neighbours", places_.size() * FLOATER_NEAR_WORDS * 4, gpu::BufferContent::kScratch)),
-      touching_(create.buffer("floaters that touch", (FLOATER_TOUCHING_FIRST + places_.size()) * 4,
-                              gpu::BufferContent::kScratch)),
       push_(create.buffer("floater push", places_.size() * 8 * 4)),
       mark_tiles_(create.pass("bodies/floater_tiles.comp")),
       find_near_(create.pass("bodies/floater_near.comp")),
@@ -229,26 +227,19 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
   }
   state_.bindTexel(FLOATERS);
   tiles_.clear();
-  touching_.clearRange(0, 0, FLOATER_TOUCHING_FIRST * 4);
-  touching_.clearRange(1, 4, 8);  // groups along y and z
-  touching_.bindStorage(FLOATER_TOUCHING);
   reach_.bindStorage(FLOATER_PLACES);
   tiles_.bindStorage(FLOATER_TILES);
   near_.bindStorage(FLOATER_NEAR);
-  for (Pass* pass : {&mark_tiles_, &find_near_}) pass->setUniform("tile_words_count", tile_words_count_);
-  for (Pass* pass : {&mark_tiles_, &find_near_, &water_}) pass->setUniform("slot_count", slot_count_);
   mark_tiles_.run(slot_count_);
   reach_.bindTexel(FLOATER_PLACES);
   find_near_.run(slot_count_);
-  contacts_.barrier(gpu::Barrier::kIndirect);
   const int steps = contactSteps(tick_s);
   for (Pass* pass : {&contacts_, &move_}) pass->setUniform("step_s", static_cast<float>(tick_s / steps));
   push_.bindStorage(FLOATER_PUSH);
   for (int step = 0; step < steps; ++step) {
     for (Pass* pass : {&contacts_, &move_}) {
       if (pass == &move_) state_.bindStorage(FLOATERS);
-      pass->dispatchIndirect(touching_);
-      pass->barrier();
+      pass->run(slot_count_);
     }
   }
 }
@@ -272,9 +263,8 @@ void Floaters::press(const gpu::TexelBuffer& pressure_head) {
   press_.runGroups(slot_count_);
 }
 
-void Floaters::bindTo(Pass& pass) const {
+void Floaters::bind() const {
   state_.bindTexel(FLOATERS);
-  pass.setUniform("slot_count", slot_count_);
 }
 
 std::uint32_t Floaters::count() const {

@@ -44,8 +44,9 @@ class Floaters {
   void feel(double tick_s, Wave& wave);
   /// Adds their pressure to the pressure head.
   void press(const gpu::TexelBuffer& pressure_head);
-  /// Binds FLOATERS for a pass over all slots.
-  void bindTo(Pass& pass) const;
+  /// Binds FLOATERS for passes that read all slots. They find their number in the size of the buffer: zink 22.3 keeps
+  /// the first value of a plain uniform that decides a branch or a loop.
+  void bind() const;
   [[nodiscard]] std::uint32_t count() const;
 
  private:
@@ -57,9 +58,8 @@ class Floaters {
   std::uint32_t slot_count_ = 0;  ///< slots to look at: all floaters are below
   std::uint32_t own_count_;       ///< the scene's own have the ids from 1 to this one
   std::uint32_t next_id_ = 1;
-  std::uint32_t tile_words_count_;
   gpu::TexelBuffer state_, reach_;
-  gpu::Buffer tiles_, near_, touching_, push_;
+  gpu::Buffer tiles_, near_, push_;
   Pass mark_tiles_, find_near_, contacts_, move_, water_, press_;
 };
 

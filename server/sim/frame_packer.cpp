@@ -106,7 +106,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const core::Scene& sce
     at += kBodyWords;
   }
   if (parts.floaters && request.floaters) {
-    parts.floaters->bindTo(pack_floaters_);
+    parts.floaters->bind();
     pack_floaters_.setUniform("first_word", static_cast<std::uint32_t>(at));
     pack_floaters_.dispatchGroups(1);
     frame.floaters = core::FloatersView{.count = parts.floaters->count(), .words = {}};

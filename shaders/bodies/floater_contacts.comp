@@ -1,6 +1,6 @@
 // What the contacts of every floater that can touch something change in a part of a tick. One invocation per floater: the contacts of
 // its points with surfaces.
-// Reads FLOATERS, FLOATER_TOUCHING, FLOATER_NEAR, TERRAIN, BOATS. Adds to FLOATER_PUSH (bodies/floater_move.comp applies it), BOAT_PUSH.
+// Reads FLOATERS, FLOATER_NEAR, TERRAIN, BOATS. Adds to FLOATER_PUSH (bodies/floater_move.comp applies it), BOAT_PUSH.
 // Contacts are springs and dampers that never pull, with Coulomb friction. All act at once, and both sides of a contact get the same
 // impulse: momentum stays. The factors are in units of the mass m that a contact moves and of the step h: an impulse of
 // m (STIFFNESS overlap / h + DAMPING approach), divided among neighbours, is stable for a floater that is touched on all sides.
@@ -17,7 +17,6 @@ layout(local_size_x = FLOATER_GROUP) in;
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = FLOATER_PUSH) restrict buffer FloaterPush { int floater_push[]; };
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
-layout(std430, binding = FLOATER_TOUCHING) restrict readonly buffer FloaterTouching { uint touching[]; };
 #if HULLS
 layout(binding = BOATS) uniform samplerBuffer boats;
 layout(std430, binding = BOAT_PUSH) restrict buffer BoatPush { int boat_push[]; };
@@ -84,7 +83,7 @@ void add(inout Push push, Floater b, vec3 r, vec3 impulse_mps, bool touches) {
 
 /// Contact with something that does not move.
 void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m) {
-  add(push, b, r, impulseOf(b, r, n, overlap_m, vec3(0.0), 0.0, 1.0), overlap_m > 0.0);
+  add(push, b, r, impulseOf(b, r, n, min(overlap_m, kOverlapMost * b.half_m.x), vec3(0.0), 0.0, 1.0), overlap_m > 0.0);
 }
 
 /// Contact of the points of one floater with the surface of another.
@@ -203,8 +202,8 @@ void meetBoats(inout Push push, Floater b) {
 #endif
 
 void main() {
-  if (gl_GlobalInvocationID.x >= touching[FLOATER_TOUCHING_COUNT]) return;
-  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_GlobalInvocationID.x];
+  const uint own = gl_GlobalInvocationID.x;
+  if (own >= uint(near.length()) / FLOATER_NEAR_WORDS || near[own * FLOATER_NEAR_WORDS] == 0u) return;
   const Floater b = floaterAt(own);
   Push push = Push(vec3(0.0), vec3(0.0), 0);
   const uint list = own * FLOATER_NEAR_WORDS;

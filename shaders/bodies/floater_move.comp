@@ -1,12 +1,12 @@
 // Moves every floater that can touch something by a part of a tick. One invocation per floater.
-// Reads FLOATER_TOUCHING. Updates FLOATERS. Reads FLOATER_PUSH, and clears it for the next step.
+// Reads FLOATER_NEAR. Updates FLOATERS. Reads FLOATER_PUSH, and clears it for the next step.
 #include "bodies/floater.glsl"
 
 layout(local_size_x = FLOATER_GROUP) in;
 
 layout(std430, binding = FLOATERS) restrict buffer Floaters { vec4 floaters[]; };
 layout(std430, binding = FLOATER_PUSH) restrict buffer FloaterPush { int floater_push[]; };
-layout(std430, binding = FLOATER_TOUCHING) restrict readonly buffer FloaterTouching { uint touching[]; };
+layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 uniform float step_s;
 
 const float kRestSpeed_mps = 0.03;  // slower than this, a floater that is touched comes to rest
@@ -15,8 +15,8 @@ const float kRestKept = 0.9;
 vec3 pushed(uint at) { return vec3(floater_push[at], floater_push[at + 1u], floater_push[at + 2u]) / PUSH_UNITS; }
 
 void main() {
-  if (gl_GlobalInvocationID.x >= touching[FLOATER_TOUCHING_COUNT]) return;
-  const uint own = touching[FLOATER_TOUCHING_FIRST + gl_GlobalInvocationID.x];
+  const uint own = gl_GlobalInvocationID.x;
+  if (own >= uint(near.length()) / FLOATER_NEAR_WORDS || near[own * FLOATER_NEAR_WORDS] == 0u) return;
   const uint at = own * FLOATER_TEXELS;
   vec4 t[FLOATER_TEXELS];
   for (uint k = 0u; k < FLOATER_TEXELS; ++k) t[k] = floaters[at + k];

@@ -1,6 +1,5 @@
 // Lists for each floater what it can touch in this tick. One invocation per slot.
-// Reads FLOATERS, FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR, and adds to FLOATER_TOUCHING
-// (cleared before) the slots of those that can touch something, in any order.
+// Reads FLOATERS, FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR.
 // Two floaters list each other, unless one has more neighbours than words: it keeps those of the lowest slots.
 #include "bodies/floater.glsl"
 #include "bodies/floater_tiles.glsl"
@@ -17,39 +16,37 @@ layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(binding = FLOATER_PLACES) uniform samplerBuffer places;
 layout(std430, binding = FLOATER_TILES) restrict readonly buffer FloaterTiles { uint tiles[]; };
 layout(std430, binding = FLOATER_NEAR) restrict writeonly buffer FloaterNear { uint near[]; };
-layout(std430, binding = FLOATER_TOUCHING) restrict buffer FloaterTouching { uint touching[]; };
 #if HULLS
 layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
-uniform uint slot_count;
 
 /// Whether it can touch the bed, a rock, a side or a boat.
 bool isGrounded(vec4 place) {
   const vec2 inside_m = waveHalf_m() - abs(place.xz);
+  bool is_grounded = false;
 #if !WAVE_PERIODIC_X
-  if (inside_m.x < place.w) return true;
+  is_grounded = is_grounded || inside_m.x < place.w;
 #endif
 #if !WAVE_PERIODIC_Z
-  if (inside_m.y < place.w) return true;
+  is_grounded = is_grounded || inside_m.y < place.w;
 #endif
 #if VARIED
   const vec4 t = terrainAt(place.xz);
   // The bed rises at most as steeply as this within its reach.
   const float steepest = 1.0;
-  if (t.x < place.w || place.y - place.w * (1.0 + steepest) < -t.w) return true;
+  is_grounded = is_grounded || t.x < place.w || place.y - place.w * (1.0 + steepest) < -t.w;
 #else
-  if (place.y - place.w < -sim.wave_depth_m) return true;
+  is_grounded = is_grounded || place.y - place.w < -sim.wave_depth_m;
 #endif
 #if HULLS
   for (int slot = 0; slot < int(boat_place_count); ++slot) {
-    if (texelFetch(boats, slot * BOAT_TEXELS + 1).z < 0.0) continue;
     vec3 d = texelFetch(boats, slot * BOAT_TEXELS).xyz - place.xyz;
     d.xz = acrossSides(d.xz);
     const float reach_m = place.w + 0.5 * length(texelFetch(boats, slot * BOAT_TEXELS + 4).xyz);
-    if (dot(d, d) < reach_m * reach_m) return true;
+    is_grounded = is_grounded || (texelFetch(boats, slot * BOAT_TEXELS + 1).z >= 0.0 && dot(d, d) < reach_m * reach_m);
   }
 #endif
-  return false;
+  return is_grounded;
 }
 
 Floater floaterAt(uint slot) {
@@ -70,7 +67,8 @@ float gapAlong(Floater b, Floater o, vec3 apart_m) {
 
 void main() {
   const uint own = gl_GlobalInvocationID.x;
-  if (own >= slot_count) return;
+  const uint slots = uint(near.length()) / FLOATER_NEAR_WORDS;
+  if (own >= slots) return;
   const vec4 place = texelFetch(places, int(own));
   const Floater b = floaterAt(own);
   const float margin_m = place.w - reachOf(b);
@@ -78,31 +76,29 @@ void main() {
   uint count = 0u;
   if (place.w > 0.0) {
     const ivec4 span = tileSpan(place);
-    const uint words = (slot_count + 31u) / 32u;
+    const uint words = (slots + 31u) / 32u;
     for (uint word = 0u; word < words; ++word) {
       uint listed = 0u;
       for (int z = span.z; z <= span.w; ++z)
-        for (int x = span.x; x <= span.y; ++x) listed |= tiles[tileAt(x, z) * tile_words_count + word];
-      for (; listed != 0u && count < FLOATER_NEAR_WORDS - 1u; listed &= listed - 1u) {
+        for (int x = span.x; x <= span.y; ++x) listed |= tiles[tileAt(x, z, words) + word];
+      while (listed != 0u && count < FLOATER_NEAR_WORDS - 1u) {
         const uint other = 32u * word + uint(findLSB(listed));
         const vec4 at = texelFetch(places, int(other));
         vec3 d = at.xyz - place.xyz;
         d.xz = acrossSides(d.xz);
         const float reach_m = at.w + place.w;
-        if (other == own || dot(d, d) > reach_m * reach_m) continue;
         const Floater o = floaterAt(other);
         vec3 apart_m = middleOf(o) - middleOf(b);
         apart_m.xz = acrossSides(apart_m.xz);
-        if (max(gapAlong(b, o, apart_m), gapAlong(o, b, -apart_m)) > margin_m + at.w - reachOf(o)) continue;
-        ++count;
-        near[first + count] = other;
+        const float gap_m = max(gapAlong(b, o, apart_m), gapAlong(o, b, -apart_m));
+        if (other != own && dot(d, d) <= reach_m * reach_m && gap_m <= margin_m + at.w - reachOf(o)) {
+          ++count;
+          near[first + count] = other;
+        }
+        listed &= listed - 1u;
       }
     }
     if (isGrounded(place)) count += FLOATER_GROUNDED;
   }
   near[first] = count;
-  if (count == 0u) return;
-  const uint row = atomicAdd(touching[FLOATER_TOUCHING_COUNT], 1u);
-  touching[FLOATER_TOUCHING_FIRST + row] = own;
-  if (row % FLOATER_GROUP == 0u) atomicAdd(touching[0], 1u);
 }

@@ -1,6 +1,6 @@
 // Notes each floater in the tiles of the water that it can reach in this tick. One invocation per slot.
 // Reads FLOATERS. Writes FLOATER_PLACES: centre of mass and radius of what it can touch before the end of the tick, 0 for a free
-// slot. Updates FLOATER_TILES (cleared before): tile_words_count words of 32 slots per tile.
+// slot. Updates FLOATER_TILES (cleared before): a bit per slot in each tile.
 #include "bodies/floater.glsl"
 #include "bodies/floater_tiles.glsl"
 
@@ -9,11 +9,10 @@ layout(local_size_x = 64) in;
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = FLOATER_PLACES) restrict writeonly buffer FloaterPlaces { vec4 places[]; };
 layout(std430, binding = FLOATER_TILES) restrict buffer FloaterTiles { uint tiles[]; };
-uniform uint slot_count;
 
 void main() {
   const uint slot = gl_GlobalInvocationID.x;
-  if (slot >= slot_count) return;
+  if (slot >= uint(places.length())) return;
   vec4 t[FLOATER_TEXELS];
   for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
   const Floater b = unpackFloater(t);
@@ -23,6 +22,7 @@ void main() {
   places[slot] = place;
   if (!(reach_m > 0.0)) return;
   const ivec4 span = tileSpan(place);
+  const uint words = (uint(places.length()) + 31u) / 32u;
   for (int z = span.z; z <= span.w; ++z)
-    for (int x = span.x; x <= span.y; ++x) atomicOr(tiles[tileAt(x, z) * tile_words_count + (slot >> 5)], 1u << (slot & 31u));
+    for (int x = span.x; x <= span.y; ++x) atomicOr(tiles[tileAt(x, z, words) + (slot >> 5)], 1u << (slot & 31u));
 }

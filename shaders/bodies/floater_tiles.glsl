@@ -5,8 +5,6 @@
 #include "shared/floaters.h"
 #include "wave/wave_cell.glsl"
 
-uniform uint tile_words_count;
-
 /// First and last tile along x, and along z. They may lie beyond the sides: tileAt() wraps or clamps them. `place`: centre, reach.
 ivec4 tileSpan(vec4 place) {
   const vec2 per_m = float(FLOATER_TILES_PER_AXIS) / (2.0 * waveHalf_m());
@@ -25,8 +23,9 @@ ivec4 tileSpan(vec4 place) {
   return ivec4(first.x, last.x, first.y, last.y);
 }
 
-uint tileAt(int x, int z) {
-  return uint(waveNeighbourX(x, FLOATER_TILES_PER_AXIS) + FLOATER_TILES_PER_AXIS * waveNeighbourZ(z, FLOATER_TILES_PER_AXIS));
+/// First word of a tile, of `words` each.
+uint tileAt(int x, int z, uint words) {
+  return words * uint(waveNeighbourX(x, FLOATER_TILES_PER_AXIS) + FLOATER_TILES_PER_AXIS * waveNeighbourZ(z, FLOATER_TILES_PER_AXIS));
 }
 
 #endif

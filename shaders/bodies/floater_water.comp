@@ -22,7 +22,6 @@ layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 uniform float lead_s;
-uniform uint slot_count;
 
 const float kAddedMass = 0.5;         // of the displaced mass
 const float kWaveDamping = 0.12;      // of critical, at half immersion
@@ -181,7 +180,7 @@ Floater movedFreely(Floater b) {
 
 void main() {
   const uint own = gl_GlobalInvocationID.x;
-  if (own >= slot_count) return;
+  if (own >= uint(near.length()) / FLOATER_NEAR_WORDS) return;
   const uint at = own * FLOATER_TEXELS;
   vec4 t[FLOATER_TEXELS];
   for (uint i = 0u; i < FLOATER_TEXELS; ++i) t[i] = floaters[at + i];

@@ -25,7 +25,6 @@ layout(binding = BOATS) uniform samplerBuffer boats;
 #include "common/finite.glsl"
 #include "shared/floaters.h"
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
-uniform uint slot_count;
 #endif
 #if BREAKERS
 layout(binding = BREAKING) uniform samplerBuffer breaking;
@@ -101,7 +100,7 @@ void main() {
   }
 #endif
 #if FLOATING
-  for (uint slot = share; slot < slot_count; slot += shares) {
+  for (uint slot = share; slot < uint(textureSize(floaters)) / FLOATER_TEXELS; slot += shares) {
     vec4 all = vec4(0.0);  // not finite if a part is not: position, rotation, velocity, spin
     for (int k = 0; k < 4; ++k) all += texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
     const bool is_here = !(texelFetch(floaters, int(slot) * FLOATER_TEXELS).w < 0.0);

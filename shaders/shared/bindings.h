@@ -98,14 +98,13 @@
 #define BOATS 27
 #define BOAT_CONTROLS 2
 // Floaters; shared/floaters.h. What contacts change in a step; what each can touch in a tick; floaters in each tile; centre and
-// reach of each [m]; those that can touch something; push of floaters on boats. The numbers are those of particles and grid; only passes over floaters use these buffers.
+// reach of each [m]; push of floaters on boats. The numbers are those of particles and grid; only passes over floaters use these buffers.
 #define FLOATERS 0
 #define FLOATER_PUSH 1
 #define FLOATER_NEAR 2
 #define FLOATER_TILES 3
 #define FLOATER_PLACES 4
-#define FLOATER_TOUCHING 5
-#define BOAT_PUSH 6
+#define BOAT_PUSH 5
 // Foam on the surface, (n/2)^2 cells: share of white water by source (breaking, wakes, landings); the same one tick
 // ago; number of particles that landed since the last tick.
 #define FOAM_FIELD 28

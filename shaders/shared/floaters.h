@@ -31,9 +31,6 @@
 // if it can touch anything else; then their slots.
 #define FLOATER_NEAR_WORDS 32
 #define FLOATER_GROUNDED 256u
-// FLOATER_TOUCHING: three words for the dispatch over floaters that can touch something, their number, and their slots.
-#define FLOATER_TOUCHING_COUNT 3
-#define FLOATER_TOUCHING_FIRST 4
 // FLOATER_PUSH, 8 words per slot, zero between steps: change of velocity, of spin, number of contacts, 0. BOAT_PUSH, 2 words per slot:
 // change of velocity along x and z. In units of 2^-20 m/s and rad/s, because sums of integers do not depend on their order.
 #define PUSH_UNITS 1048576.0f

@@ -10,7 +10,6 @@ layout(local_size_x = kGroup) in;
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = PACKED_WORDS) restrict writeonly buffer PackedWords { uint packed_words[]; };
 uniform uint first_word;
-uniform uint slot_count;
 
 shared uint here_count[kGroup];
 
@@ -34,6 +33,7 @@ void pack(uint slot, uint at) {
 
 void main() {
   const uint lane = gl_LocalInvocationID.x;
+  const uint slot_count = uint(textureSize(floaters)) / FLOATER_TEXELS;
   const uint row = (slot_count + kGroup - 1u) / kGroup;
   const uint first = min(lane * row, slot_count);
   const uint end = min(first + row, slot_count);
