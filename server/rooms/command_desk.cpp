@@ -73,7 +73,7 @@ const CommandTraits& traitsOf(const v1::Command& command) {
 }
 
 core::Role roleFor(const v1::Command& command) {
-  const bool removes_all = command.has_remove_floater() && command.remove_floater().floater_id() == 0;
+  const bool removes_all = command.remove_floater().all();
   const bool calms = command.stroke().tool() == v1::STROKE_TOOL_CALM;
   return removes_all || calms ? core::Role::kOperator : traitsOf(command).role;
 }

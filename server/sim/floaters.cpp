@@ -15,7 +15,6 @@ namespace {
 
 using core::ErrorCode;
 
-constexpr float kFreeSlot = -1.0f;
 /// The device stores ids as 32-bit floats, which are exact for whole numbers up to this one.
 constexpr std::uint32_t kIdMax = 1u << 24;
 /// A step of contacts lasts at most this long, unless a tick would have too many.
@@ -24,6 +23,12 @@ constexpr int kMaxContactSteps = 8;
 constexpr double kDensityMin = 0.02;  ///< scene rules ask for as much; states of other servers may not
 
 using FloaterState = std::array<float, std::size_t{FLOATER_TEXELS} * 4>;
+
+FloaterState freeSlot() {
+  FloaterState out{};
+  out[3] = -1.0f;
+  return out;
+}
 
 /// Shape and mass of a kind of size 1.
 struct Kind {
@@ -102,7 +107,6 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
       move_(create.pass("bodies/floater_move.comp")),
       water_(create.pass("bodies/floater_water.comp")),
       press_(create.pass("bodies/floater_press.comp")) {
-  static_assert(core::kMaxFloaters <= 32 * 32, "bodies/floater_near.comp has an invocation per word");
   if (scene.floaters->floaters.size() > places_.size()) {
     create.fail(core::invalid(
         fmt::format("floaters.floaters: {} objects are more than floaters.capacity_count = {}: remove some or raise it",
@@ -116,8 +120,7 @@ void Floaters::declareState(StateBuffers& out) {
 }
 
 void Floaters::reset(const core::Scene& scene) {
-  std::vector<FloaterState> states(places_.size());
-  for (FloaterState& state : states) state[3] = kFreeSlot;
+  std::vector<FloaterState> states(places_.size(), freeSlot());
   std::ranges::fill(places_, FloaterPlace{});
   std::uint32_t floater_id = 1;
   // The constructor has checked that there are enough slots.
@@ -187,19 +190,18 @@ core::Result<void> Floaters::hold(const FloaterHold& hold) {
 }
 
 core::Result<void> Floaters::remove(std::uint32_t floater_id) {
-  FloaterState free{};
-  free[3] = kFreeSlot;
-  if (floater_id == 0) {
-    std::ranges::fill(places_, FloaterPlace{});
-    state_.upload(std::vector<FloaterState>(places_.size(), free));
-  } else {
-    const auto at = find(floater_id);
-    if (!at) return at.error();
-    places_[*at] = {};
-    state_.upload(free, *at * sizeof(FloaterState));
-  }
+  const auto at = find(floater_id);
+  if (!at) return at.error();
+  places_[*at] = {};
+  state_.upload(freeSlot(), *at * sizeof(FloaterState));
   countSlots();
   return {};
+}
+
+void Floaters::removeAll() {
+  std::ranges::fill(places_, FloaterPlace{});
+  state_.upload(std::vector<FloaterState>(places_.size(), freeSlot()));
+  countSlots();
 }
 
 void Floaters::countSlots() {
@@ -225,7 +227,7 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
     boats->bind();
     boats->bindPush();
   }
-  state_.bindTexel(FLOATERS);
+  bind();
   tiles_.clear();
   reach_.bindStorage(FLOATER_PLACES);
   tiles_.bindStorage(FLOATER_TILES);
@@ -258,7 +260,7 @@ void Floaters::feel(double tick_s, Wave& wave) {
 
 void Floaters::press(const gpu::TexelBuffer& pressure_head) {
   if (slot_count_ == 0) return;
-  state_.bindTexel(FLOATERS);
+  bind();
   pressure_head.bindStorage(PRESSURE_HEAD);
   press_.runGroups(slot_count_);
 }

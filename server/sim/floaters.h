@@ -32,13 +32,13 @@ class Floaters {
   core::Result<std::uint32_t> spawn(const core::Floater& floater);
   /// kInvalidInput for an unknown floater.
   core::Result<void> hold(const FloaterHold& hold);
-  /// Removes one, or with id 0 all.
   core::Result<void> remove(std::uint32_t floater_id);
+  void removeAll();
   /// For recovery: puts floaters whose state is not finite back to their starting positions. Waits for the device.
   void mend();
 
-  /// Moves the floaters by a tick with their contacts: to the time of the surface. Then boats.takePush() has what they
-  /// give.
+  /// Moves the floaters by a tick with their contacts: to the time of the surface. What they give to boats
+  /// acts in Boats::move(), which comes next.
   void move(double tick_s, const Wave& wave, Boats* boats);
   /// Sets their accelerations for the next tick. Call it after Wave::sampleSurface() and before Wave::clearPressure().
   void feel(double tick_s, Wave& wave);

@@ -78,11 +78,12 @@ void WaterSim::breakWaves() {
 }
 
 void WaterSim::moveBodies() {
+  if (!parts_->boats && !parts_->floaters) return parts_->pressBodies();
   const auto timer = timers_.scope("bodies");
   if (parts_->floaters) parts_->floaters->move(derived_.tick_s, *parts_->wave, parts_->boats.get());
   if (parts_->boats) parts_->boats->move(parts_->wave.get());
   if (parts_->floaters) parts_->floaters->feel(derived_.tick_s, *parts_->wave);
-  parts_->pressAgain();  // particles that fall in this tick add to it
+  parts_->pressBodies();  // particles that fall in this tick add to it
 }
 
 void WaterSim::emitParticles(std::uint32_t substep) {

@@ -81,6 +81,12 @@ core::Result<void> WaterSim::removeFloater(std::uint32_t floater_id) {
   return parts_->floaters->remove(floater_id);
 }
 
+core::Result<void> WaterSim::removeFloaters() {
+  if (!parts_->floaters) return noFloaters();
+  parts_->floaters->removeAll();
+  return {};
+}
+
 std::uint32_t WaterSim::floaterCount() const {
   return parts_->floaters ? parts_->floaters->count() : 0;
 }

@@ -84,7 +84,7 @@ struct WaterSim::Parts {
   [[nodiscard]] std::size_t liveCount(const Derived& derived) const;
   /// Sets the pressure of hulls and floaters for the next tick, and no other: what the tick before has set belongs to
   /// another gravity or grid.
-  void pressAgain();
+  void pressBodies();
   void makeCheckpoints(Creation& create);
   /// Replaces everything whose size depends on the number of particles; programs stay. After an error the particles are
   /// the old ones, and other parts may have either size: call resizeBack().

@@ -138,7 +138,7 @@ core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
   if (const double ratio = keptFlowRatio(carried.scene, scene_); ratio != 1.0) parts_->wave->scaleFlow(ratio);
   continueWith(carried.host, static_cast<std::uint64_t>(std::llround(carried.time_s / derived_.tick_s)));
   if (parts_->wind_sea && changesWaves(carried.scene, scene_)) parts_->wind_sea->continueIn(scene_, carried.time_s);
-  parts_->pressAgain();
+  parts_->pressBodies();
   return {};
 }
 

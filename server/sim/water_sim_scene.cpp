@@ -91,7 +91,7 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
   scene_ = std::move(prepared.scene);
   setCareful(is_careful_);
   // Water that lands presses as high a column as gives its momentum under the gravity before.
-  if (changes_gravity) parts_->pressAgain();
+  if (changes_gravity) parts_->pressBodies();
   if (prepared.flow_ratio != 1.0) parts_->wave->fillUpToBed(scene_, *derived_.wave);  // the water is shallower
   ++revision_;
   return {};
@@ -111,7 +111,7 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   return {};
 }
 
-void WaterSim::Parts::pressAgain() {
+void WaterSim::Parts::pressBodies() {
   if (!wave) return;
   wave->clearPressure();
   uniforms.bindUniform(SIM_UNIFORMS);

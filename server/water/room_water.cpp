@@ -105,8 +105,9 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
       };
     case Command::kRemoveFloater:
       return [](RoomWater& room, const Command& command) {
-        return outcomeOf(room.sim().removeFloater(command.remove_floater().floater_id()), "remove_floater.floater_id",
-                         v1::REJECT_REASON_UNKNOWN_FLOATER);
+        const v1::RemoveFloater& remove = command.remove_floater();
+        return outcomeOf(remove.all() ? room.sim().removeFloaters() : room.sim().removeFloater(remove.floater_id()),
+                         "remove_floater.floater_id", v1::REJECT_REASON_UNKNOWN_FLOATER);
       };
     default:
       return nullptr;

@@ -3,8 +3,9 @@
 // Reads FLOATERS, FLOATER_NEAR, TERRAIN, BOATS. Adds to FLOATER_PUSH (bodies/floater_move.comp applies it), BOAT_PUSH.
 // Contacts are springs and dampers that never pull, with Coulomb friction. All act at once, and both sides of a contact get the same
 // impulse: momentum stays. The factors are in units of the mass m that a contact moves and of the step h: an impulse of
-// m (STIFFNESS overlap / h + DAMPING approach), divided among neighbours, is stable for a floater that is touched on all sides.
+// m (kStiffness overlap / h + kDamping approach), divided among neighbours, is stable for a floater that is touched on all sides.
 #include "bodies/floater_shape.glsl"
+#include "bodies/floater_texels.glsl"
 #if HULLS
 #include "bodies/boat.glsl"
 #endif
@@ -14,7 +15,6 @@
 
 layout(local_size_x = FLOATER_GROUP) in;
 
-layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = FLOATER_PUSH) restrict buffer FloaterPush { int floater_push[]; };
 layout(std430, binding = FLOATER_NEAR) restrict readonly buffer FloaterNear { uint near[]; };
 #if HULLS
@@ -25,15 +25,9 @@ uniform float step_s;
 
 const float kStiffness = 0.08;
 const float kDamping = 0.2;
-const float kOverlapMost = 0.2;       // of half the length, with what moves: the ground pushes back from any depth
+const float kOverlapMost = 0.2;       // of half the length: a deeper overlap pushes no more
 const float kFriction = 0.5;          // of wood on wood
 const float kShareFrom = 3.0;         // neighbours from which on they share the impulse
-
-Floater floaterAt(uint slot) {
-  vec4 t[FLOATER_TEXELS];
-  for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
-  return unpackFloater(t);
-}
 
 /// Change of velocity and of spin, and number of contacts.
 struct Push {
@@ -67,7 +61,7 @@ vec3 impulseOf(Floater b, vec3 r, vec3 n, float overlap_m, vec3 other_mps, float
   const vec3 relative_mps = b.velocity_mps + cross(b.spin_radps, r) - other_mps;
   const float approach_mps = -dot(relative_mps, n);
   const float mass = share / (yieldOf(b, r, n) + lightness);
-  const float pressed = mass * max(kStiffness * overlap_m / step_s + kDamping * approach_mps, 0.0);
+  const float pressed = mass * max(kStiffness * min(overlap_m, kOverlapMost * b.half_m.x) / step_s + kDamping * approach_mps, 0.0);
   const vec3 sliding_mps = relative_mps + approach_mps * n;
   const float speed_mps = length(sliding_mps);
   const float held = min(kFriction * pressed, mass * kDamping * speed_mps);
@@ -83,7 +77,7 @@ void add(inout Push push, Floater b, vec3 r, vec3 impulse_mps, bool touches) {
 
 /// Contact with something that does not move.
 void touch(inout Push push, Floater b, vec3 r, vec3 n, float overlap_m) {
-  add(push, b, r, impulseOf(b, r, n, min(overlap_m, kOverlapMost * b.half_m.x), vec3(0.0), 0.0, 1.0), overlap_m > 0.0);
+  add(push, b, r, impulseOf(b, r, n, overlap_m, vec3(0.0), 0.0, 1.0), overlap_m > 0.0);
 }
 
 /// Contact of the points of one floater with the surface of another.
@@ -104,7 +98,7 @@ void meetFloater(inout Push push, Floater b, uint own, uint other, float share) 
     const vec4 there = surfaceOf(o, point - apart_m);
     const vec3 r = point - radius_m * there.xyz;
     const vec3 ro = r - apart_m;
-    const float overlap_m = min(radius_m - there.w, kOverlapMost * b.half_m.x);
+    const float overlap_m = radius_m - there.w;
     const vec3 impulse_mps =
         impulseOf(b, r, there.xyz, overlap_m, o.velocity_mps + cross(o.spin_radps, ro), mass_ratio * yieldOf(o, ro, there.xyz), share);
     add(push, b, r, impulse_mps, overlap_m > 0.0);
@@ -157,7 +151,7 @@ struct Hull {
 /// Adds an impulse at `at` from the floater's centre, along n from the hull; the boat gets the opposite.
 void meetHull(inout Push push, inout vec2 given_mps, Floater b, Hull hull, vec3 at, vec3 n, float overlap_m) {
   // A boat moves once per tick: its share of an impulse must last for all steps.
-  const vec3 impulse_mps = impulseOf(b, at, n, min(overlap_m, kOverlapMost * b.half_m.x), hull.velocity_mps, hull.mass_ratio, step_s / sim.tick_s);
+  const vec3 impulse_mps = impulseOf(b, at, n, overlap_m, hull.velocity_mps, hull.mass_ratio, step_s / sim.tick_s);
   add(push, b, at, impulse_mps, overlap_m > 0.0);
   given_mps -= hull.mass_ratio * impulse_mps.xz;
 }

@@ -1,7 +1,7 @@
 // Lists for each floater what it can touch in this tick. One invocation per slot.
 // Reads FLOATERS, FLOATER_PLACES, FLOATER_TILES (bodies/floater_tiles.comp), TERRAIN, BOATS. Writes FLOATER_NEAR.
 // Two floaters list each other, unless one has more neighbours than words: it keeps those of the lowest slots.
-#include "bodies/floater.glsl"
+#include "bodies/floater_texels.glsl"
 #include "bodies/floater_tiles.glsl"
 #if VARIED
 #include "common/terrain.glsl"
@@ -12,7 +12,6 @@
 
 layout(local_size_x = FLOATER_GROUP) in;
 
-layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(binding = FLOATER_PLACES) uniform samplerBuffer places;
 layout(std430, binding = FLOATER_TILES) restrict readonly buffer FloaterTiles { uint tiles[]; };
 layout(std430, binding = FLOATER_NEAR) restrict writeonly buffer FloaterNear { uint near[]; };
@@ -47,12 +46,6 @@ bool isGrounded(vec4 place) {
   }
 #endif
   return is_grounded;
-}
-
-Floater floaterAt(uint slot) {
-  vec4 t[FLOATER_TEXELS];
-  for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
-  return unpackFloater(t);
 }
 
 /// Largest gap between the boxes around two floaters along the axes of the first. [m]

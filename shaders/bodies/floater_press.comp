@@ -2,12 +2,11 @@
 // Reads FLOATERS. Adds to PRESSURE_HEAD [nx x nz, units] (cleared before).
 // The pressure is exp(-(q / 2 sqrt(pi))^2), q being the distance squared in standard deviations. It has the second moments of the
 // floater's volume, and at least those of kLeastCells, so that the grid carries it; its integral is pi^2 products of deviations. The floater presses where it will be in the middle of the next tick.
-#include "bodies/floater.glsl"
+#include "bodies/floater_texels.glsl"
 #include "shared/fixed_point.h"
 
 layout(local_size_x = FLOATER_GROUP) in;
 
-layout(binding = FLOATERS) uniform samplerBuffer floaters;
 layout(std430, binding = PRESSURE_HEAD) restrict buffer PressureHead { int pressure_head[]; };
 
 const float kLeastCells = 0.8;      // standard deviation
@@ -15,9 +14,7 @@ const float kReach = 3.0;           // standard deviations
 const float kHighestHead = 0.5;     // of the depth
 
 void main() {
-  vec4 t[FLOATER_TEXELS];
-  for (int k = 0; k < FLOATER_TEXELS; ++k) t[k] = texelFetch(floaters, int(gl_WorkGroupID.x) * FLOATER_TEXELS + k);
-  Floater b = unpackFloater(t);
+  Floater b = floaterAt(gl_WorkGroupID.x);
   const float pressing_m3 = b.dent * min(b.density_ratio, 1.0) * volumeOf(b);
   if (b.age_s < 0.0 || !(pressing_m3 > 0.0)) return;  // also one with a non-finite state
   b = drifted(b, 0.5 * (sim.tick_s - sim.wave_dt_s));

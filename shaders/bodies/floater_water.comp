@@ -25,13 +25,13 @@ uniform float lead_s;
 
 const float kAddedMass = 0.5;         // of the displaced mass
 const float kWaveDamping = 0.12;      // of critical, at half immersion
-const float kDentRate_per_s = 4.0;    // how fast the dent follows the immersion; a dent that follows late feeds an oscillation, so that
-const float kSteadyShare = 1.5;       // it is the whole from this part of the immersion at rest on
+const float kDentRate_per_s = 4.0;    // how fast the dent follows the immersion
+const float kSteadyShare = 1.5;       // dent over immersion, at most 1: a dent that followed each bob, late, would feed it
 const float kHandRate_per_s = 8.0;    // of the spring of a hand
 const float kHandMax_mps2 = 60.0;
 const float kHandTurn_per_s = 6.0;
 
-/// Sums over the samples; forces over the density of water.
+/// Sums over the columns; forces over the density of water.
 struct WaterSums {
   float immersed;         // share of the volume
   float level_m;          // mean
@@ -56,7 +56,7 @@ Column columnAt(Floater b, int k) {
   const float other_row = kApart * (0.5 * float(k >> 2) - 0.75);
   const vec3 h = b.half_m;
   const vec3 upright = rotatedBack(b.rotation, vec3(0.0, 1.0, 0.0));
-  Column c = Column(vec3(0.0), vec3(0.0), 1.0 / float(FLOATER_SAMPLES));
+  Column c = Column(vec3(0.0), vec3(0.0), 1.0 / float(FLOATER_COLUMNS));
   if (b.shape == FLOATER_BOX) {
     const vec3 steep = abs(upright);
     const bool along_x = steep.x > max(steep.y, steep.z);
@@ -143,14 +143,14 @@ WaterSums sampled(Floater b, float g) {
   WaterSums sums = WaterSums(0.0, 0.0, vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   const vec3 middle = middleOf(b) - b.centre_m;
   vec3 water_mps;
-  const int columns = b.shape == FLOATER_SPHERE ? 0 : FLOATER_SAMPLES;
+  const int columns = b.shape == FLOATER_SPHERE ? 0 : FLOATER_COLUMNS;
   for (int k = 0; k < columns; ++k) {
     const Column c = columnAt(b, k);
     const vec4 water = waterAt(b.centre_m.xz + c.middle_m.xz, water_mps);
     const float height_m = water.x - (b.centre_m.y + c.middle_m.y);
     const float share = clamp(0.5 + 0.5 * height_m / max(c.half_m.y, 1e-6), 0.0, 1.0);
     add(sums, b, c.middle_m + (share - 1.0) * c.half_m, c.share * share * water.w, water, water_mps, g);
-    sums.level_m += water.x / float(FLOATER_SAMPLES);
+    sums.level_m += water.x / float(FLOATER_COLUMNS);
   }
   if (columns > 0) return sums;
   const vec4 water = waterAt(b.centre_m.xz + middle.xz, water_mps);

@@ -25,7 +25,7 @@
 // Invocations of a group of the passes with one per floater.
 #define FLOATER_GROUP 32
 // Columns of the volume of a floater, and the points at which it touches; one of each for a ball.
-#define FLOATER_SAMPLES 16
+#define FLOATER_COLUMNS 16
 #define FLOATER_POINTS 16
 // FLOATER_NEAR, FLOATER_NEAR_WORDS per slot: the number of neighbours that a floater can touch in a tick, plus FLOATER_GROUNDED
 // if it can touch anything else; then their slots.

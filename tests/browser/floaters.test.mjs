@@ -1,43 +1,18 @@
 // Objects in the water, in Chromium: a drag on one holds it, and everybody sees it; what one drops, throws and takes out.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
-import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
+import { repository } from "./server.mjs";
+import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 
-import { executable, kChromiumArgs } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
-
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
-
-async function waitFor(page, what, accept) {
-  const deadline_ms = Date.now() + WAIT_MS;
-  for (;;) {
-    const stats = await page.evaluate(() => window.spindrift?.stats());
-    if (stats !== undefined && accept(stats)) return stats;
-    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; floaters: ${JSON.stringify(stats?.floaters)}`);
-    await sleep(50);
-  }
-}
 const ofKind = ({ floaters }, kind) => floaters.find((each) => each.kind === kind);
 const distanceM = (floater, xM, zM) => Math.hypot(floater.xM - xM, floater.zM - zM);
 
 describe("objects in the water", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
-  let server;
-  let browser;
-  /** Two people, each in a browser window of their own; the second has a phone. */
   let desk;
   let phone;
+  let close;
 
-  const open = async (options) => {
-    const page = await (await browser.newContext(options)).newPage();
-    await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
-    await waitFor(page, "the page to show both objects", ({ connectionState, role, floaters }) => connectionState === "live" && role !== "viewer" && floaters.length === 2);
-    return page;
-  };
-  const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
   /** Presses on an object and moves to a position; the button stays down. */
   const drag = async (page, kind, xM, zM) => {
     const floater = ofKind(await page.evaluate(() => window.spindrift.stats()), kind);
@@ -47,15 +22,10 @@ describe("objects in the water", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }
   };
 
   before(async () => {
-    server = await startServer(0, ["--scene", `${repository}/tests/browser/floaters.textproto`]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
-    desk = await open({ viewport: { width: 900, height: 600 } });
-    phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    ({ desk, phone, close } = await twoPeople(`${repository}/tests/browser/floaters.textproto`));
+    for (const page of [desk, phone]) await waitFor(page, "both objects", ({ floaters }) => floaters.length === 2);
   });
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => close?.());
 
   it("holds an object under a drag, and lets it go with the button", async () => {
     const { view } = await waitFor(desk, "a view", ({ view }) => view !== null);

@@ -1,42 +1,17 @@
 // Tools in the water, in Chromium: a drag draws and everybody sees whose it is; the right button and two fingers turn the view; paddle,
 // splash and rain do what they say.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
-
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
-
-async function waitFor(page, what, accept) {
-  const deadline_ms = Date.now() + WAIT_MS;
-  for (;;) {
-    const stats = await page.evaluate(() => window.spindrift?.stats());
-    if (stats !== undefined && accept(stats)) return stats;
-    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
-    await sleep(50);
-  }
-}
+import { repository } from "./server.mjs";
+import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 
 describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, () => {
-  let server;
-  let browser;
-  /** Two people, each in a browser window of their own; the second has a phone. */
   let desk;
   let phone;
+  let close;
 
-  const open = async (options) => {
-    const page = await (await browser.newContext(options)).newPage();
-    await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
-    await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
-    return page;
-  };
-  const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
   /** Presses, moves along the points and leaves the button down. */
   const drag = async (page, points, button = "left") => {
     for (const [k, [xM, zM]] of points.entries()) {
@@ -48,15 +23,9 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   const waitForStill = (page) => waitFor(page, "still water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM < 0.02);
 
   before(async () => {
-    server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
-    desk = await open({ viewport: { width: 900, height: 600 } });
-    phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    ({ desk, phone, close } = await twoPeople(`${repository}/tests/browser/scene.textproto`));
   });
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => close?.());
 
   it("tells a first visitor, once, what a drag does", async () => {
     // The text stays when the line has gone, after 12 s.

@@ -56,7 +56,7 @@ CLIENT_MESSAGES = {
     "spawn_floater": "command { command_id: 23 spawn_floater { floater { kind: FLOATER_KIND_DUCK x_m: 1 y_m: 3 velocity_z_mps: -4 } } }",
     "spawn_floater_in_rock": "command { command_id: 24 spawn_floater { floater { x_m: 4 } } }",
     "hold_floater": "command { command_id: 25 hold_floater { floater_id: 1 x_m: 2 z_m: -1 lift_m: 0.5 turn_radps: 1 } }",
-    "remove_floaters": "command { command_id: 26 remove_floater { } }",
+    "remove_floaters": "command { command_id: 26 remove_floater { all: true } }",
 }
 
 # Commands and requests of the REST interface.

@@ -115,10 +115,12 @@ TEST_F(Floaters, UnknownIdsAreRejectedAndNamed) {
 
 TEST_F(Floaters, OnlyAnOperatorRemovesAllAtOnce) {
   ScriptedClient player = client();
-  EXPECT_EQ(player.rejected(removeFloater(0)).reason(), v1::REJECT_REASON_FORBIDDEN);
+  EXPECT_EQ(player.rejected(removeFloaters()).reason(), v1::REJECT_REASON_FORBIDDEN);
   ScriptedClient chief = person({.token = kOperatorToken});
   chief.subscribe(v1::LAYER_FLOATERS);
-  ASSERT_TRUE(chief.apply(removeFloater(0)));
+  EXPECT_EQ(chief.rejected(removeFloater(0)).reason(), v1::REJECT_REASON_UNKNOWN_FLOATER)
+      << "a forgotten id is not all";
+  ASSERT_TRUE(chief.apply(removeFloaters()));
   EXPECT_TRUE(floatersWhen(chief, [](const auto& all) { return all.empty(); }).empty());
 }
 

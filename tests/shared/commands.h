@@ -95,10 +95,15 @@ inline v1::Command holdFloater(std::uint32_t floater_id, double x_m, double z_m)
   return command;
 }
 
-/// 0: all.
 inline v1::Command removeFloater(std::uint32_t floater_id) {
   v1::Command command;
   command.mutable_remove_floater()->set_floater_id(floater_id);
+  return command;
+}
+
+inline v1::Command removeFloaters() {
+  v1::Command command;
+  command.mutable_remove_floater()->set_all(true);
   return command;
 }
 

@@ -60,7 +60,7 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
 
 TEST(CommandTraits, ToRemoveAllFloatersTakesAnOperator) {
   EXPECT_EQ(roleFor(test::removeFloater(3)), core::Role::kPlayer);
-  EXPECT_EQ(roleFor(test::removeFloater(0)), core::Role::kOperator);
+  EXPECT_EQ(roleFor(test::removeFloaters()), core::Role::kOperator);
   EXPECT_EQ(roleFor(test::holdFloater(0, 0, 0)), core::Role::kPlayer);
 }
 

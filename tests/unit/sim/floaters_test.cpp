@@ -223,19 +223,25 @@ TEST_F(FloatersOnDevice, FallFreelyThroughTheAir) {
   EXPECT_NEAR(p.middle_m(), 3.0 + 4.0 * 0.5 - kGravity_mps2 / 2 * 0.25, 0.1);
 }
 
-TEST_F(FloatersOnDevice, RestInAHeapOnTheBed) {
+/// A hundred objects of 0.4 m in four layers; `like` has what they share.
+core::Scene heapScene(core::Floater like, double lowest_m, int kind_count) {
   core::Scene scene = floaterScene();
   scene.floaters->capacity_count = 128;
   for (int i = 0; i < 100; ++i) {
     const int layer = i / 25;
-    scene.floaters->floaters.push_back(core::Floater{.x_m = 0.45 * (i % 5 - 2) + 0.03 * layer,
-                                                     .y_m = -1.7 + 0.45 * layer,
-                                                     .z_m = 0.45 * (i / 5 % 5 - 2),
-                                                     .heading_deg = 7.0 * (i % 7),
-                                                     .size_m = 0.4,
-                                                     .density_ratio = 2.0});
+    like.kind = static_cast<core::FloaterKind>(i % kind_count);
+    like.x_m = 0.45 * (i % 5 - 2) + 0.03 * layer;
+    like.y_m = lowest_m + 0.45 * layer;
+    like.z_m = 0.45 * (i / 5 % 5 - 2);
+    like.heading_deg = 7.0 * (i % 7);
+    like.size_m = 0.4;
+    scene.floaters->floaters.push_back(like);
   }
-  WaterSim& sim = make(scene);
+  return scene;
+}
+
+TEST_F(FloatersOnDevice, RestInAHeapOnTheBed) {
+  WaterSim& sim = make(heapScene({.density_ratio = 2.0}, -1.7, 1));
   run(sim, 1);
   const double early_mps = speeds(sim).first;
   run(sim, 9);
@@ -251,15 +257,7 @@ TEST_F(FloatersOnDevice, RestInAHeapOnTheBed) {
 }
 
 TEST_F(FloatersOnDevice, AFloatingHeapComesApartAndCalmsDown) {
-  core::Scene scene = floaterScene();
-  scene.floaters->capacity_count = 128;
-  for (int i = 0; i < 100; ++i)
-    scene.floaters->floaters.push_back(core::Floater{.kind = static_cast<core::FloaterKind>(i % 7),
-                                                     .x_m = 0.45 * (i % 5 - 2) + 0.03 * (i / 25),
-                                                     .y_m = 0.2 + 0.45 * (i / 25),
-                                                     .z_m = 0.45 * (i / 5 % 5 - 2),
-                                                     .size_m = 0.4});
-  WaterSim& sim = make(scene);
+  WaterSim& sim = make(heapScene({}, 0.2, 7));
   run(sim, 2);
   const double early_mps = speeds(sim).first;
   run(sim, 13);
@@ -390,7 +388,8 @@ TEST_F(FloatersOnDevice, MakeRoomByTheOldestStoneAndNeverByTheScenesOwn) {
   EXPECT_TRUE(sim.removeFloater(4));
   EXPECT_EQ(sim.floaterCount(), 2u);
   EXPECT_EQ(*sim.spawnFloater({.kind = core::FloaterKind::kBall}), 6u) << "ids are not used again";
-  EXPECT_TRUE(sim.removeFloater(0));
+  EXPECT_FALSE(sim.removeFloater(0));
+  EXPECT_TRUE(sim.removeFloaters());
   EXPECT_EQ(sim.floaterCount(), 0u);
   run(sim, 0.5);
   sim.reset();
@@ -412,7 +411,8 @@ TEST_F(FloatersOnDevice, ASceneWithoutFloatersRejectsThem) {
   WaterSim& sim = make(scene);
   EXPECT_FALSE(sim.spawnFloater({}));
   EXPECT_FALSE(sim.holdFloater({.floater_id = 1}));
-  EXPECT_FALSE(sim.removeFloater(0));
+  EXPECT_FALSE(sim.removeFloater(1));
+  EXPECT_FALSE(sim.removeFloaters());
   EXPECT_EQ(sim.floaterCount(), 0u);
 }
 

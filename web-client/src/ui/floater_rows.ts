@@ -34,7 +34,7 @@ export class FloaterRows {
       bar.append(button);
     }
     const density = new SliderRow("object-density", kDensityRange, 0, "Density of the next objects over that of the water: balsa 0.15, oak 0.7, ice 0.92, stone 2.6. At 0 each kind has its own.", (ratio) => (this.densityRatio = ratio));
-    this.removeAll.addEventListener("click", () => send({ case: "removeFloater", value: { floaterId: 0 } }, "Remove all objects"));
+    this.removeAll.addEventListener("click", () => send({ case: "removeFloater", value: { all: true } }, "Remove all objects"));
     this.folded = make("details", { "data-testid": "object-rows" }, [make("summary", {}, ["Objects"]), density.element, this.removeAll]);
     rows.append(this.folded);
     const kept = keptChoice(kKindKey);

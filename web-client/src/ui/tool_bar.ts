@@ -28,7 +28,7 @@ export class ToolBar {
     private readonly bar: HTMLElement,
     rows: HTMLElement,
     private readonly viewTurns: () => string,
-    /** Called with the tool that is chosen, or undefined while there is none to choose. */
+    /** Called with the tool that is chosen, or undefined while no tool can be chosen. */
     private readonly changed: (name: ToolName | undefined) => void,
   ) {
     for (const [k, { name, label, does }] of kTools.entries()) {

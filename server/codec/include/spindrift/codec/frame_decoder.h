@@ -136,7 +136,8 @@ core::Result<FoamSamples> decodeFoam(const v1::LayerFrame& frame);
 /// positions within 10^6 m.
 core::Result<std::vector<BodySample>> decodeBodies(const v1::LayerFrame& frame);
 
-/// Decodes a frame of the floaters layer; errors likewise, and for an unknown kind and a rotation that is none.
+/// Decodes a frame of the floaters layer; errors likewise, and for a kind of 0 and a quaternion whose norm is not
+/// 1. A kind that is not known here is read as a crate.
 core::Result<std::vector<FloaterSample>> decodeFloaters(const v1::LayerFrame& frame);
 
 }  // namespace spindrift::codec

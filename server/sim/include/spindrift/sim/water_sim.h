@@ -119,8 +119,10 @@ class WaterSim {
   core::Result<std::uint32_t> spawnFloater(const core::Floater& floater);
   /// kInvalidInput for an unknown floater.
   core::Result<void> holdFloater(const FloaterHold& hold);
-  /// Removes one, or with id 0 all. kInvalidInput for an unknown floater.
+  /// kInvalidInput for an unknown floater.
   core::Result<void> removeFloater(std::uint32_t floater_id);
+  /// Removes all, the scene's own, too.
+  core::Result<void> removeFloaters();
   [[nodiscard]] std::uint32_t floaterCount() const;
   /// Returns the number of particles now; in two-way scenes as of the newest health().
   [[nodiscard]] std::uint32_t particleCount() const;

@@ -1,0 +1,52 @@
+// Two people, each in a browser window of their own; the second has a phone.
+import assert from "node:assert/strict";
+import { existsSync } from "node:fs";
+import { setTimeout as sleep } from "node:timers/promises";
+
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { startServer } from "./server.mjs";
+
+export const WAIT_MS = 60_000;
+/** False, or why these tests cannot run here. */
+export const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
+
+/** Waits until the page's numbers are as wanted, and returns them. */
+export async function waitFor(page, what, accept) {
+  const deadline_ms = Date.now() + WAIT_MS;
+  for (;;) {
+    const stats = await page.evaluate(() => window.spindrift?.stats());
+    if (stats !== undefined && accept(stats)) return stats;
+    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
+    await sleep(50);
+  }
+}
+
+/** Where a position on the water is in the window. */
+export const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
+
+/** Starts a server with a scene file, and opens both pages. Call close() in the end. */
+export async function twoPeople(scene) {
+  const server = await startServer(0, ["--scene", scene]);
+  let browser;
+  const close = async () => {
+    await browser?.close();
+    await server.stop("SIGTERM");
+  };
+  const open = async (options) => {
+    const page = await (await browser.newContext(options)).newPage();
+    await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
+    await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
+    return page;
+  };
+  try {
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    const desk = await open({ viewport: { width: 900, height: 600 } });
+    const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    return { desk, phone, close };
+  } catch (error) {
+    await close();
+    throw error;
+  }
+}
