@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
 """Writes the seeds of the fuzz targets below corpus/; long because it holds the text of every message and request.
 
-usage: make_corpus.py [FOLDER]            (needs protoc; corpus/ beside this file if left out)
-
 Frames: sequences of golden messages that build on each other. Scenes and single golden messages are used as seeds without a
 copy, see CMakeLists.txt.
 """
 
+import argparse
 import base64
 import hashlib
 import hmac
 import json
 import struct
 import subprocess
-import sys
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PROTO = ROOT / "proto"
-FOLDER = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE / "corpus"
+parser = argparse.ArgumentParser(description="Writes the seeds of the fuzz targets (needs protoc).")
+parser.add_argument("folder", nargs="?", type=Path, default=HERE / "corpus")
+FOLDER = parser.parse_args().folder
 
 CLIENT_MESSAGES = {
     "hello": 'hello { version { major: 1 } client: "seed \\303\\251" }',
