@@ -62,6 +62,9 @@ const std::vector<Case>& accuracyCases() {
         {"floating-body", "Draught of a boat at rest", floatingBody},
         {"mach-wedge", "Wake of a boat faster than the waves", machWedge},
         {"boat-resistance", "Wave-making resistance of a boat over its speed", boatResistance},
+        {"floating-objects", "Draught of objects at rest", floatingObjects},
+        {"floater-motion", "Heave, roll and loll of objects", floaterMotion},
+        {"sinking-objects", "A ball that sinks, and a heap on the bed", sinkingObjects},
     };
     for (Case& each : all) each = unlessLost(std::move(each));
     return all;

@@ -100,4 +100,9 @@ Outcome floatingBody(gpu::Context& ctx, bool quick);
 Outcome machWedge(gpu::Context& ctx, bool quick);
 Outcome boatResistance(gpu::Context& ctx, bool quick);
 
+// floater_cases.cpp
+Outcome floatingObjects(gpu::Context& ctx, bool quick);
+Outcome floaterMotion(gpu::Context& ctx, bool quick);
+Outcome sinkingObjects(gpu::Context& ctx, bool quick);
+
 }  // namespace spindrift::study

@@ -1,4 +1,4 @@
-// Floaters: against closed forms, contacts, and what they do to the water. One long file, because all tests share its
+// Floaters: contacts, hands, slots, and what they do to the water. One long file, because all tests share its
 // basin and its reading of the state.
 #include <cmath>
 #include <limits>
@@ -8,7 +8,8 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <shared/floaters.h>
+
+#include <spindrift/study/floater_pose.h>
 
 #include "sim_fixture.h"
 
@@ -18,7 +19,6 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr double kGravity_mps2 = 9.81;
-constexpr double kAddedMass = 0.5;  ///< of the displaced mass: bodies/floater_water.comp
 constexpr double kTick_s = 1.0 / 60.0;
 
 /// 8 m of water with the wave only; tests add what they need.
@@ -36,101 +36,22 @@ core::Scene floaterScene(std::vector<core::Floater> floaters = {}) {
   return scene;
 }
 
-/// The same with open sides, where waves of a floater leave and do not come back.
-core::Scene openScene(std::vector<core::Floater> floaters) {
-  core::Scene scene = floaterScene(std::move(floaters));
-  scene.wave->side_m = 40.0;
-  scene.wave->resolution_count = 128;
-  setBoundaries(*scene.wave, core::WaveBoundary::kAbsorb);
-  scene.wave->sponge_width_m = 8.0;
-  return scene;
-}
-
-struct FloaterPose {
-  double x_m, y_m, z_m;
-  double velocity_x_mps, velocity_y_mps, velocity_z_mps;
-  double up_x, up_y, up_z;  ///< where its own y axis points
-  double spin_radps, dent, ballast_m, age_s;
-  [[nodiscard]] double speed_mps() const { return std::hypot(velocity_x_mps, velocity_y_mps, velocity_z_mps); }
-  [[nodiscard]] double tilt_deg() const { return std::acos(std::min(up_y, 1.0)) * 180.0 / std::numbers::pi; }
-  /// Of the middle of its shape.
-  [[nodiscard]] double middle_m() const { return y_m - ballast_m * up_y; }
-};
-
-/// Time between rises through the mean. [s]
-double periodOf(const std::vector<double>& values) {
-  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  std::vector<double> rises_s;
-  for (std::size_t i = 1; i < values.size(); ++i) {
-    if (values[i - 1] >= mean || values[i] < mean) continue;
-    rises_s.push_back(kTick_s * (static_cast<double>(i) - (values[i] - mean) / (values[i] - values[i - 1])));
-  }
-  return rises_s.size() < 2 ? 0.0 : (rises_s.back() - rises_s.front()) / static_cast<double>(rises_s.size() - 1);
-}
+using study::FloaterPose;
 
 class FloatersOnDevice : public OnDevice {
  protected:
-  static std::vector<FloaterPose> poses(WaterSim& sim) {
-    const auto all = sim.copyState().floaters;
-    std::vector<FloaterPose> out;
-    for (std::size_t at = 0; at < all.size(); at += FLOATER_TEXELS * 4) {
-      const float* s = &all[at];
-      if (s[3] < 0) continue;
-      const double x = s[4], y = s[5], z = s[6], w = s[7];
-      out.push_back({s[0], s[1], s[2], s[8], s[9], s[10], 2 * (x * y - w * z), 1 - 2 * (x * x + z * z),
-                     2 * (y * z + w * x), std::hypot(s[12], s[13], s[14]), s[15], s[21], s[3]});
-    }
-    return out;
-  }
+  static std::vector<FloaterPose> poses(WaterSim& sim) { return study::floaterPoses(sim.copyState()); }
   static FloaterPose pose(WaterSim& sim) { return poses(sim).at(0); }
   static void run(WaterSim& sim, double duration_s) {
     for (int i = 0; i < duration_s / kTick_s; ++i) sim.step();
   }
-  /// Lifts the first floater, and tilts it about x.
-  static void disturb(WaterSim& sim, double up_m, double tilt_deg) {
-    StateCopy state = sim.copyState();
-    const double half_rad = tilt_deg * std::numbers::pi / 360;
-    state.floaters[1] += static_cast<float>(up_m);
-    state.floaters[4] = static_cast<float>(std::sin(half_rad));
-    state.floaters[5] = state.floaters[6] = 0;
-    state.floaters[7] = static_cast<float>(std::cos(half_rad));
-    sim.setState(state);
-  }
-  /// Mean and largest speed. [m/s]
-  static std::pair<double, double> speeds(WaterSim& sim) {
-    double sum = 0.0, fastest = 0.0;
+  static double meanSpeed_mps(WaterSim& sim) {
+    double sum = 0.0;
     const auto all = poses(sim);
-    for (const FloaterPose& p : all) {
-      sum += p.speed_mps();
-      fastest = std::max(fastest, p.speed_mps());
-    }
-    return {sum / static_cast<double>(all.size()), fastest};
+    for (const FloaterPose& p : all) sum += p.speed_mps();
+    return sum / static_cast<double>(all.size());
   }
 };
-
-TEST_F(FloatersOnDevice, FloatAtTheDraughtOfTheirDensity) {
-  struct Case {
-    core::FloaterKind kind;
-    double density, height_m, draught_m;
-  };
-  // A cylinder and a ball half under water, and a ball with a tenth: 3 h^2 - 2 h^3 = 0.1 with h over the diameter.
-  for (const Case& c : {Case{core::FloaterKind::kCrate, 0.3, 0.8, 0.24},
-                        {core::FloaterKind::kCrate, 0.6, 0.8, 0.48},
-                        {core::FloaterKind::kRaft, 0.5, 0.096, 0.048},
-                        {core::FloaterKind::kBuoy, 0.4, 0.8, 0.32},
-                        {core::FloaterKind::kBarrel, 0.5, 0.528, 0.264},
-                        {core::FloaterKind::kBarrel, 0.2523, 0.528, 0.528 * 0.3},
-                        {core::FloaterKind::kBall, 0.1, 0.8, 0.8 * 0.1958}}) {
-    WaterSim& sim =
-        make(openScene({core::Floater{.kind = c.kind, .y_m = 0.0, .size_m = 0.8, .density_ratio = c.density}}));
-    run(sim, 12);
-    const FloaterPose p = pose(sim);
-    EXPECT_NEAR(c.height_m / 2 - p.middle_m(), c.draught_m, 0.05 * c.draught_m)
-        << "kind " << static_cast<int>(c.kind) << ", density " << c.density;
-    EXPECT_NEAR(p.x_m, 0.0, 0.02);
-    EXPECT_NEAR(p.z_m, 0.0, 0.02);
-  }
-}
 
 TEST_F(FloatersOnDevice, PressADentOfTheirOwnVolumeIntoTheWater) {
   WaterSim& sim = make(floaterScene({core::Floater{.y_m = 0.0, .size_m = 1.2, .density_ratio = 0.5}}));
@@ -142,78 +63,6 @@ TEST_F(FloatersOnDevice, PressADentOfTheirOwnVolumeIntoTheWater) {
   EXPECT_NEAR(dent_m3, 0.5 * std::pow(1.2, 3), 0.03 * 0.5 * std::pow(1.2, 3));
 }
 
-TEST_F(FloatersOnDevice, BobWithThePeriodOfTheirDraught) {
-  struct Case {
-    core::FloaterKind kind;
-    double draught_m;
-  };
-  for (const Case& c : {Case{core::FloaterKind::kCrate, 0.4 * 0.8}, {core::FloaterKind::kBuoy, 0.45 * 0.8}}) {
-    WaterSim& sim = make(openScene({core::Floater{.kind = c.kind, .y_m = 0.08, .size_m = 0.8}}));
-    run(sim, 6);
-    disturb(sim, 0.08, 0.0);
-    std::vector<double> heave_m;
-    for (int i = 0; i < 200; ++i) {
-      sim.step();
-      heave_m.push_back(pose(sim).y_m);
-    }
-    const double expected_s = 2 * std::numbers::pi * std::sqrt((1 + kAddedMass) * c.draught_m / kGravity_mps2);
-    EXPECT_NEAR(periodOf(heave_m), expected_s, 0.05 * expected_s) << "kind " << static_cast<int>(c.kind);
-  }
-}
-
-TEST_F(FloatersOnDevice, RollWithThePeriodOfTheirStability) {
-  struct Case {
-    core::FloaterKind kind;
-    double size_m, density, height_m, beam_m, ballast;
-  };
-  for (const Case& c : {Case{core::FloaterKind::kCrate, 0.8, 0.4, 0.8, 0.8, -0.65},
-                        {core::FloaterKind::kRaft, 2.0, 0.45, 0.24, 1.4, 0.0}}) {
-    const double own_ballast = c.kind == core::FloaterKind::kCrate ? -0.35 : 0.0;
-    WaterSim& sim = make(openScene({core::Floater{.kind = c.kind,
-                                                  .y_m = 0.0,
-                                                  .size_m = c.size_m,
-                                                  .density_ratio = c.density,
-                                                  .ballast_ratio = c.ballast - own_ballast}}));
-    run(sim, 6);
-    disturb(sim, 0.0, 4.0);
-    std::vector<double> roll;
-    for (int i = 0; i < 240; ++i) {
-      sim.step();
-      roll.push_back(pose(sim).up_z);
-    }
-    const double draught_m = c.density * c.height_m;
-    const double metacentric_m =
-        draught_m / 2 + c.beam_m * c.beam_m / 12 / draught_m - (1 + c.ballast) * c.height_m / 2;
-    const double inertia_m2 = (c.beam_m * c.beam_m + c.height_m * c.height_m) / 12;
-    const double expected_s =
-        2 * std::numbers::pi * std::sqrt((1 + kAddedMass) * inertia_m2 / kGravity_mps2 / metacentric_m);
-    EXPECT_NEAR(periodOf(roll), expected_s, 0.05 * expected_s) << "kind " << static_cast<int>(c.kind);
-  }
-}
-
-TEST_F(FloatersOnDevice, LeanToTheAngleOfLollWhenTopHeavy) {
-  // tan^2 = -2 GM / BM for a box whose sides stay wet (Rawson & Tupper, Basic Ship Theory).
-  const double draught_m = 0.32, moment_m = 0.8 * 0.8 / 12 / draught_m;
-  const double metacentric_m = draught_m / 2 + moment_m - (1 - 0.35 + 0.28) * 0.4;
-  const double expected_deg = std::atan(std::sqrt(-2 * metacentric_m / moment_m)) * 180 / std::numbers::pi;
-  WaterSim& sim = make(openScene({core::Floater{.y_m = 0.0, .size_m = 0.8, .ballast_ratio = 0.28}}));
-  run(sim, 3);
-  disturb(sim, 0.0, 3.0);
-  run(sim, 30);
-  EXPECT_NEAR(pose(sim).tilt_deg(), expected_deg, 0.05 * expected_deg);
-}
-
-TEST_F(FloatersOnDevice, SinkWithTheTerminalVelocityOfABall) {
-  core::Scene scene = floaterScene(
-      {core::Floater{.kind = core::FloaterKind::kStone, .y_m = -1.0, .size_m = 0.2, .density_ratio = 2.6}});
-  scene.wave->depth_m = 20.0;
-  WaterSim& sim = make(scene);
-  run(sim, 4);
-  // Weight in water = 0.47 rho pi R^2 v^2 / 2.
-  const double expected_mps = std::sqrt(2 * 1.6 * kGravity_mps2 * 4.0 / 3.0 * 0.1 / 0.47);
-  EXPECT_NEAR(-pose(sim).velocity_y_mps, expected_mps, 0.03 * expected_mps);
-}
-
 TEST_F(FloatersOnDevice, FallFreelyThroughTheAir) {
   WaterSim& sim =
       make(floaterScene({core::Floater{.y_m = 3.0, .size_m = 0.4, .velocity_x_mps = 2.0, .velocity_y_mps = 4.0}}));
@@ -223,46 +72,24 @@ TEST_F(FloatersOnDevice, FallFreelyThroughTheAir) {
   EXPECT_NEAR(p.middle_m(), 3.0 + 4.0 * 0.5 - kGravity_mps2 / 2 * 0.25, 0.1);
 }
 
-/// A hundred objects of 0.4 m in four layers; `like` has what they share.
-core::Scene heapScene(core::Floater like, double lowest_m, int kind_count) {
+TEST_F(FloatersOnDevice, AFloatingHeapComesApartAndCalmsDown) {
   core::Scene scene = floaterScene();
   scene.floaters->capacity_count = 128;
   for (int i = 0; i < 100; ++i) {
     const int layer = i / 25;
-    like.kind = static_cast<core::FloaterKind>(i % kind_count);
-    like.x_m = 0.45 * (i % 5 - 2) + 0.03 * layer;
-    like.y_m = lowest_m + 0.45 * layer;
-    like.z_m = 0.45 * (i / 5 % 5 - 2);
-    like.heading_deg = 7.0 * (i % 7);
-    like.size_m = 0.4;
-    scene.floaters->floaters.push_back(like);
+    scene.floaters->floaters.push_back({.kind = static_cast<core::FloaterKind>(i % 7),
+                                        .x_m = 0.45 * (i % 5 - 2) + 0.03 * layer,
+                                        .y_m = 0.2 + 0.45 * layer,
+                                        .z_m = 0.45 * (i / 5 % 5 - 2),
+                                        .heading_deg = 7.0 * (i % 7),
+                                        .size_m = 0.4});
   }
-  return scene;
-}
-
-TEST_F(FloatersOnDevice, RestInAHeapOnTheBed) {
-  WaterSim& sim = make(heapScene({.density_ratio = 2.0}, -1.7, 1));
-  run(sim, 1);
-  const double early_mps = speeds(sim).first;
-  run(sim, 9);
-  EXPECT_LT(speeds(sim).first, 0.1 * early_mps);
+  WaterSim& sim = make(scene);
   run(sim, 2);
-  EXPECT_LT(speeds(sim).second, 0.02);
-  double highest_m = -2.0;
-  for (const FloaterPose& p : poses(sim)) {
-    EXPECT_GT(p.y_m, -2.0 + 0.1);  // a crate that lies on the bed has its centre of mass 0.13 m above it
-    highest_m = std::max(highest_m, p.y_m);
-  }
-  EXPECT_GT(highest_m, -2.0 + 0.35) << "they lie on each other";
-}
-
-TEST_F(FloatersOnDevice, AFloatingHeapComesApartAndCalmsDown) {
-  WaterSim& sim = make(heapScene({}, 0.2, 7));
-  run(sim, 2);
-  const double early_mps = speeds(sim).first;
+  const double early_mps = meanSpeed_mps(sim);
   run(sim, 13);
-  EXPECT_LT(speeds(sim).first, 0.3 * early_mps);
-  EXPECT_LT(speeds(sim).first, 0.15);
+  EXPECT_LT(meanSpeed_mps(sim), 0.3 * early_mps);
+  EXPECT_LT(meanSpeed_mps(sim), 0.15);
   for (const FloaterPose& p : poses(sim)) EXPECT_GT(p.y_m, -1.0);
 }
 
