@@ -99,6 +99,13 @@ TEST_F(ClassTest, ANewcomerIsToldTheLessonAndTheGame) {
   EXPECT_EQ(game->game().kind(), v1::GAME_KIND_UNSPECIFIED);
 }
 
+TEST_F(ClassTest, OnTheLoopbackPhonesAreToldNoAddress) {
+  const HttpAnswer answer = httpRequest(server().port(), "GET", "/api/v1/join");
+  EXPECT_EQ(answer.status, 200U);
+  EXPECT_EQ(answer.body, "{\"urls\":[]}\n");
+  EXPECT_EQ(httpRequest(server().port(), "POST", "/api/v1/join", "Content-Length: 0\r\n").status, 405U);
+}
+
 TEST_F(ClassTest, PlayersMayNotGiveLessonsAndOperatorsMayDoEverything) {
   ScriptedClient ada = client();
   ScriptedClient operator_ = teacher();
