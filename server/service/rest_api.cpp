@@ -91,9 +91,12 @@ unsigned httpStatusOf(v1::RejectReason reason) {
       return 403;
     case v1::REJECT_REASON_UNKNOWN_BOAT:
     case v1::REJECT_REASON_UNKNOWN_FLOATER:
+    case v1::REJECT_REASON_UNKNOWN_PERSON:
     case v1::REJECT_REASON_UNKNOWN_SCENE:
     case v1::REJECT_REASON_UNKNOWN_PARAMETER:
       return 404;
+    case v1::REJECT_REASON_NOT_NOW:
+      return 409;
     case v1::REJECT_REASON_BUSY:
       return 503;
     default:
@@ -146,6 +149,14 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
     if (request.method != "GET") return respond(wrongMethod("GET"));
     v1::SceneList out;
     for (const std::string& name : rooms_->rules().scenes.names()) out.add_scenes(name);
+    return respond(json(200, out));
+  }
+  if (call.path[0] == "join" && call.path.size() == 1) {
+    if (request.method != "GET") return respond(wrongMethod("GET"));
+    v1::JoinInfo out;
+    if (pad_urls_) {
+      for (std::string& url : pad_urls_()) out.add_urls(std::move(url));
+    }
     return respond(json(200, out));
   }
   if (call.path[0] == "drain" && call.path.size() == 1) return drainServer(call, respond);

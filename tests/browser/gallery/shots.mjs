@@ -30,6 +30,7 @@ const kShots = {
   open_water: { tick: 240 },
   particles_only: { tick: 60 },
   pool: { tick: 102 },
+  regatta: { tick: 300, camera: { view: "overview" } },
   river_mouth: { tick: 780, historyTicks: 300, camera: { eyeM: [-6, 6, 14], targetM: [3, 0, 0] } },
   rain_rings: { tick: 420, camera: { eyeM: [0.4, 2.2, 4.6], targetM: [0, 0, 0] } },
   splash: { tick: 84 },

@@ -27,6 +27,7 @@ TEST_F(StaticFilesTest, ServesTheIndexForTheRoot) {
   ASSERT_TRUE(files.find("/"));
   EXPECT_EQ(files.find("/")->content, "<h1>water</h1>");
   EXPECT_EQ(files.find("/"), files.find("/index.html")) << "from memory, both times the same file";
+  EXPECT_EQ(files.find("/"), files.find("/pad")) << "the page of a class";
   EXPECT_FALSE(files.find("/")->immutable);
 }
 
