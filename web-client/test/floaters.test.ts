@@ -15,7 +15,7 @@ function frame(records: Partial<FloaterRecord>[], spareBytes = 0): FloatersFrame
   const payload = floatersPayload(records);
   const buffer = new ArrayBuffer(payload.length + spareBytes);
   new Uint8Array(buffer).set(payload);
-  return { layer: "floaters", tick: 1n, stateId: 0n, timeS: 2.5, serverTimeS: 2.5, level: "full", count: records.length, buffer };
+  return { layer: "floaters", tick: 1n, stateId: 0n, timeS: 2.5, serverTimeS: 2.5, level: "full", count: records.length, quantumM: 0.001, buffer };
 }
 
 function pose(change: Partial<FloaterPose>): FloaterPose {

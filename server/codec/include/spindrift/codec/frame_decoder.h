@@ -122,6 +122,23 @@ class PlaneKeeper : public PackedPlaneDecoder {
   std::optional<v1::LayerFrame> head_;  ///< of the newest frame, without its payload
 };
 
+/// Decodes the packed floaters, and keeps the last frame, on which a delta builds. One instance per subscription.
+class PackedFloaterDecoder {
+ public:
+  PackedFloaterDecoder();
+  ~PackedFloaterDecoder();
+  PackedFloaterDecoder(const PackedFloaterDecoder&) = delete;
+  PackedFloaterDecoder& operator=(const PackedFloaterDecoder&) = delete;
+
+  /// Errors as decodeFloaters(); kUnavailable: the frame builds on a missing one. After an error only a keyframe can be
+  /// decoded: subscribe again.
+  core::Result<std::vector<FloaterSample>> decode(const v1::LayerFrame& frame);
+
+ private:
+  struct History;
+  std::unique_ptr<History> history_;
+};
+
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is valid).
 core::Result<ParticleSamples> decodeParticles(const v1::LayerFrame& frame);
 

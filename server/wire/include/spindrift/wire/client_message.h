@@ -19,11 +19,13 @@ namespace spindrift::wire {
 /// Version of the wire protocol. Clients with another major version are refused; minor versions only add fields and
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
-inline constexpr std::uint32_t kWireMinor = 6;
+inline constexpr std::uint32_t kWireMinor = 7;
 /// First minor version whose clients know planes that are not squares (count_z and width_m of their headers).
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
 inline constexpr std::uint32_t kDrainingMinor = 2;
+/// First minor version whose clients know floaters_predicted; others get floaters_fixed28.
+inline constexpr std::uint32_t kPackedFloatersMinor = 7;
 /// Hello.client is cut to this length.
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
