@@ -113,4 +113,9 @@ core::Result<std::vector<FloaterSample>> PackedFloaterDecoder::decode(const v1::
   return out;
 }
 
+core::Bytes PackedFloaterDecoder::keyframePayload() const {
+  ResidualEncoder residuals;
+  return FloaterChainEncoder::keyframeOf(history_->reader.list(), residuals);
+}
+
 }  // namespace spindrift::codec

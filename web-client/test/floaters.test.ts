@@ -62,6 +62,11 @@ describe("a frame of objects on the wire", () => {
     expect(floaters[0]!.isHeld).toBe(false);
   });
 
+  it("places packed objects by their quantum", () => {
+    const { floaters } = unpackFloaters({ ...frame([{ xMm: -250, turn: [0, 0, 0, 256] }]), quantumM: 0.008 });
+    expect(floaters[0]).toMatchObject({ xM: -2, turn: [0, 0, 0, 1] });
+  });
+
   it("draws a kind that it does not know as a crate, and ignores a rotation without length", () => {
     expect(unpackFloaters(frame([{ kind: 0 }, { kind: 9 }, { kind: 255 }])).floaters.map(({ kind }) => kind)).toEqual(["crate", "crate", "crate"]);
     expect(unpackFloaters(frame([{ turn: [0, 0, 0, 0] }])).floaters[0]!.turn).toEqual([0, 0, 0, 1]);
