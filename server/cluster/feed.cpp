@@ -33,7 +33,9 @@ std::uint64_t numberAtNode(core::SessionId session) {
 
 v1::ReducedCounts toWire(const core::ReducedCounts& counts) {
   v1::ReducedCounts out;
-  for (const codec::Stream& stream : codec::allStreams()) out.add_counts(codec::reducedCountOf(stream.layer, counts));
+  out.mutable_counts()->Resize(codec::kStreamCount, 0);
+  for (const codec::Stream& stream : codec::allStreams())
+    out.set_counts(static_cast<int>(codec::indexOf(stream)), codec::reducedCountOf(stream, counts));
   return out;
 }
 

@@ -6,26 +6,26 @@ namespace spindrift::cluster {
 
 void KeptFrame::takeKeyframe(core::SharedBytes keyframe) {
   keyframe_ = std::move(keyframe);
-  planes_.reset();
+  keeper_.reset();
 }
 
-void KeptFrame::takeDelta(const core::SharedBytes& delta, bool follows_planes) {
+void KeptFrame::takeDelta(const core::SharedBytes& delta, bool follows) {
   const core::SharedBytes base = std::exchange(keyframe_, nullptr);
-  if (!follows_planes) return planes_.reset();
-  if (!planes_ && base) {
-    planes_ = std::make_unique<codec::PlaneKeeper>();
-    if (!planes_->take(*base)) planes_.reset();
+  if (!follows) return keeper_.reset();
+  if (!keeper_ && base) {
+    keeper_ = std::make_unique<codec::FrameKeeper>();
+    if (!keeper_->take(*base)) keeper_.reset();
   }
-  if (planes_ && !planes_->take(*delta)) planes_.reset();
+  if (keeper_ && !keeper_->take(*delta)) keeper_.reset();
 }
 
 void KeptFrame::forget() {
   keyframe_.reset();
-  planes_.reset();
+  keeper_.reset();
 }
 
 core::SharedBytes KeptFrame::keyframe() {
-  if (!keyframe_ && planes_) keyframe_ = planes_->keyframe();
+  if (!keyframe_ && keeper_) keyframe_ = keeper_->keyframe();
   return keyframe_;
 }
 

@@ -8,24 +8,24 @@
 
 namespace spindrift::cluster {
 
-/// Memory: one keyframe and two planes. Not thread-safe.
+/// Memory: one keyframe and what a FrameKeeper keeps. Not thread-safe.
 class KeptFrame {
  public:
   void takeKeyframe(core::SharedBytes keyframe);
-  /// `follows_planes`: decode the delta, so that the frame can be kept.
+  /// `follows`: decode the delta, so that the frame can be kept.
   /// Otherwise nothing is kept until the next keyframe.
-  void takeDelta(const core::SharedBytes& delta, bool follows_planes);
+  void takeDelta(const core::SharedBytes& delta, bool follows);
   void forget();
 
   /// Returns whether keyframe() is there.
-  [[nodiscard]] bool isWhole() const { return keyframe_ || planes_; }
+  [[nodiscard]] bool isWhole() const { return keyframe_ || keeper_; }
   /// Returns the newest frame as a keyframe: a session that has it can use the next delta. Null if it is not known.
   /// Made at the first call where the frame came as a delta.
   [[nodiscard]] core::SharedBytes keyframe();
 
  private:
   core::SharedBytes keyframe_;
-  std::unique_ptr<codec::PlaneKeeper> planes_;  ///< since the first delta after a keyframe
+  std::unique_ptr<codec::FrameKeeper> keeper_;  ///< since the first delta after a keyframe
 };
 
 }  // namespace spindrift::cluster

@@ -31,6 +31,10 @@ std::optional<core::Error> checkExtents(const PlaneExtents& extents) {
   return checkRange("width_m", extents.width_m, 1e-6);
 }
 
+v1::FloaterKind floaterKindOf(std::uint8_t number) {
+  return v1::FloaterKind_IsValid(number) ? static_cast<v1::FloaterKind>(number) : v1::FLOATER_KIND_CRATE;
+}
+
 std::optional<core::Error> checkFrame(const v1::LayerFrame& frame, v1::Layer layer) {
   if (frame.layer() != layer) {
     return invalid("layer: " + std::to_string(frame.layer()) + " is not " + v1::Layer_Name(layer));

@@ -53,6 +53,9 @@ void setExtents(const PlaneExtents& extents, Header& header) {
   header.set_width_m(extents.width_m);
 }
 
+/// Returns the kind of this number; a crate for one that only a newer server knows.
+v1::FloaterKind floaterKindOf(std::uint8_t number);
+
 /// Requires 1 to kSurfaceMaxResolutionCount samples along each axis, and an extent.
 std::optional<core::Error> checkExtents(const PlaneExtents& extents);
 

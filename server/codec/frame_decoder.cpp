@@ -166,9 +166,7 @@ core::Result<std::vector<FloaterSample>> decodeFloaters(const v1::LayerFrame& fr
                      "damaged");
     }
     floater.size_m = load<std::uint16_t>(at + 24) / 100.0;
-    floater.kind = static_cast<v1::FloaterKind>(at[26]);
-    // A kind of a newer server is shown as a crate.
-    if (!v1::FloaterKind_IsValid(floater.kind)) floater.kind = v1::FLOATER_KIND_CRATE;
+    floater.kind = floaterKindOf(at[26]);
     if (floater.kind == v1::FLOATER_KIND_UNSPECIFIED)
       return invalid("kind: 0 is not a kind of floater; the frame is damaged");
     floater.is_held = (at[27] & 1u) != 0;

@@ -74,15 +74,17 @@ core::SharedBytes plainObjects(const core::FrameView& frame, v1::Layer layer, co
 struct FrameEncoder::Packed {
   PackedPlanes surface, foam;
   PackedParticles particles;
+  PackedFloaters floaters;
 };
 
 FrameEncoder::FrameEncoder() : packed_(std::make_unique<Packed[]>(core::kLevelCount)) {}
 FrameEncoder::~FrameEncoder() = default;
 
 EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, core::Level level, bool wants_keyframe) {
-  if (!hasLevels(stream.layer) && level != core::Level::kFull) return {};
   const bool is_packed = stream.packing == v1::PACKING_PACKED;
   Packed& packed = packed_[core::indexOf(level)];
+  if (level != core::Level::kFull && (!hasLevels(stream.layer) || (stream.layer == v1::LAYER_FLOATERS && !is_packed)))
+    return {};
   switch (stream.layer) {
     case v1::LAYER_SURFACE:
       if (is_packed) return packed.surface.encode(frame, stream.layer, level, wants_keyframe);
@@ -96,7 +98,7 @@ EncodedFrame FrameEncoder::encode(Stream stream, const core::FrameView& frame, c
       if (is_packed) return {};
       return {plainObjects(frame, stream.layer, frame.bodies, &v1::LayerFrame::mutable_bodies_fixed28), nullptr};
     case v1::LAYER_FLOATERS:
-      if (is_packed) return {};
+      if (is_packed) return packed.floaters.encode(frame, level, wants_keyframe);
       return {plainObjects(frame, stream.layer, frame.floaters, &v1::LayerFrame::mutable_floaters_fixed28), nullptr};
     case v1::LAYER_DIAGNOSTICS:
       return {is_packed ? nullptr : serializeDiagnostics(frame), nullptr};

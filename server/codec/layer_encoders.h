@@ -10,6 +10,7 @@
 #include <spindrift/core/frame_view.h>
 #include <spindrift/v1/wire.pb.h>
 
+#include "encode/floater_chain.h"
 #include "encode/particle_cells.h"
 #include "encode/plane_chain.h"
 #include "frame_checks.h"
@@ -55,6 +56,18 @@ class PackedParticles {
   ParticleCellsEncoder cells_;
   ResidualEncoder residuals_;
   core::Bytes payload_;
+};
+
+/// FloatersPredicted.
+class PackedFloaters {
+ public:
+  /// Returns null messages if the frame lacks the layer. Without `wants_keyframe` the keyframe is omitted if there is a
+  /// delta.
+  EncodedFrame encode(const core::FrameView& frame, core::Level level, bool wants_keyframe);
+
+ private:
+  FloaterChainEncoder chain_;
+  std::uint64_t tick_ = 0;  ///< of the newest encoded frame
 };
 
 }  // namespace spindrift::codec

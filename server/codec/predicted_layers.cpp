@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <utility>
@@ -156,44 +157,55 @@ core::Result<FoamSamples> PackedFoamDecoder::decode(const v1::LayerFrame& frame)
   return FoamSamples{history_->extents, valuesOf<std::uint8_t>(history_->memory.row(), &PlaneRow::row, foamOf)};
 }
 
-bool PlaneKeeper::take(core::ByteView message) {
+bool FrameKeeper::take(core::ByteView message) {
   head_.reset();
   auto parsed = parseServerMessage(message);
   if (!parsed || !parsed->has_frame()) return false;
   v1::LayerFrame& frame = *parsed->mutable_frame();
-  if (!frame.has_surface_predicted() && !frame.has_foam_predicted()) return false;
-  if (history_->read(frame)) return false;
+  if (frame.has_floaters_predicted()) {
+    if (!floaters_) floaters_ = std::make_unique<PackedFloaterDecoder>();
+    if (!floaters_->decode(frame)) return false;
+  } else if ((!frame.has_surface_predicted() && !frame.has_foam_predicted()) || history_->read(frame)) {
+    return false;
+  }
   frame.clear_payload();
   head_ = std::move(frame);
   return true;
 }
 
-core::SharedBytes PlaneKeeper::keyframe() {
+core::SharedBytes FrameKeeper::keyframe() {
   if (!head_) return nullptr;
-  const PlaneRow& planes = history_->memory.row();
-  const auto planeOf = [&](const std::int16_t* (PlaneRow::*row)(std::size_t) const) {
-    SurfacePlane out;
-    out.resize(history_->extents.count);
-    out.assign(std::span<const std::int16_t>(valuesOf<std::int16_t>(planes, row)));
-    return out;
-  };
-  ResidualEncoder residuals;
-  const PlaneChainEncoder::Form form =
-      PlaneChainEncoder::keyframeOf(planeOf(&PlaneRow::row), planeOf(&PlaneRow::earlierRow), residuals);
   v1::ServerMessage message;
   v1::LayerFrame& frame = *message.mutable_frame() = *head_;
-  const auto setWeights = [&](auto& header) {
-    header.mutable_weights()->Assign(form.weights.of.begin(), form.weights.of.end());
-    header.mutable_earlier_weights()->Assign(form.earlier_weights.of.begin(), form.earlier_weights.of.end());
-  };
-  if (frame.has_surface_predicted())
-    setWeights(*frame.mutable_surface_predicted());
-  else
-    setWeights(*frame.mutable_foam_predicted());
+  core::Bytes payload;
+  if (frame.has_floaters_predicted()) {
+    frame.mutable_floaters_predicted()->clear_motion_weight();
+    payload = floaters_->keyframePayload();
+  } else {
+    const PlaneRow& planes = history_->memory.row();
+    const auto planeOf = [&](const std::int16_t* (PlaneRow::*row)(std::size_t) const) {
+      SurfacePlane out;
+      out.resize(history_->extents.count);
+      out.assign(std::span<const std::int16_t>(valuesOf<std::int16_t>(planes, row)));
+      return out;
+    };
+    ResidualEncoder residuals;
+    PlaneChainEncoder::Form form =
+        PlaneChainEncoder::keyframeOf(planeOf(&PlaneRow::row), planeOf(&PlaneRow::earlierRow), residuals);
+    const auto setWeights = [&](auto& header) {
+      header.mutable_weights()->Assign(form.weights.of.begin(), form.weights.of.end());
+      header.mutable_earlier_weights()->Assign(form.earlier_weights.of.begin(), form.earlier_weights.of.end());
+    };
+    if (frame.has_surface_predicted())
+      setWeights(*frame.mutable_surface_predicted());
+    else
+      setWeights(*frame.mutable_foam_predicted());
+    payload = std::move(form.payload);
+  }
   frame.set_keyframe(true);
   frame.clear_base_tick();
-  frame.set_crc32c(core::crc32c(form.payload));
-  frame.set_payload(form.payload.data(), form.payload.size());
+  frame.set_crc32c(core::crc32c(payload));
+  frame.set_payload(payload.data(), payload.size());
   return serialized(message);
 }
 

@@ -21,12 +21,13 @@ std::span<const Stream> allStreams() {
                                           Stream{v1::LAYER_PARTICLES}, Stream{v1::LAYER_PARTICLES, v1::PACKING_PACKED},
                                           Stream{v1::LAYER_FOAM},      Stream{v1::LAYER_FOAM, v1::PACKING_PACKED},
                                           Stream{v1::LAYER_BODIES},    Stream{v1::LAYER_DIAGNOSTICS},
-                                          Stream{v1::LAYER_FLOATERS}};
+                                          Stream{v1::LAYER_FLOATERS},  Stream{v1::LAYER_FLOATERS, v1::PACKING_PACKED}};
   return kStreams;
 }
 
 bool hasLevels(v1::Layer layer) {
-  return layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM;
+  return layer == v1::LAYER_SURFACE || layer == v1::LAYER_PARTICLES || layer == v1::LAYER_FOAM ||
+         layer == v1::LAYER_FLOATERS;
 }
 
 std::string nameOf(core::Level level) {
@@ -34,9 +35,18 @@ std::string nameOf(core::Level level) {
   return kNames[core::indexOf(level)];
 }
 
-std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts) {
-  if (layer == v1::LAYER_PARTICLES) return counts.particles;
-  return hasLevels(layer) ? counts.planes : 0;
+std::uint32_t reducedCountOf(Stream stream, const core::ReducedCounts& counts) {
+  switch (stream.layer) {
+    case v1::LAYER_SURFACE:
+    case v1::LAYER_FOAM:
+      return counts.planes;
+    case v1::LAYER_PARTICLES:
+      return counts.particles;
+    case v1::LAYER_FLOATERS:  // packed frames are more coarse at each level, plain ones have one form
+      return stream.packing == v1::PACKING_PACKED ? core::kLevelCount - 1 : 0;
+    default:
+      return 0;
+  }
 }
 
 core::LevelSet levelsTaking(v1::Layer layer, core::LevelSet due) {

@@ -95,7 +95,7 @@ EncoderThread::Costs EncoderThread::encode(const Waiting& job, codec::FrameEncod
   };
   std::vector<Ready> ready;
   for (const codec::Stream stream : codec::allStreams()) {
-    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, frame.reduced_counts);
+    const std::uint32_t reduced_count = codec::reducedCountOf(stream, frame.reduced_counts);
     const core::LevelSet due = codec::levelsTaking(stream.layer, frame.due);
     const core::StreamDemand asked = job.demand->of(codec::indexOf(stream), std::chrono::steady_clock::now());
     const core::StreamDemand demand = core::demandOfFrame(asked, reduced_count, due);

@@ -65,7 +65,7 @@ void RoomFrames::request(TimePoint now, core::LevelSet due) {
   const core::ReducedCounts counts = sim.reducedCounts();
   sim::FrameRequest request{.asked_s = core::monotonic_s(now), .state_id = room_.water->stateId(), .due = due};
   for (const codec::Stream& stream : codec::allStreams()) {
-    const std::uint32_t reduced_count = codec::reducedCountOf(stream.layer, counts);
+    const std::uint32_t reduced_count = codec::reducedCountOf(stream, counts);
     const auto demand = core::demandOfFrame(room_.demand->of(codec::indexOf(stream), now), reduced_count,
                                             codec::levelsTaking(stream.layer, due));
     for (std::size_t k = 0; k < core::kLevelCount; ++k) {

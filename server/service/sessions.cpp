@@ -335,7 +335,8 @@ void Sessions::subscribe(net::SessionId session, const State& state, const wire:
     return refuse(session, net::CloseCode::kPolicy, "subscribe before hello: send ClientMessage.hello first");
   }
   // One packing at a time: a subscription to the other packing stops this one.
-  const codec::Stream wanted = codec::streamOf(subscribe.layer, subscribe.packing);
+  const bool knows_packing = subscribe.layer != v1::LAYER_FLOATERS || state.wire_minor >= wire::kPackedFloatersMinor;
+  const codec::Stream wanted = codec::streamOf(subscribe.layer, knows_packing ? subscribe.packing : v1::PACKING_PLAIN);
   const bool is_first = subscribe.max_rate_hz > 0.0 && noteWatched(session, subscribe.layer);
   for (const codec::Stream stream : codec::allStreams()) {
     if (stream.layer != wanted.layer) continue;

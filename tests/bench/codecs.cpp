@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -73,14 +74,20 @@ class CodecMeter {
     if (const auto& particles = frame.at(core::Level::kFull).particles; particles && particles->count > 0) {
       if (auto done = addParticles(frame); !done) return done;
     }
+    if (frame.floaters && frame.floaters->count > 0) {
+      if (auto done = addFloaters(frame); !done) return done;
+    }
     return {};
   }
   [[nodiscard]] std::vector<CodecRow> rows() const {
     std::vector<CodecRow> rows;
-    for (const CodecRow& row :
-         {surface_plain_, surface_deflated_, surface_zstd_, surface_whole_, surface_, particles_plain_,
-          particles_deflated_, particles_zstd_, particles_, places_meshoptimizer_, places_draco_, places_}) {
+    for (const CodecRow& row : {surface_plain_, surface_deflated_, surface_zstd_, surface_whole_, surface_,
+                                particles_plain_, particles_deflated_, particles_zstd_, particles_,
+                                places_meshoptimizer_, places_draco_, places_, floaters_plain_, floaters_whole_}) {
       if (row.frame_count > 0) rows.push_back(row);
+    }
+    for (const FloaterLevel& at : floaters_) {
+      if (at.row.frame_count > 0) rows.push_back(at.row);
     }
     return rows;
   }
@@ -157,6 +164,47 @@ class CodecMeter {
     return {};
   }
 
+  core::Result<void> addFloaters(const core::FrameView& frame) {
+    const std::size_t count = frame.floaters->count;
+    auto begin = Clock::now();
+    const core::SharedBytes plain = encoder_.encode(v1::LAYER_FLOATERS, frame);
+    floaters_plain_.encode_ms += sinceMs(begin);
+    begin = Clock::now();
+    const auto plain_samples = codec::decodeFloaters(frameOf(plain));
+    floaters_plain_.decode_ms += sinceMs(begin);
+    if (!plain_samples) return plain_samples.error();
+    floaters_plain_.add(plain->size(), count);
+    const codec::Stream packed{v1::LAYER_FLOATERS, v1::PACKING_PACKED};
+    for (const core::Level level : core::kLevels) {
+      FloaterLevel& at = floaters_[core::indexOf(level)];
+      at.row.name = "floaters, packed, " + codec::nameOf(level);
+      begin = Clock::now();
+      const codec::EncodedFrame encoded = encoder_.encode(packed, frame, level, false);
+      const double encode_ms = sinceMs(begin);
+      const v1::LayerFrame message = frameOf(encoded.delta ? encoded.delta : encoded.keyframe);
+      begin = Clock::now();
+      const auto samples = at.decoder.decode(message);
+      const double decode_ms = sinceMs(begin);
+      if (!samples) return samples.error();
+      if (!encoded.delta) continue;
+      at.row.encode_ms += encode_ms;
+      at.row.decode_ms += decode_ms;
+      at.row.add(encoded.delta->size(), count);
+      for (std::size_t i = 0; i < count; ++i) {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          const double error_m = std::abs(samples->at(i).position_m[axis] - plain_samples->at(i).position_m[axis]);
+          at.row.max_error = std::max(at.row.max_error, error_m / message.floaters_predicted().quantum_m());
+        }
+      }
+    }
+    // As when a session asks for a keyframe: with the delta.
+    begin = Clock::now();
+    const codec::EncodedFrame both = places_encoder_.encode(packed, frame, core::Level::kFull, true);
+    floaters_whole_.encode_ms += sinceMs(begin);
+    floaters_whole_.add(both.keyframe->size(), count);
+    return {};
+  }
+
   /// N log2(positions in the box) - log2(N!): the least for any codec that does not know where the water is.
   static double sparseBits(const core::ParticleView& view, double quantum_m) {
     const double count = view.count;
@@ -229,6 +277,11 @@ class CodecMeter {
 
   codec::FrameEncoder encoder_, places_encoder_;
   codec::PackedSurfaceDecoder decoder_;
+  struct FloaterLevel {
+    codec::PackedFloaterDecoder decoder;
+    CodecRow row;
+  };
+
   CodecRow surface_plain_{.name = "surface, plain"};
   CodecRow surface_deflated_{.name = "surface, plain + deflate"};
   CodecRow surface_zstd_{.name = "surface, plain + zstd"};
@@ -241,6 +294,9 @@ class CodecMeter {
   CodecRow places_draco_{.name = "places, Draco kd-tree"};
   CodecRow places_{.name = "places, packed"};
   CodecRow particles_{.name = "particles, packed"};
+  CodecRow floaters_plain_{.name = "floaters, plain"};
+  CodecRow floaters_whole_{.name = "floaters, packed, keyframe"};
+  std::array<FloaterLevel, core::kLevelCount> floaters_;  ///< indexed by core::Level
 };
 
 }  // namespace

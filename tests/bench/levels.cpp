@@ -38,6 +38,7 @@ sim::FrameRequest LevelMeter::request(const core::Scene& scene) {
                                  .foam = scene.foam.has_value() && scene.foam->surface};
   sim::FrameRequest out;
   out.levels.fill(layers);
+  out.floaters = scene.floaters.has_value();
   return out;
 }
 
@@ -53,7 +54,8 @@ void LevelMeter::add(const core::FrameView& frame) {
     row.last_frame = frame_count_;
     const auto begin = Clock::now();
     const auto bytes = [&](v1::Layer layer) {
-      const core::Level effective = core::effectiveLevel(level, codec::reducedCountOf(layer, counts_));
+      const core::Level effective =
+          core::effectiveLevel(level, codec::reducedCountOf({layer, v1::PACKING_PACKED}, counts_));
       const core::LevelView& view = frame.at(effective);
       if (layer == v1::LAYER_SURFACE && view.surface) row.surface = view.surface->count;
       if (layer == v1::LAYER_PARTICLES && view.particles) row.particle_sum += view.particles->count;

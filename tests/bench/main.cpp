@@ -27,6 +27,9 @@
 namespace spindrift::cli {
 namespace {
 
+/// Of the floaters of --floaters: near each other, but not touching.
+constexpr double kFloaterSizesApart = 2.2;
+
 struct BenchOptions {
   std::string suite = "all";  ///< step, codec, fanout, load, soak; all: step and codec
   std::string scene = "harbor";
@@ -38,6 +41,7 @@ struct BenchOptions {
   bench::LoadOptions load;  ///< its URLs and number of clients are those of `soak`, too
   bench::SoakOptions soak;
   std::string level = "coarse";
+  std::uint32_t floater_count = 0;  ///< in place of those of the scene; 0: its own
 };
 
 /// Runs apart from the other suites, because the server that it measures has its own GL context.
@@ -86,7 +90,9 @@ int bench(const BenchOptions& options) {
   if (options.suite == "fanout") return benchFanout(options, *loaded);
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
-  const core::Scene scene = scene::toCore(*loaded);
+  core::Scene scene = scene::toCore(*loaded);
+  if (options.floater_count > 0)
+    scene = bench::withFloaters(std::move(scene), options.floater_count, kFloaterSizesApart);
 
   std::FILE* out = options.json_file == "-" ? stderr : stdout;
   char host[256] = "";
@@ -121,6 +127,8 @@ std::vector<ProgramCommand> addOptions(CLI::App& program) {
       ->capture_default_str();
   addFidelity(program, options->fidelity);
   addDevice(program, options->device);
+  program.add_option("--floaters", options->floater_count, "For --suite step and codec: objects in the water, in rows")
+      ->check(integerIn(1, core::kMaxFloaters));
   program.add_option("--seconds", options->seconds, "Measured time per case")
       ->check(numberIn(0.1, 86400.0))
       ->capture_default_str();

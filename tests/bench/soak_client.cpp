@@ -210,6 +210,11 @@ void SoakClient::checkFrame(const v1::LayerFrame& frame) {
     }
     return out;
   };
+  const auto ofFloaters = [](const std::vector<codec::FloaterSample>& all) {
+    std::uint64_t out = 0;
+    for (const codec::FloaterSample& one : all) out += countNonfinite(one.position_m) + countNonfinite(one.rotation);
+    return out;
+  };
   switch (frame.codec_case()) {
     case v1::LayerFrame::kSurfaceFixed16:
       look(codec::decodeSurface(frame), ofSurface);
@@ -233,6 +238,11 @@ void SoakClient::checkFrame(const v1::LayerFrame& frame) {
       look(codec::decodeBodies(frame), ofBodies);
       break;
     case v1::LayerFrame::kFloatersFixed28:
+      look(codec::decodeFloaters(frame), ofFloaters);
+      break;
+    case v1::LayerFrame::kFloatersPredicted:
+      look(floaters_.decode(frame), ofFloaters);
+      break;
     case v1::LayerFrame::CODEC_NOT_SET:
       read = core::Error{core::ErrorCode::kInvalidInput, "a frame without a codec"};
   }

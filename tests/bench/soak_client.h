@@ -111,6 +111,7 @@ class SoakClient {
   std::map<std::uint64_t, Sent> waiting_;
   codec::PackedSurfaceDecoder surface_;
   codec::PackedFoamDecoder foam_;
+  codec::PackedFloaterDecoder floaters_;
 };
 
 }  // namespace spindrift::bench

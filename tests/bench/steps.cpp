@@ -12,6 +12,22 @@
 #include <spindrift/sim/water_sim.h>
 
 namespace spindrift::bench {
+
+core::Scene withFloaters(core::Scene scene, std::uint32_t count, double sizes_apart) {
+  constexpr double kSize_m = 0.3;
+  scene.floaters.emplace().capacity_count = count;
+  const int row = static_cast<int>(std::ceil(std::sqrt(count)));
+  for (int i = 0; i < static_cast<int>(count); ++i) {
+    scene.floaters->floaters.push_back({.kind = static_cast<core::FloaterKind>(i % 7),
+                                        .x_m = sizes_apart * kSize_m * (i % row - row / 2),
+                                        .y_m = 0.05,
+                                        .z_m = sizes_apart * kSize_m * (i / row - row / 2),
+                                        .heading_deg = 7.0 * (i % 25),
+                                        .size_m = kSize_m});
+  }
+  return scene;
+}
+
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -37,22 +53,6 @@ struct StepResult {
   double real_time_factor = 0.0;      ///< of the simulation alone
   std::vector<gpu::PassCost> passes;  ///< total_ms: per tick
 };
-
-/// The scene with so many floaters of seven kinds in rows, that many sizes apart.
-core::Scene withFloaters(core::Scene scene, std::uint32_t count, double sizes_apart) {
-  constexpr double kSize_m = 0.3;
-  scene.floaters.emplace().capacity_count = count;
-  const int row = static_cast<int>(std::ceil(std::sqrt(count)));
-  for (int i = 0; i < static_cast<int>(count); ++i) {
-    scene.floaters->floaters.push_back({.kind = static_cast<core::FloaterKind>(i % 7),
-                                        .x_m = sizes_apart * kSize_m * (i % row - row / 2),
-                                        .y_m = 0.05,
-                                        .z_m = sizes_apart * kSize_m * (i / row - row / 2),
-                                        .heading_deg = 7.0 * (i % 25),
-                                        .size_m = kSize_m});
-  }
-  return scene;
-}
 
 /// The scene, its parts alone, and, if the number of particles is fixed, the thesis's numbers.
 std::vector<StepCase> stepCases(const core::Scene& base) {

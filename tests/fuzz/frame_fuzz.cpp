@@ -1,5 +1,5 @@
 // Frames as a client reads them. An input is one serialized ServerMessage, or several with a separator; the decoders of
-// packed planes keep their state from one to the next. The mutator of this target changes payloads inside valid
+// deltas keep their state from one to the next. The mutator of this target changes payloads inside valid
 // messages: lengths and checksums would stop almost every random change before the decoder.
 #include <algorithm>
 #include <random>
@@ -56,7 +56,8 @@ void check(const Decoded& decoded) {
 void checkRefused(const v1::LayerFrame& frame) {
   must(!codec::decodeSurface(frame) && !codec::decodeParticles(frame) && !codec::decodeFoam(frame) &&
            !codec::decodeBodies(frame) && !codec::decodeFloaters(frame) && !codec::decodePackedParticles(frame) &&
-           !codec::PackedSurfaceDecoder().decode(frame) && !codec::PackedFoamDecoder().decode(frame),
+           !codec::PackedSurfaceDecoder().decode(frame) && !codec::PackedFoamDecoder().decode(frame) &&
+           !codec::PackedFloaterDecoder().decode(frame),
        "a wrong checksum is noticed");
 }
 
@@ -73,11 +74,13 @@ class Client {
     check(packed_surface_.decode(frame));
     check(packed_foam_.decode(frame));
     check(codec::decodePackedParticles(frame));
+    check(packed_floaters_.decode(frame));
   }
 
  private:
   codec::PackedSurfaceDecoder packed_surface_;
   codec::PackedFoamDecoder packed_foam_;
+  codec::PackedFloaterDecoder packed_floaters_;
 };
 
 /// Replaces the payload of one of the frames, with the matching checksum. False: there is no frame to change.

@@ -77,6 +77,8 @@ FRAME_ROWS = {
     "surface_row": ["surface_packed_0.bin", "surface_packed_1.bin", "surface_packed_2.bin"],
     "surface_gap": ["surface_packed_0.bin", "surface_packed_2.bin"],
     "foam_row": ["foam_packed_0.bin", "foam_packed_1.bin"],
+    "floater_row": ["floaters_packed_0.bin", "floaters_packed_1.bin", "floaters_packed_2.bin"],
+    "floater_gap": ["floaters_packed_0.bin", "floaters_packed_2.bin", "floaters_2.bin"],
     "mixed": ["surface_packed_0.bin", "foam_packed_0.bin", "particles_packed.bin", "surface_packed_1.bin", "foam_packed_1.bin"],
     "broken_then_whole": ["surface_packed_0.bin", "bad_surface_packed_cut.bin", "surface_packed_1.bin", "surface_packed_0.bin"],
 }

@@ -143,6 +143,28 @@ TEST_F(ClusterTest, EdgeKeepsTheRateOfASlowClient) {
   EXPECT_LT((last_s - first_s) / (kFrameCount - 1), 5.0 / 30.0);
 }
 
+TEST_F(ClusterTest, EdgePassesOnTheLevelThatAClientAsksFor) {
+  const Member s1 = server("s1");
+  const Member e1 = edge("e1");
+  ScriptedClient one(e1.port);
+  one.hello();
+  v1::Subscribe coarse;
+  coarse.set_layer(v1::LAYER_FLOATERS);
+  coarse.set_max_rate_hz(60.0);
+  coarse.set_packing(v1::PACKING_PACKED);
+  coarse.set_level(v1::LEVEL_COARSE);
+  one.subscribe(coarse);
+  codec::PackedFloaterDecoder decoder;
+  for (int k = 0; k < 10; ++k) {
+    const auto frame = one.nextFrame(v1::LAYER_FLOATERS);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->level(), v1::LEVEL_COARSE);
+    const auto floaters = decoder.decode(*frame);
+    ASSERT_TRUE(floaters) << floaters.error().message;
+    EXPECT_EQ(floaters->size(), 1u);
+  }
+}
+
 TEST_F(ClusterTest, RolesAreCheckedWhereTheClientConnects) {
   folder_.write("tokens", "operator operator-of-the-cluster\nplayer player-of-the-cluster\n");
   const std::string tokens = "--tokens-file '" + (folder_.path() / "tokens").string() + "'";

@@ -22,7 +22,8 @@ class ClusterTest : public testing::Test {
     if (!NatsProcess::isInstalled()) GTEST_SKIP() << "nats-server is not installed";
     nats_ = std::make_unique<NatsProcess>(folder_.path() / "nats");
     folder_.write("pool.textproto",
-                  "wave { resolution_count: 64 side_m: 16 depth_m: 1 } boats { capacity_count: 8 }\n"
+                  "wave { resolution_count: 64 side_m: 16 depth_m: 1 } boats { capacity_count: 8 } floaters { floaters "
+                  "{ x_m: 3 } }\n"
                   "unwatched: UNWATCHED_GO_ON\n");
     folder_.write("tank.textproto", "wave { resolution_count: 32 side_m: 8 depth_m: 1 }\n");
   }

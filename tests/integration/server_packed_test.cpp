@@ -163,6 +163,112 @@ TEST_F(PackedParticles, CountEqualsThatOfThePlainPacking) {
   }
 }
 
+class PackedFloaters : public ServerTest {
+ protected:
+  std::vector<RoomText> rooms() const override {
+    return {{"main", R"(
+      wave { resolution_count: 32 side_m: 16 depth_m: 2 }
+      floaters {
+        capacity_count: 4
+        floaters { x_m: -4 kind: FLOATER_KIND_BALL }
+        floaters { x_m: 3 y_m: 1 kind: FLOATER_KIND_CRATE }
+      }
+      stream { frame_rate_hz: 60 }
+    )"}};
+  }
+};
+
+TEST_F(PackedFloaters, HaveThePositionsOfPlainOnesWhileObjectsComeAndGo) {
+  ScriptedClient packed = client();
+  ScriptedClient plain = client();
+  packed.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
+  plain.subscribe(v1::LAYER_FLOATERS);
+  codec::PackedFloaterDecoder decoder;
+  std::map<std::uint64_t, std::vector<codec::FloaterSample>> by_state;
+  int delta_count = 0;
+  std::uint32_t dropped = 0;
+  for (int i = 0; i < 40; ++i) {
+    if (i == 10) dropped = plain.ask(spawnFloater(0, 4)).ack().floater_id();
+    if (i == 25) {
+      ASSERT_TRUE(plain.apply(removeFloater(dropped)));
+    }
+    const auto frame = packed.nextFrame(v1::LAYER_FLOATERS);
+    ASSERT_TRUE(frame);
+    ASSERT_TRUE(frame->has_floaters_predicted());
+    if (i == 0) {
+      EXPECT_TRUE(frame->keyframe()) << "a newcomer has nothing to build on";
+    }
+    delta_count += frame->keyframe() ? 0 : 1;
+    auto floaters = decoder.decode(*frame);
+    ASSERT_TRUE(floaters) << floaters.error().message;
+    by_state[frame->state_id()] = *std::move(floaters);
+  }
+  EXPECT_GT(delta_count, 20);
+  ASSERT_NE(dropped, 0u);
+  int compared_count = 0;
+  std::size_t most_count = 0;
+  for (int i = 0; i < 30; ++i) {
+    const auto frame = plain.nextFrame(v1::LAYER_FLOATERS);
+    ASSERT_TRUE(frame);
+    const auto floaters = codec::decodeFloaters(*frame);
+    ASSERT_TRUE(floaters) << "a client that subscribed to plain frames gets no packed ones";
+    const auto same = by_state.find(frame->state_id());
+    if (same == by_state.end()) continue;
+    ++compared_count;
+    most_count = std::max(most_count, floaters->size());
+    ASSERT_EQ(same->second.size(), floaters->size());
+    for (std::size_t k = 0; k < floaters->size(); ++k) {
+      EXPECT_EQ(same->second[k].floater_id, floaters->at(k).floater_id);
+      EXPECT_EQ(same->second[k].kind, floaters->at(k).kind);
+      EXPECT_DOUBLE_EQ(same->second[k].size_m, floaters->at(k).size_m);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(same->second[k].position_m[axis], floaters->at(k).position_m[axis], 1e-9);
+    }
+  }
+  EXPECT_GT(compared_count, 0);
+  EXPECT_GE(most_count, 2u);
+}
+
+TEST_F(PackedFloaters, EveryLevelHasDeltasOfItsOwn) {
+  ScriptedClient full = client();
+  full.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
+  for (const v1::Level level : {v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FINE}) {
+    ScriptedClient one = client();
+    v1::Subscribe wanted;
+    wanted.set_layer(v1::LAYER_FLOATERS);
+    wanted.set_max_rate_hz(60.0);
+    wanted.set_packing(v1::PACKING_PACKED);
+    wanted.set_level(level);
+    one.subscribe(wanted);
+    codec::PackedFloaterDecoder decoder;
+    int delta_count = 0;
+    for (int i = 0; i < 10; ++i) {
+      const auto frame = one.nextFrame(v1::LAYER_FLOATERS);
+      ASSERT_TRUE(frame);
+      EXPECT_EQ(frame->level(), level);
+      const auto floaters = decoder.decode(*frame);
+      ASSERT_TRUE(floaters) << floaters.error().message;
+      EXPECT_EQ(floaters->size(), 2u);
+      delta_count += frame->keyframe() ? 0 : 1;
+    }
+    EXPECT_GT(delta_count, 0) << v1::Level_Name(level);
+  }
+}
+
+TEST_F(PackedFloaters, AreSentPlainToClientsOfOlderVersions) {
+  ScriptedClient old(server().port());
+  ASSERT_TRUE(old.isOpen());
+  v1::ClientMessage hello;
+  hello.mutable_hello()->mutable_version()->set_major(1);
+  hello.mutable_hello()->mutable_version()->set_minor(6);
+  old.send(hello);
+  ASSERT_TRUE(old.waitFor(v1::ServerMessage::kWelcome));
+  old.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
+  const auto frame = old.nextFrame(v1::LAYER_FLOATERS);
+  ASSERT_TRUE(frame);
+  EXPECT_TRUE(codec::decodeFloaters(*frame));
+}
+
 TEST_F(PackedFrames, ArePlainForALayerWithoutAPackedForm) {
   ScriptedClient one = client();
   one.subscribe(v1::LAYER_DIAGNOSTICS, 60.0, v1::PACKING_PACKED);

@@ -96,12 +96,14 @@ inline bool isWhole(const codec::ParticleSamples& particles) {
          particles.tint.size() == particles.count && particles.foam.size() == particles.count &&
          allFinite(particles.position_m) && allFinite(particles.velocity_mps);
 }
-/// Each has an id, a kind and a rotation.
+/// Each has an id, a kind, a position in the largest water and a rotation.
 inline bool isWhole(const std::vector<codec::FloaterSample>& floaters) {
   return std::ranges::all_of(floaters, [](const codec::FloaterSample& floater) {
     double norm = 0.0;
     for (const double part : floater.rotation) norm += part * part;
-    return floater.floater_id != 0 && floater.kind != v1::FLOATER_KIND_UNSPECIFIED && std::abs(norm - 1.0) < 0.01;
+    const bool is_near = std::ranges::all_of(floater.position_m, [](double at_m) { return std::abs(at_m) <= 1e6; });
+    return is_near && floater.floater_id != 0 && floater.kind != v1::FLOATER_KIND_UNSPECIFIED &&
+           std::abs(norm - 1.0) < 0.01;
   });
 }
 inline bool isWhole(const codec::FoamSamples& foam) {

@@ -78,6 +78,8 @@ CODECS = {
                                8: ("cell_m", DOUBLE), 9: ("offset_bits", UINT), 10: ("velocity_quantum_mps", DOUBLE),
                                11: ("radius_m", DOUBLE)}),
     18: ("floaters_fixed28", {1: ("count", UINT)}),
+    19: ("floaters_predicted", {1: ("count", UINT), 2: ("quantum_m", DOUBLE), 3: ("rotation_bits", UINT),
+                                4: ("motion_weight", UINT)}),
     14: ("foam_predicted", {**GRID, 3: ("weights", SINTS), 4: ("earlier_weights", SINTS), **along_z(5)}),
 }
 FRAME = {1: ("layer", UINT), 2: ("tick", UINT), 3: ("time_s", DOUBLE), 4: ("keyframe", UINT), 5: ("base_tick", UINT),
@@ -85,6 +87,7 @@ FRAME = {1: ("layer", UINT), 2: ("tick", UINT), 3: ("time_s", DOUBLE), 4: ("keyf
          17: ("state_id", UINT)}
 LAYERS = {"surface": 1, "particles": 2, "bodies": 3, "foam": 4, "floaters": 6}
 OBJECTS = ("bodies_fixed28", "floaters_fixed28")
+COUNTED = (*OBJECTS, "floaters_predicted")
 FLOATER_KINDS = ("CRATE", "BALL", "BARREL", "PLANK", "DUCK", "BUOY", "RAFT", "STONE")
 KINDS = range(1, 16)  # of ServerMessage
 FRAME_KIND = 2
@@ -177,7 +180,7 @@ def check_header(frame):
         h["width_m"] = h["width_m"] or h["side_m"]
         must(h["count_z"] <= 4096, "count_z")
         must(h["width_m"] >= 1e-6, "width_m")
-    must(h.get("count", 0) <= (1024 if codec in OBJECTS else 4_194_304), "count")
+    must(h.get("count", 0) <= (1024 if codec in COUNTED else 4_194_304), "count")
     if codec == "particles_fixed12":
         must(all(h[f"min_{a}_m"] <= h[f"max_{a}_m"] for a in "xyz"), "a minimum above its maximum")
     if codec == "particles_by_cell":
@@ -186,7 +189,11 @@ def check_header(frame):
         must(all(1 <= c <= 2 ** (16 - h["offset_bits"]) for c in cells) and math.prod(cells) <= 2**24, "cells")
     predicted = codec.endswith("_predicted")
     must(predicted or frame["keyframe"], "no keyframe")
-    if predicted:
+    if codec == "floaters_predicted":
+        must(1e-6 <= h["quantum_m"] <= 0.05, "quantum_m")
+        must(6 <= h["rotation_bits"] <= 13, "rotation_bits")
+        must(h["motion_weight"] <= 512, "motion_weight")
+    elif predicted:
         must(len(h["weights"]) == 10, "weights")
         must(not frame["keyframe"] or len(h["earlier_weights"]) == 10, "earlier_weights")
     bytes_each = {"surface_fixed16": 2, "foam_fixed8": 1, "particles_fixed12": 12, **dict.fromkeys(OBJECTS, 28)}.get(codec)
@@ -398,6 +405,111 @@ class Reader:
             floaters.append({"floater_id": floater_id, "position_m": [x / 1000, y / 1000, z / 1000],
                              "rotation": [q / 32767 for q in rotation], "size_m": size / 100,
                              "kind": f"FLOATER_KIND_{name}", "is_held": bool(flags & 1)})
+        return {"floaters": floaters}
+
+    def floaters_predicted(self, frame, h):
+        unit, weight = 2 ** h["rotation_bits"], h["motion_weight"]
+        residuals = Residuals(Bits(frame["payload"]))
+        same = (frame["level"], h["quantum_m"], h["rotation_bits"])
+        known = self.history.pop(frame["layer"], None)
+
+        def column(count):
+            out, c = [], 0
+            while len(out) < count:
+                c, some = residuals.group(min(64, count - len(out)), c, c)
+                out += some
+            return out
+
+        def within(values, low, high, what):
+            must(all(low <= v <= high for v in values), what)
+            return values
+
+        def running(changes, modulus):
+            total = 0
+            return [total := (total + change) % modulus for change in changes]
+
+        def set_derived(one):
+            rest = unit * unit - sum(q * q for i, q in enumerate(one["turn"]) if i != one["derived"])
+            must(rest >= 0, "parts longer than a unit quaternion")
+            one["turn"][one["derived"]] = math.isqrt(rest)
+
+        def others(one):
+            return [i for i in range(4) if i != one["derived"]]
+
+        def new_ones(count):
+            low, high = column(count), column(count)
+            ids = running([1 + 65536 * h_ + l_ for l_, h_ in zip(low, high)], 2**32)
+            must(all(ids), "floater_id 0")
+            sizes = running(column(count), 65536)
+            kinds, kind = [], 0
+            for change in column(count):
+                kind += change
+                kinds.append(kind)
+            within(kinds, 1, 255, "kind")
+            flags = within(column(count), 0, 255, "flags")
+            places = []
+            for _ in range(3):
+                low, high = column(count), column(count)
+                places.append(within([65536 * h_ + l_ for l_, h_ in zip(low, high)], -(2**24), 2**24, "a coordinate"))
+            derived = within(column(count), 0, 3, "the part that is not sent")
+            out = [{"id": i, "size": s, "kind": k, "flags": f, "place": list(p), "derived": d, "turn": [0] * 4,
+                    "place_motion": [0] * 3, "turn_motion": [0] * 4}
+                   for i, s, k, f, p, d in zip(ids, sizes, kinds, flags, zip(*places), derived)]
+            for k in range(3):
+                for one, part in zip(out, column(count)):
+                    one["turn"][others(one)[k]] = part
+            for one in out:
+                set_derived(one)
+            return out
+
+        def goes_on(value, motion):
+            return value + (motion * weight + 128) // 256
+
+        if frame["keyframe"]:
+            objects = new_ones(h["count"])
+            for name, parts in (("place_motion", 3), ("turn_motion", 4)):
+                for part in range(parts):
+                    for one, change in zip(objects, column(h["count"])):
+                        one[name][part] = change
+        else:
+            must(known is not None and known[:2] == (same, frame["base_tick"]), "the frame before is not here")
+            gone = within(column(len(known[2])), 0, 1, "which objects go")
+            is_new = within(column(h["count"]), 0, 1, "which objects come")
+            before = [one for one, goes in zip(known[2], gone) if not goes]
+            must(len(before) == is_new.count(0), "the number of objects that stay")
+            fresh = new_ones(sum(is_new))
+            stay = [{**one, "flags": one["flags"] ^ change}
+                    for one, change in zip(before, within(column(len(before)), 0, 255, "flags"))]
+            for one, step in zip(stay, within(column(len(before)), 0, 3, "the part that is not sent")):
+                one["derived"] = (one["derived"] + step) % 4
+                sign = -1 if one["turn"][one["derived"]] < 0 else 1
+                one["turn_from"] = [sign * q for q in one["turn"]]
+                one["turn_motion"] = [sign * m for m in one["turn_motion"]]
+                one["turn"] = [0] * 4
+            places = list(zip(*(column(len(before)) for _ in range(3)))) if before else []
+            for one, residual in zip(stay, places):
+                place = [goes_on(p, m) + r for p, m, r in zip(one["place"], one["place_motion"], residual)]
+                within(place, -(2**24), 2**24, "a coordinate")
+                one["place_motion"] = [a - b for a, b in zip(place, one["place"])]
+                one["place"] = place
+            for k in range(3):
+                for one, residual in zip(stay, column(len(before))):
+                    i = others(one)[k]
+                    one["turn"][i] = int16(goes_on(one["turn_from"][i], one["turn_motion"][i]) + residual)
+            for one in stay:
+                set_derived(one)
+                one["turn_motion"] = [a - b for a, b in zip(one["turn"], one.pop("turn_from"))]
+            rows = {0: iter(stay), 1: iter(fresh)}
+            objects = [next(rows[new]) for new in is_new]
+        residuals.end()
+        self.history[frame["layer"]] = (same, frame["tick"], objects)
+        floaters = []
+        for one in objects:
+            length = math.hypot(*one["turn"])
+            name = FLOATER_KINDS[one["kind"] - 1] if one["kind"] <= len(FLOATER_KINDS) else "CRATE"
+            floaters.append({"floater_id": one["id"], "position_m": [p * h["quantum_m"] for p in one["place"]],
+                             "rotation": [q / length for q in one["turn"]], "size_m": one["size"] / 100,
+                             "kind": f"FLOATER_KIND_{name}", "is_held": bool(one["flags"] & 1)})
         return {"floaters": floaters}
 
     def particles_by_cell(self, frame, h):

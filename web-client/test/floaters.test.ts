@@ -15,7 +15,7 @@ function frame(records: Partial<FloaterRecord>[], spareBytes = 0): FloatersFrame
   const payload = floatersPayload(records);
   const buffer = new ArrayBuffer(payload.length + spareBytes);
   new Uint8Array(buffer).set(payload);
-  return { layer: "floaters", tick: 1n, stateId: 0n, timeS: 2.5, serverTimeS: 2.5, level: "full", count: records.length, buffer };
+  return { layer: "floaters", tick: 1n, stateId: 0n, timeS: 2.5, serverTimeS: 2.5, level: "full", count: records.length, quantumM: 0.001, buffer };
 }
 
 function pose(change: Partial<FloaterPose>): FloaterPose {
@@ -60,6 +60,11 @@ describe("a frame of objects on the wire", () => {
     expect(floaters).toHaveLength(2);
     expect(floaters[1]).toEqual({ floaterId: 4_000_000_000, kind: "stone", xM: -1.234, yM: 0.056, zM: 7000, turn: [0, -1, 0, 0], sizeM: 10, isHeld: true });
     expect(floaters[0]!.isHeld).toBe(false);
+  });
+
+  it("places packed objects by their quantum", () => {
+    const { floaters } = unpackFloaters({ ...frame([{ xMm: -250, turn: [0, 0, 0, 256] }]), quantumM: 0.008 });
+    expect(floaters[0]).toMatchObject({ xM: -2, turn: [0, 0, 0, 1] });
   });
 
   it("draws a kind that it does not know as a crate, and ignores a rotation without length", () => {

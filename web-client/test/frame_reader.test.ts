@@ -13,7 +13,7 @@ import { isPacked } from "./wire";
 /** Long enough for thousands of frames on a busy machine. */
 vi.setConfig({ testTimeout: 60_000 });
 
-const kFiles = ["surface_packed_0", "surface_packed_1", "foam_packed_0", "foam_packed_1", "particles_packed"];
+const kFiles = ["surface_packed_0", "surface_packed_1", "foam_packed_0", "foam_packed_1", "particles_packed", "floaters_packed_0", "floaters_packed_1"];
 const kRefusals = /does not hold|end does not fit/;
 
 function messageOf(file: string): ServerMessage {
@@ -49,7 +49,7 @@ function readInto(bytes: ArrayBuffer): { kind: string; reason?: string; payload?
 
 function expectHarmless(result: { kind: string; reason?: string }): void {
   if (result.kind === "malformed") expect(result.reason).toMatch(kRefusals);
-  else expect(["surface", "foam", "particles"]).toContain(result.kind);
+  else expect(["surface", "foam", "particles", "floaters"]).toContain(result.kind);
 }
 
 /** Pseudo-random numbers from a fixed seed. */

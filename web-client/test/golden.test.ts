@@ -145,16 +145,17 @@ describe("golden bytes", () => {
   });
 
   it.each(cases.filter((c) => c["layer"] === "LAYER_FLOATERS"))("unpacks the objects of $file", (golden) => {
-    const parsed = parse(read(golden.file));
+    const parsed = unpacked(golden);
     if (parsed.kind !== "floaters") throw new Error(JSON.stringify(parsed));
     const { header, payload } = parsed;
-    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), stateId: 0n, timeS: golden["time_s"], serverTimeS: 0, level: "full", count: golden["count"] });
+    expect(header).toEqual({ tick: BigInt(golden["tick"] as string), stateId: 0n, timeS: golden["time_s"], serverTimeS: 0, level: "full", count: golden["count"], quantumM: golden["quantum_m"] ?? 0.001 });
     const { floaters } = unpackFloaters({ layer: "floaters", ...header, buffer: payload.slice().buffer });
     const wanted = golden["floaters"] as Record<string, unknown>[];
     expect(floaters).toHaveLength(wanted.length);
     wanted.forEach((floater, i) => {
       const { floaterId, xM, yM, zM, turn, sizeM, kind, isHeld } = floaters[i]!;
-      expect([floaterId, xM, yM, zM]).toEqual([floater["floater_id"], ...(floater["position_m"] as number[])]);
+      expect(floaterId).toBe(floater["floater_id"]);
+      [xM, yM, zM].forEach((atM, axis) => expect(atM).toBeCloseTo((floater["position_m"] as number[])[axis]!, 6));
       // The file holds the quaternion as it was read; the page makes it a unit one.
       turn.forEach((part, k) => expect(part).toBeCloseTo((floater["rotation"] as number[])[k]!, 3));
       expect([sizeM, `FLOATER_KIND_${kind.toUpperCase()}`, isHeld]).toEqual([floater["size_m"], floater["kind"], floater["is_held"]]);

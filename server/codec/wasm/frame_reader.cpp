@@ -2,9 +2,11 @@
 // module's own memory comes what that layer needs, nothing else. All functions take and return plain numbers; addresses
 // are valid until the next prepare call.
 #include <algorithm>
+#include <new>
 
 #include <spindrift/core/crc32c_tables.h>
 
+#include "decode/floater_reader.h"
 #include "decode/particle_reader.h"
 #include "decode/plane_reader.h"
 
@@ -24,6 +26,7 @@ std::uint32_t payload_bytes;
 std::uint8_t* words;
 PlaneRow row;
 SurfaceWeights weights, earlier_weights;
+FloaterReader* floaters;
 std::uint8_t* plain_samples;
 
 std::size_t aligned(std::size_t bytes) {
@@ -111,6 +114,26 @@ SPINDRIFT_EXPORT(foamSamples) std::uint8_t* foamSamples() {
                    [](std::int16_t s) { return static_cast<std::uint8_t>(std::clamp<std::int16_t>(s, 0, 255)); });
   }
   return plain_samples;
+}
+
+/// Returns room for the payload of objects in the water. 0: not enough memory.
+SPINDRIFT_EXPORT(prepareFloaters) std::uint8_t* prepareFloaters(std::uint32_t byte_count) {
+  std::uint8_t* const room = makeRoom(sizeof(FloaterReader), byte_count);
+  if (room != nullptr && floaters == nullptr) floaters = new (heapBegin()) FloaterReader;
+  return room;
+}
+/// Decodes a keyframe or a delta and returns the address of the objects, sizeof(FloaterRecord) bytes each. 0: the
+/// payload is damaged, or a delta has no frame before it.
+SPINDRIFT_EXPORT(readKeyframeFloaters)
+const FloaterRecord* readKeyframeFloaters(std::uint32_t count, std::uint32_t rotation_bits) {
+  return floaters->readKeyframe(payload, payload_bytes, count, rotation_bits) ? floaters->list().records.data()
+                                                                              : nullptr;
+}
+SPINDRIFT_EXPORT(readDeltaFloaters)
+const FloaterRecord* readDeltaFloaters(std::uint32_t count, std::uint32_t rotation_bits, std::uint32_t motion_weight) {
+  return floaters->readDelta(payload, payload_bytes, count, rotation_bits, motion_weight)
+             ? floaters->list().records.data()
+             : nullptr;
 }
 
 /// Returns room for any payload whose checksum is wanted. 0: not enough memory.

@@ -139,6 +139,53 @@ TEST(OutsideReader, ReadsParticlesInCellsOfEverySize) {
   EXPECT_GE(std::ranges::count(seen_offset_bits, true), 4) << "cells of several sizes were made";
 }
 
+TEST(OutsideReader, ReadsObjectsThatMoveComeAndGo) {
+  Cases cases;
+  std::mt19937 random(3);
+  // From objects at rest to ones that are anywhere in each frame; 65 of them are a group and one more.
+  for (const std::int32_t spread_mm : {0, 1, 30, 3000, 900'000}) {
+    FrameEncoder encoder;
+    PackedFloaterDecoder decoder;
+    std::string follows;
+    std::vector<std::uint32_t> words;
+    std::uint32_t next_id = 1;
+    for (std::uint64_t step = 0; step < 6; ++step) {
+      if (step > 2) words.erase(words.begin() + 14, words.begin() + 21);
+      while (words.size() < 7 * (step == 0 ? 65 : 70)) {
+        words.insert(words.end(), {next_id, 5000u, 0u, 0u, 0u, 0x7FFF'0000u, 40u | (1 + next_id % 8) << 16});
+        next_id += next_id % 9 == 0 ? 100'000 : 1;
+      }
+      for (std::size_t at = 0; at < words.size(); at += 7) {
+        const auto shift = [&] {
+          return static_cast<std::uint32_t>(static_cast<std::int32_t>(random() & 0x7FFFFFFFu) % (spread_mm + 1) -
+                                            spread_mm / 2);
+        };
+        for (std::size_t axis = 1; axis <= 3; ++axis) words[at + axis] += shift();
+        if (spread_mm == 0) continue;
+        const auto parts = static_cast<std::uint32_t>(random());
+        words[at + 4] = spread_mm > 1000 ? parts : 0x0100'0200u + (parts & 0x003F'003Fu);
+        words[at + 6] ^= random() % 9 == 0 ? 1u << 24 : 0u;
+      }
+      core::FrameView view;
+      view.tick = 10 + step;
+      view.floaters = core::FloatersView{static_cast<std::uint32_t>(words.size() / 7), words};
+      const core::Level level = spread_mm == 30 ? core::Level::kCoarse : core::Level::kFull;
+      const EncodedFrame encoded = encoder.encode({v1::LAYER_FLOATERS, v1::PACKING_PACKED}, view, level, step == 4);
+      const core::Bytes& bytes = encoded.delta && step != 4 ? *encoded.delta : *encoded.keyframe;
+      const auto samples = decoder.decode(frameOf(bytes));
+      ASSERT_TRUE(samples) << samples.error().message;
+      std::string values = "\"floaters\": [";
+      for (const FloaterSample& one : *samples) {
+        values += (values.back() == '[' ? "{" : ", {") + ("\"floater_id\": " + std::to_string(one.floater_id)) + ", " +
+                  list("position_m", one.position_m) + ", " + list("rotation", one.rotation) + ", \"kind\": \"" +
+                  v1::FloaterKind_Name(one.kind) + "\", \"is_held\": " + (one.is_held ? "true" : "false") + "}";
+      }
+      follows = cases.add(bytes, encoded.delta && step != 4 ? follows : "", values + "]");
+    }
+  }
+  EXPECT_EQ(cases.readOutside(), 0);
+}
+
 TEST(OutsideReader, ReportsDifferentValues) {
   Cases cases;
   const std::vector<std::uint32_t> words(2 * 2 / 2);

@@ -25,17 +25,25 @@ std::string readFile(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-/// `packed` has read the packed frames before this one.
-bool decodes(const v1::LayerFrame& frame, codec::PackedSurfaceDecoder& packed, codec::PackedFoamDecoder& packed_foam) {
+/// Has read the packed frames before.
+struct PackedDecoders {
+  codec::PackedSurfaceDecoder surface;
+  codec::PackedFoamDecoder foam;
+  codec::PackedFloaterDecoder floaters;
+};
+
+bool decodes(const v1::LayerFrame& frame, PackedDecoders& packed) {
   switch (frame.layer()) {
     case v1::LAYER_SURFACE:
-      return static_cast<bool>(frame.has_surface_predicted() ? packed.decode(frame) : codec::decodeSurface(frame));
+      return static_cast<bool>(frame.has_surface_predicted() ? packed.surface.decode(frame)
+                                                             : codec::decodeSurface(frame));
     case v1::LAYER_FOAM:
-      return static_cast<bool>(frame.has_foam_predicted() ? packed_foam.decode(frame) : codec::decodeFoam(frame));
+      return static_cast<bool>(frame.has_foam_predicted() ? packed.foam.decode(frame) : codec::decodeFoam(frame));
     case v1::LAYER_BODIES:
       return static_cast<bool>(codec::decodeBodies(frame));
     case v1::LAYER_FLOATERS:
-      return static_cast<bool>(codec::decodeFloaters(frame));
+      return static_cast<bool>(frame.has_floaters_predicted() ? packed.floaters.decode(frame)
+                                                              : codec::decodeFloaters(frame));
     default:
       return static_cast<bool>(frame.has_particles_by_cell() ? codec::decodePackedParticles(frame)
                                                              : codec::decodeParticles(frame));
@@ -73,8 +81,7 @@ TEST_F(Golden, FolderHoldsNoOtherBytes) {
 }
 
 TEST_F(Golden, FilesGetTheVerdictInTheirNames) {
-  codec::PackedSurfaceDecoder packed;
-  codec::PackedFoamDecoder packed_foam;
+  PackedDecoders packed;
   for (const GoldenCase& golden : goldenCases()) {
     const std::string frozen = readFile(goldenFolder() / golden.file);
     const auto message =
@@ -82,7 +89,7 @@ TEST_F(Golden, FilesGetTheVerdictInTheirNames) {
     ASSERT_EQ(static_cast<bool>(message), golden.verdict != GoldenVerdict::kBadMessage) << golden.file;
     if (!message || !message->has_frame()) continue;
     const v1::LayerFrame& frame = message->frame();
-    EXPECT_EQ(decodes(frame, packed, packed_foam), golden.verdict == GoldenVerdict::kOk) << golden.file;
+    EXPECT_EQ(decodes(frame, packed), golden.verdict == GoldenVerdict::kOk) << golden.file;
   }
 }
 

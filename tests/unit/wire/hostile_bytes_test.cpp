@@ -183,7 +183,8 @@ TEST(HostileBytes, DamagedFramesDecodeToFiniteValues) {
     } else if (const auto bodies = codec::decodeBodies(frame)) {
       ++decoded_count;
       ASSERT_EQ(bodies->size(), frame.bodies_fixed28().count());
-    } else if (const auto floaters = codec::decodeFloaters(frame)) {
+    } else if (const auto floaters = frame.has_floaters_predicted() ? codec::PackedFloaterDecoder().decode(frame)
+                                                                    : codec::decodeFloaters(frame)) {
       ++decoded_count;
       ASSERT_TRUE(isWhole(*floaters)) << "case " << i;
     } else {

@@ -1,6 +1,6 @@
 // The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance per layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
-import type { PlaneExtents } from "./frame_types";
+import { kFloaterBytes, type PackedFloaters, type PlaneExtents } from "./frame_types";
 
 /** Weights of one packed plane. */
 export const kWeightCount = 10;
@@ -17,6 +17,9 @@ interface Exports {
   readDeltaPlane(): number;
   surfaceSamples(): number;
   foamSamples(): number;
+  prepareFloaters(payloadBytes: number): number;
+  readKeyframeFloaters(count: number, rotationBits: number): number;
+  readDeltaFloaters(count: number, rotationBits: number, motionWeight: number): number;
   prepareChecksum(payloadBytes: number): number;
   checksum(): number;
 }
@@ -78,6 +81,16 @@ export class ParticleReader extends Reader {
     if (!this.put(payload, this.exports.prepareParticles(count, payload.length))) return undefined;
     const at = this.exports.readParticles(count, ...cellsCount, offsetBits);
     return at === 0 ? undefined : this.view(at, 12 * count);
+  }
+}
+
+/** Objects in the water. After a damaged frame only a keyframe can be read. */
+export class FloaterReader extends Reader {
+  /** kFloaterBytes for each object; undefined if the payload is damaged. */
+  read({ payload, header: { count }, baseTick, rotationBits, motionWeight }: PackedFloaters): Uint8Array | undefined {
+    if (!this.put(payload, this.exports.prepareFloaters(payload.length))) return undefined;
+    const at = baseTick === undefined ? this.exports.readKeyframeFloaters(count, rotationBits) : this.exports.readDeltaFloaters(count, rotationBits, motionWeight);
+    return at === 0 ? undefined : this.view(at, kFloaterBytes * count);
   }
 }
 

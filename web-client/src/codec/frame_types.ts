@@ -64,8 +64,10 @@ interface BodiesHeader extends FrameHeader {
   count: number;
 }
 
-interface FloatersHeader extends FrameHeader {
+/** Coordinates are whole numbers of quanta; a rotation has any length. */
+export interface FloatersHeader extends FrameHeader {
   count: number;
+  quantumM: number;
 }
 
 /** The header of each layer's plain frames. */
@@ -105,7 +107,18 @@ export interface PackedParticles {
   payload: Uint8Array;
 }
 
+/** Objects predicted from the frame before. */
+export interface PackedFloaters {
+  header: FloatersHeader;
+  /** Tick of the frame that a delta builds on; undefined for a keyframe. */
+  baseTick: bigint | undefined;
+  rotationBits: number;
+  motionWeight: number;
+  payload: Uint8Array;
+}
+
 export type PackedFrame =
   | ({ kind: "packedSurface" } & PackedPlane<SurfaceHeader>)
   | ({ kind: "packedFoam" } & PackedPlane<FoamHeader>)
-  | ({ kind: "packedParticles" } & PackedParticles);
+  | ({ kind: "packedParticles" } & PackedParticles)
+  | ({ kind: "packedFloaters" } & PackedFloaters);

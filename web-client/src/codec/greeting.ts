@@ -20,7 +20,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 6;
+export const kWireMinor = 7;
 
 export interface ParameterInfo {
   path: string;

@@ -23,6 +23,14 @@ const kMaxPositionCount = 65536;
 const kMaxCellCount = 2 ** 24;
 /** Largest size, position or speed on the wire [m, m/s]. */
 const kLargest = 1e6;
+/** Of packed objects in the water. */
+const kMinFloaterQuantumM = 1e-6;
+const kMaxFloaterQuantumM = 0.05;
+const kMinRotationBits = 6;
+const kMaxRotationBits = 13;
+const kMaxMotionWeight = 512;
+/** Of plain ones. */
+const kMillimetreM = 0.001;
 
 type Codec = Exclude<LayerFrame["codec"], { case: undefined }>;
 type CodecOf<C extends Codec["case"]> = Extract<Codec, { case: C }>["value"];
@@ -45,6 +53,8 @@ export function parseFrame(frame: LayerFrame): PlainFrame | PackedFrame | Malfor
       return parseBodies(frame, header, codec.value);
     case "floatersFixed28":
       return parseFloaters(frame, header, codec.value);
+    case "floatersPredicted":
+      return parsePackedFloaters(frame, header, codec.value);
     case "particlesFixed12":
       return parseParticles(frame, header, codec.value);
     case "particlesByCell":
@@ -100,9 +110,20 @@ function parseBodies(frame: LayerFrame, header: FrameHeader, { count }: CodecOf<
 }
 
 function parseFloaters(frame: LayerFrame, header: FrameHeader, { count }: CodecOf<"floatersFixed28">): PlainFrame | Malformed {
-  if (count > kMaxFloaterCount) return malformed(`${count} floaters, at most ${kMaxFloaterCount} are taken`);
-  const fault = plainFault(frame, Layer.FLOATERS, "floaters", count * kFloaterBytes);
-  return fault ? malformed(fault) : { kind: "floaters", header: { ...header, count }, payload: frame.payload };
+  const fault = floaterCountFault(count) ?? plainFault(frame, Layer.FLOATERS, "floaters", count * kFloaterBytes);
+  return fault ? malformed(fault) : { kind: "floaters", header: { ...header, count, quantumM: kMillimetreM }, payload: frame.payload };
+}
+
+function parsePackedFloaters(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"floatersPredicted">): PackedFrame | Malformed {
+  const { count, quantumM, rotationBits, motionWeight } = codec;
+  const fault =
+    floaterCountFault(count) ??
+    (quantumM >= kMinFloaterQuantumM && quantumM <= kMaxFloaterQuantumM ? undefined : `floaters in quanta of ${quantumM} m`) ??
+    (rotationBits >= kMinRotationBits && rotationBits <= kMaxRotationBits ? undefined : `floaters with ${rotationBits} bits of rotation`) ??
+    (motionWeight <= kMaxMotionWeight ? undefined : `floaters with a motion weight of ${motionWeight}`) ??
+    frameFault(frame, Layer.FLOATERS, "floaters");
+  if (fault) return malformed(fault);
+  return { kind: "packedFloaters", header: { ...header, count, quantumM }, baseTick: baseTickOf(frame), rotationBits, motionWeight, payload: frame.payload };
 }
 
 function parseParticles(frame: LayerFrame, header: FrameHeader, codec: CodecOf<"particlesFixed12">): PlainFrame | Malformed {
@@ -189,6 +210,10 @@ function weightsFault(frame: LayerFrame, weights: number[], earlierWeights: numb
 
 function countFault(count: number): Fault {
   return count > kMaxParticleCount ? `${count} particles, at most ${kMaxParticleCount} are taken` : undefined;
+}
+
+function floaterCountFault(count: number): Fault {
+  return count > kMaxFloaterCount ? `${count} floaters, at most ${kMaxFloaterCount} are taken` : undefined;
 }
 
 function radiusFault(radiusM: number): Fault {

@@ -185,7 +185,8 @@ export class Connection implements ConnectionCalls {
         return;
       case "packedSurface":
       case "packedFoam":
-      case "packedParticles": {
+      case "packedParticles":
+      case "packedFloaters": {
         const unpacked = this.unpacker.unpack(parsed);
         if (unpacked.kind !== "malformed" && unpacked.kind !== "missingBase") return this.deliver(unpacked);
         if (unpacked.kind === "malformed") this.meter.malformed(unpacked.reason);

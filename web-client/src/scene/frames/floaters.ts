@@ -47,13 +47,14 @@ function normalize(turn: FloaterPose["turn"]): FloaterPose["turn"] {
 
 export function unpackFloaters(frame: FloatersFrame): FloatersState {
   const view = new DataView(frame.buffer);
+  const { quantumM } = frame;
   const floaters: FloaterPose[] = [];
   for (let at = 0; at < frame.count * kFloaterBytes; at += kFloaterBytes)
     floaters.push({
       floaterId: view.getUint32(at, true),
-      xM: view.getInt32(at + 4, true) / 1000,
-      yM: view.getInt32(at + 8, true) / 1000,
-      zM: view.getInt32(at + 12, true) / 1000,
+      xM: view.getInt32(at + 4, true) * quantumM,
+      yM: view.getInt32(at + 8, true) * quantumM,
+      zM: view.getInt32(at + 12, true) * quantumM,
       turn: normalize([view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)]),
       sizeM: view.getUint16(at + 24, true) / 100,
       // A kind that only a newer server knows looks like a crate.

@@ -107,19 +107,39 @@ class PackedFoamDecoder : public PackedPlaneDecoder {
   core::Result<FoamSamples> decode(const v1::LayerFrame& frame);
 };
 
-/// Follows a stream of packed planes and makes a keyframe of its newest frame, for clients that come between two
-/// frames: with the same samples, tick and times, and with the plane before, so that such a client can use the next
-/// delta of the stream. It keeps two planes.
-class PlaneKeeper : public PackedPlaneDecoder {
+/// Decodes the packed floaters, and keeps the last frame, on which a delta builds. One instance per subscription.
+class PackedFloaterDecoder {
  public:
-  /// Takes the next message of the stream, a packed surface or packed foam. False: it is neither, is damaged, or builds
-  /// on a frame that is not here; only a keyframe can be taken then.
+  PackedFloaterDecoder();
+  ~PackedFloaterDecoder();
+  PackedFloaterDecoder(const PackedFloaterDecoder&) = delete;
+  PackedFloaterDecoder& operator=(const PackedFloaterDecoder&) = delete;
+
+  /// Errors as decodeFloaters(); kUnavailable: the frame builds on a missing one. After an error only a keyframe can be
+  /// decoded: subscribe again.
+  core::Result<std::vector<FloaterSample>> decode(const v1::LayerFrame& frame);
+  /// Returns the payload of a keyframe of the frame that was decoded last.
+  [[nodiscard]] core::Bytes keyframePayload() const;
+
+ private:
+  struct History;
+  std::unique_ptr<History> history_;
+};
+
+/// Follows a stream with deltas and makes a keyframe of its newest frame, for clients that come between two frames:
+/// with the same samples or objects, tick and times, and with what the next delta of the stream builds on. It keeps two
+/// planes, or the objects.
+class FrameKeeper : public PackedPlaneDecoder {
+ public:
+  /// Takes the next message of the stream. False: it is no packed surface, foam or floaters, is damaged, or builds on a
+  /// frame that is not here; only a keyframe can be taken then.
   bool take(core::ByteView message);
   /// Returns the frame as a keyframe; null if the last take() failed, or there was none.
   [[nodiscard]] core::SharedBytes keyframe();
 
  private:
-  std::optional<v1::LayerFrame> head_;  ///< of the newest frame, without its payload
+  std::optional<v1::LayerFrame> head_;              ///< of the newest frame, without its payload
+  std::unique_ptr<PackedFloaterDecoder> floaters_;  ///< null until the first packed floaters
 };
 
 /// Decodes a frame of the particle layer; errors likewise, count at most kParticleMaxCount (0 is valid).

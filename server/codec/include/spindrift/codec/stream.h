@@ -29,8 +29,8 @@ std::span<const Stream> allStreams();
 bool hasLevels(v1::Layer layer);
 /// Returns "full", "coarse", ...
 std::string nameOf(core::Level level);
-/// Returns the number of levels that downsample this layer, from the counts for the scene's planes and particles.
-std::uint32_t reducedCountOf(v1::Layer layer, const core::ReducedCounts& counts);
+/// Returns the number of levels that reduce this stream, from the counts for the scene's planes and particles.
+std::uint32_t reducedCountOf(Stream stream, const core::ReducedCounts& counts);
 /// Returns the levels whose sessions take the layer from a frame that is due for the levels in `due`: these levels. The
 /// diagnostics are not a part of the picture; sessions of every level take them.
 core::LevelSet levelsTaking(v1::Layer layer, core::LevelSet due);

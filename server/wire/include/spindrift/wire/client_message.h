@@ -24,6 +24,8 @@ inline constexpr std::uint32_t kWireMinor = 7;
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
 inline constexpr std::uint32_t kDrainingMinor = 2;
+/// First minor version whose clients know floaters_predicted; others get floaters_fixed28.
+inline constexpr std::uint32_t kPackedFloatersMinor = 7;
 /// Hello.client is cut to this length.
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.

@@ -13,12 +13,14 @@ namespace {
 
 constexpr Stream kSurface{v1::LAYER_SURFACE, v1::PACKING_PACKED};
 constexpr Stream kFoam{v1::LAYER_FOAM, v1::PACKING_PACKED};
+constexpr Stream kFloaters{v1::LAYER_FLOATERS, v1::PACKING_PACKED};
 
-/// Waves, and foam on a grid of half as many samples, that change from frame to frame.
+/// Waves, foam on a grid of half as many samples, and objects, that change from frame to frame.
 struct Water {
   core::CellCounts count;
   std::vector<std::uint32_t> surface;
   std::vector<std::uint32_t> foam;
+  std::vector<std::uint32_t> floaters;
 
   Water(core::CellCounts size, std::uint64_t tick) : count(size), surface((size.total() + 1) / 2) {
     const core::CellCounts half = core::foamSamples(size);
@@ -32,6 +34,12 @@ struct Water {
     for (std::uint32_t k = 0; k < half.total(); ++k) {
       foam[k / 4] |= static_cast<std::uint32_t>((k + tick * 7) % 256) << (8 * (k % 4));
     }
+    for (std::uint32_t id = 1 + static_cast<std::uint32_t>(tick / 4); id < 90; ++id) {
+      const auto at_mm = static_cast<std::uint32_t>(std::lround(900 * std::sin(0.3 * id + t)));
+      const auto part = static_cast<std::uint32_t>(std::lround(9000 * std::sin(0.2 * id + 2 * t)));
+      floaters.insert(floaters.end(), {id, at_mm, id * 10, at_mm + id, part & 0xffffu, 0x7000'0000u | (part & 0xffffu),
+                                       30u | (1 + id % 8) << 16});
+    }
   }
   [[nodiscard]] core::FrameView view(std::uint64_t tick) const {
     core::FrameView out;
@@ -42,6 +50,7 @@ struct Water {
     auto& full = out.at(core::Level::kFull);
     full.surface = core::SurfaceView{count, 16.0, 16.0 * count.z / count.x, 0.001, surface};
     full.foam = core::FoamView{core::foamSamples(count), 16.0, 16.0 * count.z / count.x, foam};
+    out.floaters = core::FloatersView{static_cast<std::uint32_t>(floaters.size() / 7), floaters};
     return out;
   }
 };
@@ -52,12 +61,12 @@ v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
   return message ? message->frame() : v1::LayerFrame();
 }
 
-class PlaneKeeperTest : public testing::TestWithParam<Stream> {};
+class FrameKeeperTest : public testing::TestWithParam<Stream> {};
 
-TEST_P(PlaneKeeperTest, MakesTheKeyframeOfTheEncoderToTheBit) {
+TEST_P(FrameKeeperTest, MakesTheKeyframeOfTheEncoderToTheBit) {
   for (const core::CellCounts count : {core::CellCounts{64, 64}, core::CellCounts{37, 21}, core::CellCounts{1, 9}}) {
     FrameEncoder encoder;
-    PlaneKeeper keeper;
+    FrameKeeper keeper;
     for (std::uint64_t tick = 10; tick < 30; ++tick) {
       const Water water(count, tick);
       const EncodedFrame encoded = encoder.encode(GetParam(), water.view(tick), core::Level::kFull, true);
@@ -71,14 +80,16 @@ TEST_P(PlaneKeeperTest, MakesTheKeyframeOfTheEncoderToTheBit) {
   }
 }
 
-TEST_P(PlaneKeeperTest, KeyframeFitsTheNextDelta) {
+TEST_P(FrameKeeperTest, KeyframeFitsTheNextDelta) {
   const core::CellCounts count{48, 32};
   FrameEncoder encoder;
-  PlaneKeeper keeper;
+  FrameKeeper keeper;
   PackedSurfaceDecoder late_surface;
   PackedFoamDecoder late_foam;
+  PackedFloaterDecoder late_floaters;
   const auto isRead = [&](const core::SharedBytes& bytes) {
     const v1::LayerFrame frame = frameOf(bytes);
+    if (frame.has_floaters_predicted()) return static_cast<bool>(late_floaters.decode(frame));
     return frame.has_surface_predicted() ? static_cast<bool>(late_surface.decode(frame))
                                          : static_cast<bool>(late_foam.decode(frame));
   };
@@ -95,14 +106,13 @@ TEST_P(PlaneKeeperTest, KeyframeFitsTheNextDelta) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Layers, PlaneKeeperTest, testing::Values(kSurface, kFoam), [](const auto& of) {
-  return std::string(of.param.layer == v1::LAYER_SURFACE ? "Surface" : "Foam");
-});
+INSTANTIATE_TEST_SUITE_P(Layers, FrameKeeperTest, testing::Values(kSurface, kFoam, kFloaters),
+                         [](const auto& of) { return v1::Layer_Name(of.param.layer); });
 
-TEST(PlaneKeeper, HasNothingAfterALostOrDamagedFrame) {
+TEST(FrameKeeper, HasNothingAfterALostOrDamagedFrame) {
   const core::CellCounts count{32, 32};
   FrameEncoder encoder;
-  PlaneKeeper keeper;
+  FrameKeeper keeper;
   EXPECT_FALSE(keeper.keyframe()) << "nothing has come";
   const auto encoded = [&](std::uint64_t tick, bool wants_keyframe = false) {
     return encoder.encode(kSurface, Water(count, tick).view(tick), core::Level::kFull, wants_keyframe);
@@ -122,9 +132,9 @@ TEST(PlaneKeeper, HasNothingAfterALostOrDamagedFrame) {
   EXPECT_FALSE(keeper.take({})) << "no message";
 }
 
-TEST(PlaneKeeper, KnowsPackedPlanesOnly) {
+TEST(FrameKeeper, KnowsPackedFramesOnly) {
   const Water water({16, 16}, 1);
-  PlaneKeeper keeper;
+  FrameKeeper keeper;
   EXPECT_FALSE(keeper.take(*FrameEncoder().encode(v1::LAYER_SURFACE, water.view(1))));
   EXPECT_FALSE(keeper.keyframe());
 }
