@@ -66,7 +66,7 @@ void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, st
   if (nu > 0)
     rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
   if (hasTension(scene))
-    rules.push_back({"surface tension, sqrt(rho s^3 / (2 pi sigma))", "particles.surface_tension_npm",
+    rules.push_back({"surface tension, 0.5 sqrt(rho s^3 / (2 pi sigma))", "particles.surface_tension_npm",
                      capillaryMaxStep(p, layout.spacing_m)});
   if (p.solver == core::PressureSolver::kPositionBased) {
     // There is no sound, and the constraint resists any force: only particles must not jump past each other.
@@ -364,6 +364,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     auto layout = kept ? core::Result<ParticleLayout>(*kept) : layOutParticles(scene);
     if (!layout) return layout.error();
     d.particles = *layout;
+    if (auto fits = tensionFits(*scene.particles, layout->spacing_m); !fits) return fits.error();
     addParticleRules(scene, *d.particles, d.rules);
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
   }

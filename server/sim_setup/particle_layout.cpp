@@ -166,8 +166,6 @@ double stiffnessOf(const core::ParticleScene& p, const ParticleLayout& layout) {
 
 core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double volume_m3) {
   if (auto checked = checkVerticalPeriod(scene); !checked) return checked.error();
-  if (hasTension(scene) && scene.particles->cohesion)
-    return invalid("particles.surface_tension_npm: needs water whose pressure never pulls: remove cohesion, or use 0");
   if (isTwoWay(scene)) return layOutPool(scene);
   const core::ParticleScene& p = *scene.particles;
   ParticleLayout out;

@@ -19,6 +19,9 @@ double capillaryRatio(const core::Scene& scene, double cell_m);
 /// Errors (kInvalidInput): cells that do not resolve ripples, and parts of the scene that do not know them.
 core::Result<void> ripplesFit(const core::Scene& scene, double cell_m);
 
+/// Errors (kInvalidInput): water that pulls by itself, or is too compressible for its tension.
+core::Result<void> tensionFits(const core::ParticleScene& particles, double spacing_m);
+
 /// Coefficients of shaders/particles/tension.glsl; 0 in scenes without tension.
 struct ParticleTension {
   double area_ps2 = 0.0;
@@ -26,8 +29,8 @@ struct ParticleTension {
   double wall_m5pkg = 0.0;
 };
 ParticleTension particleTension(const core::ParticleScene& particles, const ParticleLayout& layout);
-/// Returns the largest step with which the shortest ripples of the particles are stable, sqrt(rho s^3 / (2 pi sigma))
-/// (Brackbill et al. 1992). Precondition: hasTension().
+/// Returns the largest step with which the shortest ripples of the particles are stable: half of sqrt(rho s^3 / (2 pi
+/// sigma)) (Brackbill et al. 1992). Precondition: hasTension().
 double capillaryMaxStep(const core::ParticleScene& particles, double spacing_m);
 
 }  // namespace spindrift::sim
