@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -184,7 +186,8 @@ Outcome drops(gpu::Context& ctx, bool quick) {
   Figure figure{.name = "drop",
                 .title = "A drop that was stretched by 15 %",
                 .x_label = "t omega / 2 pi [-], omega of Rayleigh",
-                .y_label = "elongation [-]"};
+                .y_label = "elongation [-]",
+                .curves = {}};
   for (const core::PressureSolver solver : kSolvers) {
     for (const std::uint32_t across_count : {12u, 16u}) {
       if (quick && across_count > 12) continue;
