@@ -5,7 +5,7 @@
 
 namespace spindrift::sim {
 
-ParticleBuffers::ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source)
+ParticleBuffers::ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source, bool has_tension)
     : position(create.texels("position", count, gpu::TexelFormat::kRGBA32F)),
       velocity(create.texels("velocity", count, gpu::TexelFormat::kRGBA32F)),
       sorted_position(create.scratch("sorted position", count, gpu::TexelFormat::kRGBA32F)),
@@ -14,6 +14,7 @@ ParticleBuffers::ParticleBuffers(Creation& create, std::size_t count, bool store
       motion_point(create.scratch("motion point", count, gpu::TexelFormat::kRGBA32F)),
       acceleration(create.texels("acceleration", count, gpu::TexelFormat::kRGBA32F)) {
   if (stores_foam_source) foam_source = create.scratch("foam source", count, gpu::TexelFormat::kR32F);
+  if (has_tension) surface_gradient = create.scratch("surface gradient", count, gpu::TexelFormat::kRGBA32F);
 }
 
 void ParticleBuffers::setDensity(double density_kgpm3) {

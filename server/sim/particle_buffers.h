@@ -15,10 +15,11 @@ struct ParticleBuffers {
   gpu::TexelBuffer position, velocity;
   gpu::TexelBuffer sorted_position, sorted_velocity;
   gpu::TexelBuffer pressure_point, motion_point, acceleration;
-  gpu::TexelBuffer foam_source;  ///< only where storesFoamSource()
+  gpu::TexelBuffer foam_source;       ///< only where storesFoamSource()
+  gpu::TexelBuffer surface_gradient;  ///< only where hasTension()
 
   ParticleBuffers() = default;
-  ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source);
+  ParticleBuffers(Creation& create, std::size_t count, bool stores_foam_source, bool has_tension);
   /// Gives every particle the same density; accelerations are recomputed before they are read.
   void setDensity(double density_kgpm3);
   void declareState(StateBuffers& out);

@@ -39,6 +39,7 @@ gpu::Defines shaderDefines(const core::Scene& scene) {
           {"NEIGHBOUR_FOAM", flag(countsNeighbours(scene))},
           {"TAIT", flag(has_particles && scene.particles->equation_of_state == core::EquationOfState::kTait)},
           {"COHESION", flag(has_particles && scene.particles->cohesion)},
+          {"TENSION", flag(hasTension(scene))},
           {"MEAN_FORCE", flag(has_particles && scene.particles->pressure_force == core::PressureForce::kMean)},
           {"LATTICE", std::to_string(scene.coupling ? scene.coupling->lattice_count : 5)},
           {"STENCIL", scene.wave && scene.wave->stencil == core::Stencil::kNinePoint ? "9" : "5"},

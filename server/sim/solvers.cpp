@@ -16,6 +16,7 @@ void Sph::density(const ParticleBuffers& particles, const Population& population
   particles.motion_point.bindStorage(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
   if (particles.foam_source) particles.foam_source.bindStorage(FOAM_SOURCE);
+  if (particles.surface_gradient) particles.surface_gradient.bindStorage(SURFACE_GRADIENT);
   population.forParticles(density_);
 }
 
@@ -23,6 +24,7 @@ void Sph::forces(const ParticleBuffers& particles, const Population& population)
   particles.pressure_point.bindTexel(PRESSURE_POINT);
   particles.motion_point.bindTexel(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
+  if (particles.surface_gradient) particles.surface_gradient.bindTexel(SURFACE_GRADIENT);
   population.forParticles(force_);
 }
 
@@ -55,6 +57,7 @@ void PositionBased::project(const ParticleBuffers& particles, const Population& 
     iterate.bindTexel(SORTED_POSITION);
     particles.pressure_point.bindStorage(PRESSURE_POINT);
     particles.acceleration.bindStorage(ACCELERATION);
+    if (particles.surface_gradient) particles.surface_gradient.bindStorage(SURFACE_GRADIENT);
     population.forParticles(multiplier_);
     particles.pressure_point.bindTexel(PRESSURE_POINT);
     particles.motion_point.bindStorage(MOTION_POINT);
@@ -73,6 +76,7 @@ void PositionBased::finish(const ParticleBuffers& particles, const Population& p
   particles.acceleration.bindTexel(ACCELERATION);
   particles.position.bindStorage(POSITION);
   particles.velocity.bindStorage(VELOCITY);
+  if (particles.surface_gradient) particles.surface_gradient.bindTexel(SURFACE_GRADIENT);
   population.forParticles(finish_);
 }
 

@@ -187,7 +187,7 @@ core::Result<void> WaterSim::build() {
   p.uniforms = create.uniforms<shared::SimUniforms>("sim uniforms");
   if (derived_.wave) make(p.wave, scene_, *derived_.wave, isSampled(scene_));
   if (derived_.particles) {
-    p.particles.emplace(create, derived_.particles->count, storesFoamSource(scene_));
+    p.particles.emplace(create, derived_.particles->count, storesFoamSource(scene_), hasTension(scene_));
     make(p.grid, *derived_.particles, isTwoWay(scene_));
     if (scene_.particles->solver == core::PressureSolver::kPositionBased)
       make(p.position_based);
@@ -240,7 +240,7 @@ void WaterSim::Parts::makeCheckpoints(Creation& create) {
 
 core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
   Creation create(ctx);
-  ParticleBuffers fresh(create, derived.particles->count, storesFoamSource(scene));
+  ParticleBuffers fresh(create, derived.particles->count, storesFoamSource(scene), hasTension(scene));
   resizeOthers(create, derived);
   if (create.error()) return *create.error();
   std::swap(*particles, fresh);

@@ -56,6 +56,10 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
     rise_ = create.scratch("surface rise", cells, kRG32F);
     slope_ = create.pass("wave/shallow_slope.comp");
   }
+  if (hasRipples(scene)) {
+    tense_level_ = create.texels("tense level", cells, kR32I, gpu::BufferContent::kScratch);
+    tense_ = create.pass("wave/capillary.comp");
+  }
   if (hasMakers(scene)) makers_ = std::make_unique<WaveMakers>(create, scene, layout);
   if (disperses(scene) && !create.error())
     dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, layOutBasin(scene, layout), is_nonlinear_);
@@ -193,7 +197,14 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
     slope_.run(count_);
     rise_.bindTexel(SURFACE_RISE);
   }
+  if (tense_level_) {
+    bindBasin();
+    tense_level_.bindStorage(TENSE_LEVEL);
+    tense_.run(count_);
+    tense_level_.bindTexel(ELEVATION);
+  }
   if (dispersed_slope_) dispersed_slope_->compute();
+  if (tense_level_) elevation_.bindTexel(ELEVATION);
   bindBasin();
   if (dispersed_slope_) dispersed_slope_->texels().bindTexel(DISPERSED);
   if (breaking) breaking->bindTexel(BREAKING);

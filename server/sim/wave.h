@@ -99,6 +99,7 @@ class Wave {
   gpu::TexelBuffer transfer_;     ///< nx x nz x 2 (9-point: 4) [units]
   gpu::TexelBuffer given_share_;  ///< nx x nz; written in steps that limit transfers
   gpu::Buffer limit_args_;        ///< groups of the two passes of the limit; 0 in most steps
+  gpu::TexelBuffer tense_level_;  ///< nx x nz [units]; only where the surface of the wave has tension
   gpu::TexelBuffer pressure_head_, terrain_, landing_;
   gpu::TexelBuffer surface_, surface_flow_;
   std::unique_ptr<DispersedSlope> dispersed_slope_;  ///< null in scenes without dispersion
@@ -106,7 +107,7 @@ class Wave {
   std::vector<std::int32_t> resting_elevation_;      ///< nx x nz [units]; empty if the bulk is linear
   std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;
-  Pass splash_, crest_, find_share_, limit_, sample_surface_, slope_;
+  Pass splash_, crest_, find_share_, limit_, sample_surface_, slope_, tense_;
   Pass momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
 };
 

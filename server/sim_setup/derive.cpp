@@ -14,6 +14,7 @@
 #include <spindrift/sim_setup/particle_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
 #include <spindrift/sim_setup/sea_state.h>
+#include <spindrift/sim_setup/surface_tension.h>
 
 namespace spindrift::sim {
 namespace {
@@ -64,6 +65,9 @@ void addParticleRules(const core::Scene& scene, const ParticleLayout& layout, st
   const double nu = p.viscosity_pas / p.rest_density_kgpm3;
   if (nu > 0)
     rules.push_back({"viscous diffusion, 0.125 H^2 / nu", "particles.viscosity_pas", kViscousFactor * H * H / nu});
+  if (hasTension(scene))
+    rules.push_back({"surface tension, 0.5 sqrt(rho s^3 / (2 pi sigma))", "particles.surface_tension_npm",
+                     capillaryMaxStep(p, layout.spacing_m)});
   if (p.solver == core::PressureSolver::kPositionBased) {
     // There is no sound, and the constraint resists any force: only particles must not jump past each other.
     rules.push_back({"particle CFL, 0.4 H / U_max", "particles.max_speed_mps", kParticleCourant * H / p.max_speed_mps});
@@ -151,6 +155,7 @@ core::Result<WaveLayout> layOutWave(const core::Scene& scene) {
   if (hasMatchedLayer(scene) && w.stencil == core::Stencil::kNinePoint)
     return invalid(
         "wave.absorption: ABSORPTION_PML needs STENCIL_FIVE_POINT; remove wave.stencil or choose ABSORPTION_SPONGE");
+  if (auto fits = ripplesFit(scene, out.cell_m); !fits) return fits.error();
   out.speed_mps = std::sqrt(scene.gravity_mps2 * w.depth_m);
   if (disperses(scene)) out.dispersing_depth_m = w.depth_m;
   return out;
@@ -169,9 +174,10 @@ StepRule waveRule(const core::Scene& scene, const WaveLayout& layout) {
   } else if (disperses(scene)) {
     out.name = std::string("wave step with dispersion, 1.8 / (highest frequency of the grid") +
                (steepens ? ", times sqrt(1 + steepening))" : ")");
-    // A crest's factor on the slope (see below) may act on all of the waves.
-    out.max_dt_s =
-        dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m) / std::sqrt(1.0 + wave.steepening_ratio);
+    // A crest's factor on the slope (see below) may act on all of the waves. Tension multiplies the highest frequency
+    // of the grid, that of a chequerboard, which stands 8 times its height above its neighbours.
+    out.max_dt_s = dispersedMaxStep(scene.gravity_mps2, deepest_m, layout.cell_m) /
+                   std::sqrt((1.0 + wave.steepening_ratio) * (1.0 + 8 * capillaryRatio(scene, layout.cell_m)));
   } else {
     const bool nine = wave.stencil == core::Stencil::kNinePoint;
     const double limit = nine ? kNinePointCourant : kFivePointCourant;
@@ -194,6 +200,7 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
   if (isNonlinear(scene))
     bytes += 2 * 16 - 8 + (disperses(scene) ? 16 : 0);  // FLOW twice; SURFACE_RISE, DISPERSED of the last step
+  if (hasRipples(scene)) bytes += 4;
   if (isVaried(scene)) bytes += 16 + 16;
   if (exchangesWater(scene)) bytes += 8;
   if (hasMatchedLayer(scene)) bytes += 4;
@@ -207,7 +214,8 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
 std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
-    bytes += std::uint64_t{d.particles->count} * (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0)) +
+    bytes += std::uint64_t{d.particles->count} *
+                 (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0) + (hasTension(scene) ? 16 : 0)) +
              std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
   if (d.wave) bytes += d.wave->counts().total() * waveCellBytes(scene);
@@ -277,6 +285,10 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.constraint_softness_pm2 = f(l.constraint_softness_pm2);
     const bool holds_layer = scene.coupling && p.solver == core::PressureSolver::kPositionBased;
     u.floor_gap_m = f((holds_layer ? kPositionBasedFloorGapRatio : kFloorGapRatio) * l.spacing_m);
+    const ParticleTension tension = particleTension(p, l);
+    u.tension_area_ps2 = f(tension.area_ps2);
+    u.tension_pull_ps2 = f(tension.pull_ps2);
+    u.tension_wall_m5pkg = f(tension.wall_m5pkg);
     u.candidates_max_count = maxCandidates(p, l);
   }
   if (isTwoWay(scene)) {
@@ -315,6 +327,7 @@ void fillUniforms(const core::Scene& scene, Derived& d) {
     u.wave_pull = f(scene.gravity_mps2 * w.dt_s / w.cell_m * ELEVATION_UNIT_M);
     u.wave_transfer = f(w.dt_s / w.cell_m * ELEVATION_UNITS_PER_M);
     u.steepening_ratio = f(scene.wave->steepening_ratio);
+    u.capillary_ratio = f(capillaryRatio(scene, w.cell_m));
     u.wave_friction = f(scene.gravity_mps2 * scene.wave->manning_spm13 * scene.wave->manning_spm13);
     u.breaking_loss_per_s = f(kBreakingLoss * std::sqrt(scene.gravity_mps2 / scene.wave->depth_m));
   }
@@ -351,6 +364,7 @@ core::Result<Derived> derive(const core::Scene& scene, const ParticleLayout* kep
     auto layout = kept ? core::Result<ParticleLayout>(*kept) : layOutParticles(scene);
     if (!layout) return layout.error();
     d.particles = *layout;
+    if (auto fits = tensionFits(*scene.particles, layout->spacing_m); !fits) return fits.error();
     addParticleRules(scene, *d.particles, d.rules);
     std::ranges::sort(d.rules, {}, &StepRule::max_dt_s);
   }

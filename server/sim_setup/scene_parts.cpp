@@ -31,6 +31,14 @@ bool disperses(const core::Scene& scene) {
   return scene.wave && scene.wave->dispersion == core::Dispersion::kAiry;
 }
 
+bool hasRipples(const core::Scene& scene) {
+  return scene.wave && scene.wave->surface_tension_npm > 0;
+}
+
+bool hasTension(const core::Scene& scene) {
+  return scene.particles && scene.particles->surface_tension_npm > 0;
+}
+
 std::uint32_t sidesWith(const core::WaveScene& wave, WaveBoundary boundary) {
   std::uint32_t bits = 0;
   for (const WaterSide& each : sidesOf(wave)) {

@@ -1,13 +1,15 @@
 // Viscosity between the particles and against the floor, collisions between them, foam, and the sides; ends the step.
 // Reads PRESSURE_POINT (position, m/rho), ACCELERATION (velocity, rho), SORTED_POSITION.w (id), SORTED_VELOCITY.w (foam), CELL_START, the
-// floor. Writes POSITION, VELOCITY (in sorted order).
+// floor; with TENSION SURFACE_GRADIENT. Writes POSITION, VELOCITY (in sorted order).
 // Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), and its
-// collisions, -1/rho_0 sum_j m q grad W (particles/collision.glsl), over one step.
+// collisions, -1/rho_0 sum_j m q grad W (particles/collision.glsl), and the surface tension of particles/tension.glsl, over one step. The gradients
+// of the surface are those before the last correction.
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"
 #include "particles/boundary.glsl"
 #include "particles/collision.glsl"
+#include "particles/tension.glsl"
 #include "common/finite.glsl"
 #include "particles/foam.glsl"
 #include "particles/surroundings.glsl"
@@ -16,6 +18,9 @@ layout(local_size_x = PARTICLE_GROUP) in;
 
 layout(binding = PRESSURE_POINT) uniform samplerBuffer pressure_point;
 layout(binding = ACCELERATION) uniform samplerBuffer acceleration;
+#if TENSION
+layout(binding = SURFACE_GRADIENT) uniform samplerBuffer surface_gradient;
+#endif
 layout(binding = SORTED_POSITION) uniform samplerBuffer sorted_position;
 layout(binding = SORTED_VELOCITY) uniform samplerBuffer sorted_velocity;
 layout(std430, binding = POSITION) restrict writeonly buffer Position { vec4 position[]; };
@@ -40,6 +45,10 @@ void main() {
   const float limit_mps = collisionLimit();
   vec3 drag = vec3(0.0);
   vec3 push = vec3(0.0);
+#if TENSION
+  const vec3 emptiness = texelFetch(surface_gradient, int(i)).xyz;
+  vec3 tensed = vec3(0.0);
+#endif
 #if NEIGHBOUR_FOAM
   const float H2 = support.H * support.H;
   float near = -1.0;  // the particle itself is not counted
@@ -55,6 +64,9 @@ void main() {
         const vec3 v_ij = own.xyz - texelFetch(acceleration, j).xyz;
         push += (collision(r, r2, v_ij, limit_mps) * pressurePull(r2, support)) * r;
         drag -= (a.w * viscosityLaplacian(sqrt(r2), support.H)) * v_ij;
+#if TENSION
+        tensed += tension(r, r2, emptiness - texelFetch(surface_gradient, j).xyz, support);
+#endif
 #if NEIGHBOUR_FOAM
         near += step(r2, H2);
 #endif
@@ -64,7 +76,11 @@ void main() {
 
   const vec3 a_collisions = sim.slope_norm * sim.mass_kg / sim.rest_density_kgpm3 * push;
   const vec3 a_viscosity = sim.viscosity_norm * sim.viscosity_pas / own.w * drag + floorAcceleration(x_i, own.xyz, 0.0, own.w);
+#if TENSION
+  vec3 v = own.xyz + sim.dt_s * (a_collisions + a_viscosity + tensed);
+#else
   vec3 v = own.xyz + sim.dt_s * (a_collisions + a_viscosity);
+#endif
   v *= min(1.0, sim.max_speed_mps / max(length(v), 1e-6));
   if (!meetSurroundings(x_i, v)) {
 #if POOL_PARTICLES

@@ -1,6 +1,6 @@
 // The multiplier of each particle's density constraint C_i = rho_i / rho_0 - 1; without COHESION it is 0 where C_i < 0.
 // Reads SORTED_POSITION (the positions of this iteration), CELL_START, floor and walls. Writes PRESSURE_POINT (position, lambda [m^2])
-// and ACCELERATION.w (rho); counts in CROWDED.
+// and ACCELERATION.w (rho), with TENSION SURFACE_GRADIENT; counts in CROWDED.
 // Equation: lambda_i = -C_i / (sum_k |grad_k C_i|^2 + softness) (Macklin & Mueller 2013, eq. 11). Floor and walls
 // contribute to rho_i and to the particle's own gradient; they do not move.
 #define COUNT_CROWDED
@@ -8,11 +8,15 @@
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"
 #include "particles/boundary.glsl"
+#include "particles/tension.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
 
 layout(binding = SORTED_POSITION) uniform samplerBuffer iterate;
 layout(std430, binding = PRESSURE_POINT) restrict writeonly buffer PressurePoint { vec4 pressure_point[]; };
+#if TENSION
+layout(std430, binding = SURFACE_GRADIENT) restrict writeonly buffer SurfaceGradient { vec4 surface_gradient[]; };
+#endif
 layout(std430, binding = ACCELERATION) restrict writeonly buffer Acceleration { vec4 acceleration[]; };
 
 void main() {
@@ -26,6 +30,9 @@ void main() {
   float sum = 0.0;
   float squares = 0.0;
   vec3 pull = vec3(0.0);
+#if TENSION
+  vec3 emptiness = vec3(0.0);
+#endif
   for (int dz = -1; dz <= 1; ++dz) {
     for (int dx = -1; dx <= 1; ++dx) {
       const CandidateRange range = candidateRange(g, cell, dx, dz);
@@ -37,6 +44,9 @@ void main() {
         sum += densityShape(r2, support);
         pull += p;
         squares += dot(p, p);
+#if TENSION
+        emptiness += surfaceShare(r, r2, support);
+#endif
       }
     }
   }
@@ -51,6 +61,9 @@ void main() {
   constraint = max(constraint, 0.0);
 #endif
   const float lambda = -constraint / (dot(own, own) + slope * slope * squares + sim.constraint_softness_pm2);
+#if TENSION
+  surface_gradient[i] = vec4(emptiness - sim.tension_wall_m5pkg * boundaryGradient(x_i), 0.0);
+#endif
   pressure_point[i] = vec4(x_i, lambda);
   acceleration[i] = vec4(0.0, 0.0, 0.0, rho);
 }

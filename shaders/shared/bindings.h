@@ -73,6 +73,9 @@
 // Nonlinear shallow water with dispersion: rise of the surface and of pressures across the faces that a cell owns [units]
 // (binding shared with SURFACE_FLOW; no pass has both). There FLOW holds velocities [m/s] and flows [m^2/s].
 #define SURFACE_RISE 16
+// Elevation and the head of surface tension [units], in scenes with ripples: what the dispersion takes for ELEVATION. The number is
+// that of the grid; only passes of the wave use this buffer.
+#define TENSE_LEVEL 11
 // Pressure on the surface (hulls, falling particles), as a height of water [units].
 #define PRESSURE_HEAD 21
 // Breaking: seconds since a cell began to break, intensity 0..1; and the same one substep ago.
@@ -119,6 +122,9 @@
 // Particles with too many neighbour candidates, two words; grid/candidates.glsl (binding shared with EMITTER; no pass
 // has both).
 #define CROWDED 31
+// How empty the sides of a particle are, in scenes with surface tension; particles/tension.glsl (binding shared with CELL_COUNT; no
+// pass has both).
+#define SURFACE_GRADIENT 7
 // Foam from few neighbours, one float per particle [0..1], in scenes that count neighbours (binding shared with
 // PACKED_WORDS; no pass has both).
 #define FOAM_SOURCE 17

@@ -91,6 +91,7 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wave_transfer;          // dt / dx in units: elevation moved per flow
   float steepening_ratio;
   float breaking_loss_per_s;    // of flow, where the intensity is 1
+  float capillary_ratio;        // head of surface tension over the sum of a cell's height above its neighbours (sim_setup/surface_tension.h)
   float wave_friction;          // g n^2, n being Manning's roughness of the bed [m^(1/3)]
 
   // Frames: range of the quantized positions in x and z; in y it is min_y_m to max_y_m.
@@ -103,9 +104,14 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // Bound of the neighbour search: largest number of candidates of a column of cells that a particle visits
   // (sim_setup/derive.cpp).
   uint candidates_max_count;
+
+  // Surface tension of particles (particles/tension.glsl, sim_setup/surface_tension.h).
+  float tension_area_ps2;
+  float tension_pull_ps2;
+  float tension_wall_m5pkg;     // turns a gradient of boundaryDensity into one of SURFACE_GRADIENT
 #ifdef __cplusplus
 };
-static_assert(sizeof(SimUniforms) == 68 * 4, "scalars of four bytes only: std140 and C++ must agree");
+static_assert(sizeof(SimUniforms) == 72 * 4, "scalars of four bytes only: std140 and C++ must agree");
 static_assert(sizeof(SimUniforms) % 16 == 0, "a uniform buffer that is smaller than its block is undefined");
 }  // namespace spindrift::shared
 #else

@@ -1,6 +1,7 @@
 // Density and pressure of each particle.
 // Reads SORTED_POSITION, SORTED_VELOCITY, CELL_START, floor and walls. Writes PRESSURE_POINT (position, p/rho^2, with MEAN_FORCE
-// p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho) and, with NEIGHBOUR_FOAM, FOAM_SOURCE; counts in CROWDED.
+// p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho), with NEIGHBOUR_FOAM FOAM_SOURCE, with TENSION SURFACE_GRADIENT; counts in
+// CROWDED.
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
 // 10), and the walls' shares; p_i from the equation of state (sph/pressure.glsl).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
@@ -12,6 +13,7 @@
 #include "particles/kernels.glsl"
 #include "particles/boundary.glsl"
 #include "particles/foam.glsl"
+#include "particles/tension.glsl"
 #include "sph/pressure.glsl"
 
 layout(local_size_x = PARTICLE_GROUP) in;
@@ -22,6 +24,9 @@ layout(std430, binding = PRESSURE_POINT) restrict writeonly buffer PressurePoint
 layout(std430, binding = MOTION_POINT) restrict writeonly buffer MotionPoint { vec4 motion_point[]; };
 #if NEIGHBOUR_FOAM
 layout(std430, binding = FOAM_SOURCE) restrict writeonly buffer FoamSource { float foam_source[]; };
+#endif
+#if TENSION
+layout(std430, binding = SURFACE_GRADIENT) restrict writeonly buffer SurfaceGradient { vec4 surface_gradient[]; };
 #endif
 layout(std430, binding = ACCELERATION) restrict writeonly buffer Acceleration { vec4 acceleration[]; };
 
@@ -34,6 +39,9 @@ void main() {
   const ivec3 cell = cellOf(g, x_i);
 
   float sum = 0.0;
+#if TENSION
+  vec3 emptiness = vec3(0.0);
+#endif
 #if NEIGHBOUR_FOAM
   const float H2 = support.H * support.H;
   float near = -1.0;  // the particle itself is not counted
@@ -46,6 +54,9 @@ void main() {
         const vec3 r = fromCandidate(g, x, texelFetch(sorted_position, j).xyz);
         const float r2 = dot(r, r);
         sum += densityShape(r2, support);
+#if TENSION
+        emptiness += surfaceShare(r, r2, support);
+#endif
 #if NEIGHBOUR_FOAM
         near += step(r2, H2);
 #endif
@@ -64,6 +75,9 @@ void main() {
 #endif
 #if NEIGHBOUR_FOAM
   foam_source[i] = neighbourFoam(near);
+#endif
+#if TENSION
+  surface_gradient[i] = vec4(emptiness - sim.tension_wall_m5pkg * boundaryGradient(x_i), 0.0);
 #endif
   motion_point[i] = vec4(texelFetch(sorted_velocity, int(i)).xyz, sim.mass_kg / rho);
   acceleration[i] = vec4(0.0, 0.0, 0.0, rho);

@@ -20,6 +20,8 @@ Outcome dampedMode(gpu::Context& ctx, bool quick);
 
 // dispersed_wave_cases.cpp
 Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick);
+Outcome rippleSpeed(gpu::Context& ctx, bool quick);
+Outcome drops(gpu::Context& ctx, bool quick);
 Outcome wavePacket(gpu::Context& ctx, bool quick);
 Outcome airyRings(gpu::Context& ctx, bool quick);
 

@@ -166,6 +166,51 @@ Outcome airyPhaseSpeed(gpu::Context& ctx, bool quick) {
   return CaseResult{std::move(rows), {std::move(figure)}};
 }
 
+Outcome rippleSpeed(gpu::Context& ctx, bool quick) {
+  constexpr double kRippleCell_m = 0.002;
+  constexpr std::uint32_t kRippleSide = 64;
+  constexpr double kTension_npm = 0.0728;
+  core::Scene scene = dispersiveScene(kRippleSide, kRippleCell_m, 0.05, WaveBoundary::kReflect, 500.0);
+  scene.wave->surface_tension_npm = kTension_npm;
+  auto water = sim::WaterSim::create(ctx, scene);
+  if (!water) return water.error();
+  const AiryWater exact{scene.gravity_mps2, scene.wave->depth_m, kTension_npm / 1000};
+  std::vector<Row> rows;
+  Figure figure{.name = "ripples",
+                .title = "Phase speed of ripples",
+                .x_label = "wavelength [m]",
+                .y_label = "phase speed [m/s]",
+                .is_logarithmic = true,
+                .curves = {{"c^2 = (g/k + sigma k/rho) tanh(k d)", {}}}};
+  for (double wavelength_m = 0.008; wavelength_m < 0.13; wavelength_m *= 1.05)
+    figure.curves.front().points.emplace_back(wavelength_m, exact.phaseSpeed_mps(2 * pi / wavelength_m));
+  double slowest_mps = 1e9;
+  for (const bool is_diagonal : {false, true}) {
+    Figure::Curve curve{is_diagonal ? "along the diagonal" : "along the axis", {}, true};
+    // Along the axis 15 half waves are 1.71 cm, along the diagonal 11 are 1.65 cm.
+    for (const int half_waves : {3, 6, 9, 11, 13, 15, 17, 19, 24, 28}) {
+      const StandingWave wave{half_waves, is_diagonal};
+      const double k_radpm = wave.k_radpm(scene.wave->side_m);
+      const double cells = 2 * pi / (k_radpm * kRippleCell_m);
+      if (cells < 4.5 || (quick && half_waves % 2 == 0)) continue;
+      const double expected_mps = exact.phaseSpeed_mps(k_radpm);
+      auto omega = frequencyOf(**water, wave, expected_mps * k_radpm, 100);
+      if (!omega) return omega.error();
+      const double speed_mps = *omega / k_radpm;
+      slowest_mps = std::min(slowest_mps, speed_mps);
+      rows.push_back({fmt::format("waves of {:.2f} cm, {:.1f} cells, along the {}: phase speed", 2e2 * pi / k_radpm,
+                                  cells, is_diagonal ? "diagonal" : "axis"),
+                      "m/s", speed_mps, expected_mps, Tolerance::kRelative, cells < 8 ? 0.04 : 0.015,
+                      "c^2 = (g/k + sigma k/rho) tanh(k d)"});
+      curve.points.emplace_back(2 * pi / k_radpm, speed_mps);
+    }
+    figure.curves.push_back(std::move(curve));
+  }
+  rows.push_back({"slowest of these", "m/s", slowest_mps, std::pow(4 * scene.gravity_mps2 * exact.tension_m3ps2, 0.25),
+                  Tolerance::kRelative, 0.015, "(4 g sigma / rho)^(1/4), at 1.71 cm"});
+  return CaseResult{std::move(rows), {std::move(figure)}};
+}
+
 namespace {
 
 /// Speed of the middle of eta^2 over `ticks`: the middle is the phase of its longest wave on the periodic side.

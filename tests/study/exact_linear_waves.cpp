@@ -9,7 +9,7 @@
 namespace spindrift::study {
 
 double AiryWater::omega_radps(double k_radpm) const {
-  return std::sqrt(gravity_mps2 * k_radpm * std::tanh(k_radpm * depth_m));
+  return std::sqrt(k_radpm * (gravity_mps2 + tension_m3ps2 * k_radpm * k_radpm) * std::tanh(k_radpm * depth_m));
 }
 
 double AiryWater::phaseSpeed_mps(double k_radpm) const {

@@ -1,4 +1,4 @@
-// Exact linear waves on water of even depth (Airy): omega^2 = g k tanh(k d). Closed forms that the simulation is
+// Exact linear waves on water of even depth (Airy): omega^2 = (g k + sigma k^3 / rho) tanh(k d). Closed forms that the simulation is
 // compared with; double precision, on the host.
 #pragma once
 
@@ -13,6 +13,7 @@ namespace spindrift::study {
 struct AiryWater {
   double gravity_mps2 = 9.81;
   double depth_m = 1.0;
+  double tension_m3ps2 = 0.0;  ///< sigma / rho; omega and the phase speed know it
 
   [[nodiscard]] double omega_radps(double k_radpm) const;
   /// Phase speed omega/k; sqrt(g d) at k = 0.

@@ -14,6 +14,7 @@
 namespace spindrift::sim {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 TEST(Derive, KeepsEveryStepRule) {
@@ -282,6 +283,76 @@ TEST(Derive, RefusesDispersionWhereItsGridsDoNotFit) {
   EXPECT_THAT(derive(scene).error().message, HasSubstr("use 512 or 544"));
   scene.wave->resolution_count = 544;
   EXPECT_TRUE(derive(scene));
+}
+
+/// A square of half a metre with ripples.
+core::Scene rippleScene() {
+  core::Scene scene;
+  scene.wave.emplace();
+  scene.wave->side_m = 0.5;
+  scene.wave->resolution_count = 192;
+  scene.wave->depth_m = 0.05;
+  scene.wave->dispersion = core::Dispersion::kAiry;
+  scene.wave->surface_tension_npm = 0.0728;
+  return scene;
+}
+
+TEST(Derive, GivesRipplesShorterSteps) {
+  core::Scene scene = rippleScene();
+  const auto ripples = derive(scene);
+  scene.wave->surface_tension_npm = 0.0;
+  const auto plain = derive(scene);
+  ASSERT_TRUE(ripples) << ripples.error().message;
+  ASSERT_TRUE(plain) << plain.error().message;
+  EXPECT_EQ(plain->uniforms.capillary_ratio, 0.0f);
+  // l^2 / dx^2 = 1.09, 6 % more for the curvature that cells of 2.6 mm do not see.
+  EXPECT_NEAR(ripples->uniforms.capillary_ratio, 1.16, 0.01);
+  EXPECT_NEAR(plain->rules.back().max_dt_s / ripples->rules.back().max_dt_s, std::sqrt(1 + 8 * 1.16), 0.02);
+  EXPECT_GT(ripples->device_bytes, plain->device_bytes);
+}
+
+TEST(Derive, RefusesRipplesThatItCannotCompute) {
+  const auto messageOf = [](const auto& change) {
+    core::Scene scene = rippleScene();
+    change(scene);
+    const auto d = derive(scene);
+    return d ? "accepted" : d.error().message;
+  };
+  ASSERT_EQ(messageOf([](core::Scene&) {}), "accepted");
+  EXPECT_THAT(messageOf([](core::Scene& s) { s.wave->dispersion = core::Dispersion::kNone; }),
+              HasSubstr("use dispersion: DISPERSION_AIRY"));
+  EXPECT_THAT(messageOf([](core::Scene& s) { s.wave->bulk = core::Bulk::kNonlinear; }), HasSubstr("BULK_LINEAR"));
+  EXPECT_THAT(messageOf([](core::Scene& s) { s.wave->resolution_count = 128; }),
+              AllOf(HasSubstr("cells of at most 2.85 mm"), HasSubstr("resolution_count of 176 or more")));
+  EXPECT_THAT(messageOf([](core::Scene& s) { s.gravity_mps2 = 0.0; }), HasSubstr("use at least 0.0115"));
+  EXPECT_THAT(messageOf([](core::Scene& s) { s.wave_makers.emplace_back(); }), HasSubstr("wave_makers"));
+}
+
+TEST(Derive, TensionOfParticlesHasStepsAndBounds) {
+  core::Scene scene;
+  scene.gravity_mps2 = 0.0;
+  scene.particles.emplace();
+  core::ParticleScene& p = *scene.particles;
+  p.boundary_x = p.boundary_z = core::Boundary::kWall;
+  p.count = 1000;
+  p.layers_count = 10;
+  p.box_side_m = 0.01;  // particles 1 mm apart
+  p.viscosity_pas = 0.01;
+  p.max_speed_mps = 0.5;
+  p.surface_tension_npm = 0.0728;
+  p.solver = core::PressureSolver::kPositionBased;
+  const auto d = derive(scene);
+  ASSERT_TRUE(d) << d.error().message;
+  EXPECT_THAT(d->rules.front().name, HasSubstr("surface tension"));
+  EXPECT_NEAR(d->dt_s, 0.74e-3, 0.05e-3);
+  EXPECT_GT(d->uniforms.tension_area_ps2, 0.0f);
+  p.solver = core::PressureSolver::kWeaklyCompressible;
+  p.sound_speed_mps = 2.0;
+  EXPECT_THAT(derive(scene).error().message, AllOf(HasSubstr("2 m/s is too soft"), HasSubstr("at least 2.7 m/s")));
+  p.sound_speed_mps = 3.0;
+  EXPECT_TRUE(derive(scene));
+  p.cohesion = true;
+  EXPECT_THAT(derive(scene).error().message, HasSubstr("remove cohesion"));
 }
 
 TEST(Derive, GivesDispersedWavesLongerSteps) {

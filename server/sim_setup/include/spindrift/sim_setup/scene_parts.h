@@ -26,6 +26,10 @@ bool isVaried(const core::Scene& scene);
 bool isNonlinear(const core::Scene& scene);
 /// Returns whether short waves are slower than long ones.
 bool disperses(const core::Scene& scene);
+/// Returns whether the surface of the wave has tension.
+bool hasRipples(const core::Scene& scene);
+/// Returns whether the surface of the particles has tension.
+bool hasTension(const core::Scene& scene);
 /// Returns whether a side absorbs waves in a layer.
 bool isOpen(const core::Scene& scene);
 /// Returns whether a side has a wave-maker.
