@@ -33,6 +33,7 @@ import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
+import { SoundControls } from "./sound_controls";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
@@ -55,6 +56,7 @@ export class App {
   readonly floaterRows: FloaterRows = new FloaterRows(byId("kinds"), byId("object-rows"), this.commands.send);
   readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning(), (name) => this.floaterRows.show(name === "float"));
   readonly room = new RoomPanel(this.commands.send);
+  readonly sound: SoundControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
   state: ConnectionState = { name: "connecting" };
@@ -112,10 +114,12 @@ export class App {
       drawn: (atS) => {
         this.showTags(atS);
         this.looks.update(atS);
+        this.sound.update();
       },
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
+    this.sound = new SoundControls(this.display, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
@@ -170,6 +174,7 @@ export class App {
       frame: ({ frame }) => {
         this.simTimeS = frame.timeS;
         this.display.take(frame);
+        this.sound.take(frame.layer);
       },
       diagnostics: ({ diagnostics }) => {
         this.hud.diagnostics(diagnostics);
@@ -202,7 +207,10 @@ export class App {
         this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
       },
-      strokes: ({ fingers }) => this.fingers.take(fingers),
+      strokes: ({ fingers }) => {
+        this.fingers.take(fingers);
+        this.sound.setFingers(fingers);
+      },
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
@@ -238,6 +246,7 @@ export class App {
     this.tags.setBoats(greeting.boats);
     this.fingers.clear();
     this.looks.enter(greeting);
+    this.sound.enter(greeting);
     // Not before: the connection exists from now on.
     this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;

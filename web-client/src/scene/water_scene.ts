@@ -43,7 +43,7 @@ export class WaterScene {
   readonly daylight = new Daylight();
   /** The dents of one's own fingers. */
   readonly ripple = new LocalRipple();
-  private readonly frames: StreamedFrames;
+  readonly frames: StreamedFrames;
   private sky: Sky;
   private readonly noise = makeNoiseTexture();
   private readonly wetness = new ShoreWetness();
