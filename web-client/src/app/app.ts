@@ -31,6 +31,7 @@ import { ViewButtons } from "../ui/view_buttons";
 import { setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
+import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
 import { SoundControls } from "./sound_controls";
@@ -56,6 +57,7 @@ export class App {
   readonly floaterRows: FloaterRows = new FloaterRows(byId("kinds"), byId("object-rows"), this.commands.send);
   readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning(), (name) => this.floaterRows.show(name === "float"));
   readonly room = new RoomPanel(this.commands.send);
+  readonly haptics = new Haptics();
   readonly sound: SoundControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
@@ -99,8 +101,6 @@ export class App {
   turnHeld: (angleRad: number) => boolean = () => false;
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
-  /** Whether a pointer is down on an object. */
-  isOnObject: (pointerId: number) => boolean = () => false;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
@@ -115,11 +115,12 @@ export class App {
         this.showTags(atS);
         this.looks.update(atS);
         this.sound.update();
+        this.haptics.follow(this.display.scene, this.entered, this.boats.mineId);
       },
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
-    this.sound = new SoundControls(this.display, (why) => this.toast.show(why, "bad"));
+    this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {

@@ -9,6 +9,7 @@ import type { Voices, WaterSound } from "../sound/water_sound";
 import { byId, isTyping } from "../ui/dom";
 import { SoundRows } from "../ui/sound_rows";
 import type { Display } from "./display";
+import type { Haptics } from "./haptics";
 import { rayAt } from "./pointer_ray";
 
 /** The middle of the view is looked for this often. */
@@ -19,7 +20,7 @@ const kFadedMs = 200;
 export class SoundControls {
   isOn = false;
   private readonly button = byId<HTMLButtonElement>("sound-toggle");
-  private readonly rows = new SoundRows(() => this.changed());
+  private readonly rows: SoundRows;
   private context: AudioContext | undefined;
   private voices: Voices | undefined;
   private sound: WaterSound | undefined;
@@ -35,8 +36,10 @@ export class SoundControls {
   /** `failed`: the code of the sound could not be loaded. */
   constructor(
     private readonly display: Display,
+    haptics: Haptics,
     private readonly failed: (why: string) => void,
   ) {
+    this.rows = new SoundRows(() => this.changed(), haptics);
     this.button.addEventListener("click", () => this.toggle());
     window.addEventListener("keydown", (event) => {
       if (event.code === "KeyM" && !event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey && !isTyping(event.target)) this.toggle();

@@ -1,9 +1,8 @@
 // Which sounds get a voice: the loudest. Beds last (surf, rain), grains are short (a bubble, a slap). Pure.
 
+/** Most sounds at a time, together 12. */
 export const kBedCount = 5;
 export const kGrainCount = 7;
-/** Most sounds at a time. */
-export const kVoiceCount = kBedCount + kGrainCount;
 
 /** A sound takes the voice of another only if it is this much louder. */
 const kLouder = 1.5;

@@ -106,6 +106,7 @@ export class Voices {
   /** Lets a grain begin at `startS`; what its voice played fades just before. */
   playGrain(voice: number, grain: Grain, startS: number): void {
     const { band, gain, air, pan, oscillator, tone } = this.grains[voice]!;
+    if (!Number.isFinite(startS)) return;
     const fadeS = Math.max(startS, this.context.currentTime);
     const onS = fadeS + 6 * kGiveWayS;
     const { toneHz, rise, decayS, level } = grain;
@@ -153,11 +154,11 @@ export class Voices {
 
   /** Approaches a value. What is not a number would end the sound for good. */
   private follow(param: AudioParam, value: number, startS: number, withinS: number): void {
-    if (Number.isFinite(value) && Number.isFinite(startS)) param.setTargetAtTime(value, startS, Math.max(withinS, 1e-3));
+    if (Number.isFinite(value + startS + withinS)) param.setTargetAtTime(value, startS, Math.max(withinS, 1e-3));
   }
 
   private jump(param: AudioParam, value: number, atS: number): void {
-    if (Number.isFinite(value) && Number.isFinite(atS)) param.setValueAtTime(value, atS);
+    if (Number.isFinite(value + atS)) param.setValueAtTime(value, atS);
   }
 
   private bed(noise: AudioNode): Bed {

@@ -24,8 +24,8 @@ export class SoundRows {
   private volumePercent = Number(keptChoice(kVolumeKey) ?? kDefaultPercent);
   private isWaiting = false;
 
-  /** `changed`: volume or tone. */
-  constructor(changed: () => void) {
+  /** `changed`: volume or tone. `vibration`: whether the user wants it. */
+  constructor(changed: () => void, vibration: { wanted: boolean }) {
     if (!(this.volumePercent >= 0 && this.volumePercent <= 100)) this.volumePercent = kDefaultPercent;
     const volume = new SliderRow("volume", kVolumeRange, this.volumePercent, "Volume of the sound on this page.", (percent) => {
       this.volumePercent = percent;
@@ -38,7 +38,9 @@ export class SoundRows {
       changed();
     });
     this.octaveRow = new SelectRow("tone-octave", "Its range", "The elevation that raises the note by an octave.", (value) => (this.octaveM = Number(value)));
-    byId("sound-rows").append(volume.element, this.toneRow.element, this.octaveRow.element, this.remark);
+    const felt = new SelectRow("vibration", "Vibration", "Splashes, objects and your boat are felt on phones and gamepads that can.", (value) => (vibration.wanted = value === "on"));
+    felt.setChoices(["on", "off"].map((value) => ({ value, label: value })), vibration.wanted ? "on" : "off");
+    byId("sound-rows").append(volume.element, this.toneRow.element, this.octaveRow.element, this.remark, felt.element);
     this.show();
   }
 
