@@ -67,8 +67,8 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await desk.getByTestId("tone").selectOption("corner");
     await desk.getByTestId("tone-octave").selectOption("0.1");
     assert.match(await desk.getByTestId("sound-remark").textContent(), /440 Hz/);
-    const still = await waitFor(desk, "the note of still water", ({ sound, ...stats }) => isStill(stats) && sound.tone && Math.abs(Math.log2(sound.tone.playsHz / 440)) < 0.05);
-    assert.ok(still.sound.levelRms > kHeardRms, `the note has an RMS of ${still.sound.levelRms}`);
+    const still = await waitFor(desk, "the note of still water", ({ sound, ...stats }) => isStill(stats) && sound.tone && sound.levelRms > kHeardRms && Math.abs(Math.log2(sound.tone.playsHz / 440)) < 0.05);
+    await waitFor(desk, "a later frame", ({ surfaceTimeS }) => surfaceTimeS > still.surfaceTimeS + 0.3);
     const heights = [];
     await splash(1.6, 0.8);
     await waitFor(desk, "a note that moves", ({ sound: { tone } }) => {
@@ -183,9 +183,12 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await desk.getByTestId("view-above").click();
     await waitFor(desk, "the view", (stats) => stats.view === "above");
     await sleep(1200);
+    // A press of a slow page is a long one, with which a finger would draw.
+    await desk.getByTestId("tool-splash").click();
     await press(0);
     await desk.waitForFunction(() => window.effects.length > 0, undefined, { timeout: WAIT_MS });
     await desk.evaluate(() => (navigator.getGamepads = () => []));
+    await desk.getByTestId("tool-finger").click();
   });
 
   it("draws with Enter and the arrow keys, and zooms with plus", async () => {
@@ -200,7 +203,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
 
   it("keeps the volume, but not that it was on", async () => {
     await desk.getByTestId("slider-volume").fill("40");
-    await desk.reload();
+    await desk.reload({ timeout: WAIT_MS });
     await waitFor(desk, "the page to be live", ({ connectionState }) => connectionState === "live");
     assert.equal(await desk.getByTestId("slider-volume").inputValue(), "40");
     assert.equal(await desk.getByTestId("sound").getAttribute("aria-pressed"), "false");

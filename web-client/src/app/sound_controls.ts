@@ -69,6 +69,7 @@ export class SoundControls {
     this.sound = this.makeSound?.(greeting);
     this.clouds = [];
     this.rows.enter(greeting.wave && greeting.gauges.map(({ name }) => name), octaveForDepthM(greeting.waterExtents.depthM));
+    this.changed();
   }
 
   setFingers(fingers: readonly FingerInfo[]): void {
@@ -133,6 +134,7 @@ export class SoundControls {
   /** Volume or tone. */
   private changed(): void {
     this.voices?.setVolume(this.isOn ? this.rows.volume : 0);
+    this.tone.octaveM = this.rows.octaveM;
     this.middleMs = 0;
   }
 
@@ -150,8 +152,7 @@ export class SoundControls {
   }
 
   private findTone(nowMs: number): void {
-    const { rows, tone } = this;
-    tone.octaveM = rows.octaveM;
+    const { rows } = this;
     if (!rows.tone) {
       this.isToneKnown = false;
     } else if (rows.tone.gauge === undefined) {

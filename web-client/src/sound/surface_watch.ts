@@ -15,7 +15,7 @@ const kSteepestG = 0.5;
 const kRoundingSteps = 3;
 /** Acceleration above that, in gravities, beyond which water is not louder. */
 const kMostG = 4;
-/** An event is this much stronger than what went on in its tile, which is forgotten within kForgetS. */
+/** An event is this much stronger than the motion before it in its tile, which is forgotten within kForgetS. */
 const kOnset = 2;
 const kForgetS = 0.25;
 /** Frames further apart say nothing about accelerations. */

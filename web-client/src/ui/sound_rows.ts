@@ -24,7 +24,7 @@ export class SoundRows {
   private volumePercent = Number(keptChoice(kVolumeKey) ?? kDefaultPercent);
   private isWaiting = false;
 
-  /** `changed`: volume or tone. `vibration`: whether the user wants it. */
+  /** `changed`: volume, tone or its range. `vibration`: whether the user wants it. */
   constructor(changed: () => void, vibration: { wanted: boolean }) {
     if (!(this.volumePercent >= 0 && this.volumePercent <= 100)) this.volumePercent = kDefaultPercent;
     const volume = new SliderRow("volume", kVolumeRange, this.volumePercent, "Volume of the sound on this page.", (percent) => {
@@ -37,7 +37,10 @@ export class SoundRows {
       this.show();
       changed();
     });
-    this.octaveRow = new SelectRow("tone-octave", "Its range", "The elevation that raises the note by an octave.", (value) => (this.octaveM = Number(value)));
+    this.octaveRow = new SelectRow("tone-octave", "Its range", "The elevation that raises the note by an octave.", (value) => {
+      this.octaveM = Number(value);
+      changed();
+    });
     const felt = new SelectRow("vibration", "Vibration", "Splashes, objects and your boat are felt on phones and gamepads that can.", (value) => (vibration.wanted = value === "on"));
     felt.setChoices(["on", "off"].map((value) => ({ value, label: value })), vibration.wanted ? "on" : "off");
     byId("sound-rows").append(volume.element, this.toneRow.element, this.octaveRow.element, this.remark, felt.element);
