@@ -26,8 +26,8 @@ export async function waitFor(page, what, accept) {
 /** Where a position on the water is in the window. */
 export const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
 
-/** Starts a server with a scene file, and opens both pages. Call close() in the end. */
-export async function twoPeople(scene) {
+/** Starts a server with a scene file, and opens both pages, where `first` runs before everything else. Call close() in the end. */
+export async function twoPeople(scene, first = () => {}) {
   const server = await startServer(0, ["--scene", scene]);
   let browser;
   const close = async () => {
@@ -36,6 +36,7 @@ export async function twoPeople(scene) {
   };
   const open = async (options) => {
     const page = await (await browser.newContext(options)).newPage();
+    await page.addInitScript(first);
     await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
     await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
     return page;

@@ -83,6 +83,21 @@ describe.each([true, false])("a view, with reduced motion %s", (isStill) => {
     expect(views.view).toBeUndefined();
   });
 
+  it("ends when a gamepad or a key moves the camera, within the bounds of the controls", () => {
+    pictures(2);
+    const { x, y, z } = camera.position;
+    const distanceM = Math.hypot(x, y, z);
+    views.orbit(0.2, 0, 0.9);
+    expect(leftCount).toBe(1);
+    expect(Math.hypot(x - camera.position.x, z - camera.position.z)).toBeGreaterThan(0.05 * distanceM);
+    views.orbit(0, -10, 1e6);
+    views.orbit(0, 10, 1);
+    pictures(2);
+    // Above what it looks at, which is in the water.
+    expect(camera.position.y).toBeGreaterThan(-1);
+    expect(Math.hypot(...camera.position.toArray())).toBeLessThan(100 * distanceM);
+  });
+
   it("stays while the page moves the camera: a click on the way to a view", () => {
     for (const name of ["side", "overview", "above"] as const) {
       views.go(name, nowS);

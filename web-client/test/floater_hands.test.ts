@@ -33,6 +33,7 @@ function makePage(floaters: FloaterPose[]) {
     addEventListener: (_: string, listener: (event: object) => void) => (wheel = listener),
   };
   const sent: Sent[] = [];
+  const felt: string[] = [];
   const app = {
     mayDraw: true,
     hasFloaters: true,
@@ -41,10 +42,11 @@ function makePage(floaters: FloaterPose[]) {
     commands: { send: (action: Sent) => sent.push(action) },
     display: { canvas, scene: { camera, drawnFloaters: () => floaters, heightAtM: () => 0 } },
     turnHeld: (_: number): boolean => false,
+    haptics: { feel: (what: string, { pointerId }: { pointerId: number }) => felt.push(`${what} ${pointerId}`) },
   };
   const lost: number[] = [];
   const hands = new FloaterHands(app as unknown as App, (pointerId) => lost.push(pointerId));
-  return { world, app, bin, sent, lost, hands, wheel: (event: object) => wheel(event) };
+  return { world, app, bin, sent, lost, felt, hands, wheel: (event: object) => wheel(event) };
 }
 
 const object = (change: Partial<FloaterPose>): FloaterPose => ({ floaterId: 1, kind: "ball", xM: 0, yM: 0, zM: 0, turn: [0, 0, 0, 1], sizeM: 1, isHeld: false, ...change });
@@ -121,12 +123,13 @@ describe("hands on objects", () => {
   });
 
   it("take it out over the bin, and let go of what the server does not let them hold", () => {
-    const { hands, sent, lost, world, app } = makePage([object({ floaterId: 9 })]);
+    const { hands, sent, lost, felt, world, app } = makePage([object({ floaterId: 9 })]);
     const grip = hands.under(over(0, 0), "float")!;
     hands.hold(3, grip, () => over(0, 0));
     hands.end(3, { clientX: 400, clientY: 570, pointerType: "mouse" });
     expect(sent.at(-1)).toEqual({ case: "removeFloater", value: { floaterId: 9 } });
     expect(hands.removeHeld()).toBe(false);
+    expect(felt).toEqual(["catch 3", "letGo 3"]);
     hands.hold(5, grip, () => over(0, 0));
     for (const listener of app.answerListeners) listener.reject(sent.length);
     expect(lost).toEqual([5]);

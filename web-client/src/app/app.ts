@@ -31,8 +31,10 @@ import { ViewButtons } from "../ui/view_buttons";
 import { setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
+import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
+import { SoundControls } from "./sound_controls";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
@@ -55,6 +57,8 @@ export class App {
   readonly floaterRows: FloaterRows = new FloaterRows(byId("kinds"), byId("object-rows"), this.commands.send);
   readonly tools = new ToolBar(byId("tools"), byId("tool-rows"), () => this.drawing.describeTurning(), (name) => this.floaterRows.show(name === "float"));
   readonly room = new RoomPanel(this.commands.send);
+  readonly haptics = new Haptics();
+  readonly sound: SoundControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
   state: ConnectionState = { name: "connecting" };
@@ -97,8 +101,6 @@ export class App {
   turnHeld: (angleRad: number) => boolean = () => false;
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
-  /** Whether a pointer is down on an object. */
-  isOnObject: (pointerId: number) => boolean = () => false;
 
   constructor({ renderer, isSoftwareRenderer, texelType }: MadeRenderer) {
     const isHandheld = window.matchMedia("(pointer: coarse)").matches;
@@ -112,10 +114,13 @@ export class App {
       drawn: (atS) => {
         this.showTags(atS);
         this.looks.update(atS);
+        this.sound.update();
+        this.haptics.follow(this.display.scene, this.entered, this.boats.mineId);
       },
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
+    this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
@@ -170,6 +175,7 @@ export class App {
       frame: ({ frame }) => {
         this.simTimeS = frame.timeS;
         this.display.take(frame);
+        this.sound.take(frame.layer);
       },
       diagnostics: ({ diagnostics }) => {
         this.hud.diagnostics(diagnostics);
@@ -202,7 +208,10 @@ export class App {
         this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
       },
-      strokes: ({ fingers }) => this.fingers.take(fingers),
+      strokes: ({ fingers }) => {
+        this.fingers.take(fingers);
+        this.sound.setFingers(fingers);
+      },
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
         this.boats.setBoats(boats);
@@ -238,6 +247,7 @@ export class App {
     this.tags.setBoats(greeting.boats);
     this.fingers.clear();
     this.looks.enter(greeting);
+    this.sound.enter(greeting);
     // Not before: the connection exists from now on.
     this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;

@@ -82,6 +82,7 @@ export class FloaterHands {
     let last = grip.at;
     this.sender.begin(pointerId, grip.floaterId, () => (last = this.placeOf(grip, pointerNow()) ?? last));
     this.bin.hidden = false;
+    this.app.haptics.feel("catch", { pointerId, pointerType: pointerNow().pointerType });
     if (!this.isOverBin(pointerNow())) this.beside.add(pointerId);
   }
 
@@ -94,6 +95,7 @@ export class FloaterHands {
     if (!this.isHolding(pointerId)) return;
     if (pointer && this.beside.delete(pointerId) && this.isOverBin(pointer)) this.remove(this.sender.heldBy(pointerId));
     else this.sender.end(pointerId);
+    if (pointer) this.app.haptics.feel("letGo", { pointerId, pointerType: pointer.pointerType });
     this.refresh();
   }
 

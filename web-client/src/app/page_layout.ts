@@ -31,9 +31,9 @@ export class PageLayout {
     };
   }
 
-  /** The parts of the page that card, panel and their button cover. */
+  /** The parts of the page that card, panel and the buttons beside it cover. */
   covered(): PixelRect[] {
-    const elements = ["card", "panel-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
+    const elements = ["card", "panel-toggle", "sound-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
     return elements.map((id) => {
       const { left, top, right, bottom } = byId(id).getBoundingClientRect();
       return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };

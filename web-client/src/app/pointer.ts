@@ -74,7 +74,6 @@ export class PointerHands {
       if (this.floaters.isTwisting(event.pointerId)) this.floaters.endTwist();
       this.letGo(event, true);
     });
-    app.isOnObject = (pointerId) => this.hands.get(pointerId)?.grip !== undefined;
     app.outline = () => this.outline();
   }
 
@@ -149,16 +148,16 @@ export class PointerHands {
     if (event.pointerType === "mouse") this.hover = event;
     if (hand) return this.use(hand, isTap, event.timeStamp - hand.down.timeStamp);
     const place = isTap ? this.placeUnder(event) : undefined;
-    if (place) this.tap(place, this.app.tools.tool, this.app.tools.scale);
+    if (place) this.tap(place, this.app.tools.tool, this.app.tools.scale, event);
   }
 
   /** A press with a tool has ended. */
   private use(hand: Hand, isTap: boolean, heldMs: number): void {
     const { app } = this;
-    const { tool, scale, from, at } = hand;
+    const { tool, scale, from, at, down } = hand;
     if (!app.mayDraw || (hand.grip && !isTap)) return;
     if (tool.name === "splash") {
-      this.splash(at, { ...scale, sizeRatio: scale.sizeRatio * heldRatio((heldMs - kTapMs / 2) / 1000) });
+      this.splash(at, { ...scale, sizeRatio: scale.sizeRatio * heldRatio((heldMs - kTapMs / 2) / 1000) }, down);
     } else if (tool.name === "paddle") {
       const wave = paddleWave(from, at, app.entered!, scale);
       if (!wave) return app.tools.explain();
@@ -169,23 +168,24 @@ export class PointerHands {
     } else if (tool.name === "float") {
       this.drop(at, scale);
     } else if (isTap) {
-      this.tap(at, tool, scale);
+      this.tap(at, tool, scale, down);
     }
   }
 
-  private tap(place: WaterPlace, tool: Tool, scale: ToolScale): void {
+  private tap(place: WaterPlace, tool: Tool, scale: ToolScale, by: PointerEvent): void {
     // The server tells a viewer why not.
-    if (!this.app.mayDraw) return this.splash(place, undefined);
+    if (!this.app.mayDraw) return this.splash(place, undefined, by);
     const forS = kTapStrokeS[tool.name];
     const size = strokeSize(tool, this.app.entered!, scale);
     if (tool.name === "paddle") this.app.tools.explain();
     else if (tool.name === "float") this.drop(place, scale);
     else if (tool.name === "throw") this.launch(this.tossTo(place), scale);
-    else if (forS === undefined || !size) this.splash(place, tool.name === "splash" ? scale : undefined);
+    else if (forS === undefined || !size) this.splash(place, tool.name === "splash" ? scale : undefined, by);
     else this.sender.stay(place, size, forS, scale.strengthRatio);
   }
 
-  private splash(place: WaterPlace, scale: ToolScale | undefined): void {
+  private splash(place: WaterPlace, scale: ToolScale | undefined, by: PointerEvent): void {
+    if (this.app.mayDraw) this.app.haptics.feel("splash", by);
     this.app.commands.send(this.app.effects.splashAt(place, scale), `Splash at ${place.xM.toFixed(1)}, ${place.zM.toFixed(1)} m`);
   }
 

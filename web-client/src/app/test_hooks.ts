@@ -59,5 +59,6 @@ function stats(app: App) {
     role: app.role,
     myBoat: app.boats.mineId,
     view: views.view ?? null,
+    sound: app.sound.stats() ?? null,
   };
 }

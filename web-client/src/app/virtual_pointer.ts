@@ -1,16 +1,17 @@
 // The tools without a pointer: Enter or the space bar on the water, and a gamepad. Both act as a pointer of their own would.
 //
-// Keys while an object is held: the arrows move it, Q and E turn it. Delete takes out what is held or under the mouse; comma and full stop
-// choose what the tool Float drops.
+// Keys: while Enter is held the arrows move the pointer, so that it draws, throws, or moves what it holds; Q and E turn that. Delete takes out
+// what is held or under the mouse; comma and full stop choose what the tool Float drops; plus and minus bring the camera nearer and farther.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
-// would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind. In the boat's view the stick
-// and the cross are the helm.
+// would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind. The right stick turns the
+// view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. In the boat's view the left stick and the cross
+// are the helm. docs/controls.md lists all.
 import { isTyping } from "../ui/dom";
 import type { App } from "./app";
+import { standardGamepad } from "./gamepad";
+import { kGamepadId } from "./haptics";
 
-/** Far from the ids that browsers give. */
-const kKeyboardId = -2;
-const kGamepadId = -3;
+const kKeyboardId = kGamepadId + 1;
 /** A paddle that is used by a key sends its wave away from the viewer: along this share of the picture's height. */
 const kPushShare = 0.12;
 /** Below this a stick counts as released. */
@@ -25,7 +26,12 @@ const kTurnRadps = 2;
 const kKeyStepPx = 16;
 const kArrows: Record<string, readonly [right: number, down: number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-const kButtons = { use: 0, takeOut: 2, nextKind: 3, previousTool: 4, nextTool: 5, up: 12, down: 13, left: 14, right: 15 };
+/** The view: zoom per press of a key, turn and zoom per second with a stick or a trigger at its end. */
+const kKeyZoom = 1.15;
+const kOrbitRadps = 1.8;
+const kZoomPerS = 2.5;
+
+const kButtons = { use: 0, takeOut: 2, nextKind: 3, previousTool: 4, nextTool: 5, nearer: 7, farther: 6, nextView: 8, sound: 9, up: 12, down: 13, left: 14, right: 15 };
 /** Keys of the helm (ui/helm.ts). */
 const kHelm = { up: "ArrowUp", down: "ArrowDown", left: "ArrowLeft", right: "ArrowRight" } as const;
 
@@ -75,7 +81,7 @@ export function connectKeyboardTools(app: App): void {
   });
   canvas.addEventListener("keydown", (event) => {
     const arrow = event.shiftKey ? undefined : kArrows[event.code];
-    if (!pointer.isDown || !arrow || !app.isOnObject(kKeyboardId)) return;
+    if (!pointer.isDown || !arrow) return;
     event.preventDefault();
     event.stopImmediatePropagation();
     movedPx = [movedPx[0] + kKeyStepPx * arrow[0], movedPx[1] + kKeyStepPx * arrow[1]];
@@ -86,25 +92,17 @@ export function connectKeyboardTools(app: App): void {
     if (event.code === "Delete" && !event.repeat) app.removePointed();
     else if (event.code === "KeyQ" || event.code === "KeyE") app.turnHeld(event.code === "KeyQ" ? -kKeyTurnRad : kKeyTurnRad);
     else if (event.key === "," || event.key === ".") app.floaterRows.step(event.key === "," ? -1 : 1);
+    else if (event.key === "+" || event.key === "=" || event.key === "-") app.display.views.orbit(0, 0, event.key === "-" ? kKeyZoom : 1 / kKeyZoom);
   });
   const release = (): void => {
     const xPx = middle()[0] + movedPx[0];
     const yPx = middle()[1] + movedPx[1];
-    const toPx = tools.tool.name === "paddle" ? yPx - kPushShare * window.innerHeight : yPx;
+    const toPx = tools.tool.name === "paddle" && movedPx[0] === 0 && movedPx[1] === 0 ? yPx - kPushShare * window.innerHeight : yPx;
     if (pointer.isDown && toPx !== yPx) pointer.move(xPx, toPx);
     pointer.release(xPx, toPx);
   };
   canvas.addEventListener("keyup", (event) => isUse(event) && release());
   canvas.addEventListener("blur", release);
-}
-
-/** None where the browser or the embedding page does not allow them, as some do without HTTPS. */
-function gamepads(): readonly (Gamepad | null)[] {
-  try {
-    return navigator.getGamepads?.() ?? [];
-  } catch {
-    return [];
-  }
 }
 
 export class GamepadTools {
@@ -121,13 +119,13 @@ export class GamepadTools {
 
   /** Called for each picture. */
   update(nowS: number): void {
-    const pad = gamepads().find((each) => each?.mapping === "standard");
+    const pad = standardGamepad();
     const stepS = Math.min(Math.max(nowS - this.atS, 0), kLongestStepS) || 0;
     this.atS = nowS;
     if (!pad) return this.pointer.release(this.xPx, this.yPx);
     const pressed = new Set(pad.buttons.flatMap((button, k) => (button.pressed ? [k] : [])));
     const isNew = (button: number): boolean => pressed.has(button) && !this.held.has(button);
-    const [x = 0, y = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));
+    const [x = 0, y = 0, turnX = 0, turnY = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));
     const { app } = this;
     const turn = Number(pressed.has(kButtons.nextTool)) - Number(pressed.has(kButtons.previousTool));
     if (!app.turnHeld(turn * kTurnRadps * stepS)) {
@@ -136,6 +134,10 @@ export class GamepadTools {
     }
     if (isNew(kButtons.takeOut)) app.removePointed();
     if (isNew(kButtons.nextKind)) app.floaterRows.step(1);
+    if (isNew(kButtons.nextView)) app.viewButtons.step();
+    if (isNew(kButtons.sound)) app.sound.toggle();
+    const zoom = Number(pressed.has(kButtons.farther)) - Number(pressed.has(kButtons.nearer));
+    if (turnX !== 0 || turnY !== 0 || zoom !== 0) app.display.views.orbit(turnX * kOrbitRadps * stepS, turnY * kOrbitRadps * stepS, kZoomPerS ** (zoom * stepS));
     const isHelm = app.display.views.view === "boat";
     this.steer(isHelm ? { up: y < 0 || pressed.has(kButtons.up), down: y > 0 || pressed.has(kButtons.down), left: x < 0 || pressed.has(kButtons.left), right: x > 0 || pressed.has(kButtons.right) } : {});
     if (!isHelm && (x !== 0 || y !== 0)) {

@@ -7,11 +7,13 @@ import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 import {
   readBeaches,
+  readGauges,
   readObstacles,
   readSetting,
   readWave,
   readWind,
   type BeachInfo,
+  type GaugeInfo,
   type ObstacleInfo,
   type SettingName,
   type WaveInfo,
@@ -95,6 +97,7 @@ export interface GreetingInfo {
   hasFloaters: boolean;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
+  gauges: GaugeInfo[];
   /** The scene has a bed: the ground does not follow from depth and beaches alone. */
   hasBed: boolean;
   /** The scene starts again by itself. */
@@ -188,6 +191,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       hasFloaters: scene?.floaters !== undefined && greeting.layers.includes(kLayers.floaters),
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
+      gauges: scene ? readGauges(scene) : [],
       hasBed: scene?.wave !== undefined && scene.bed !== undefined,
       repeats: (scene?.restartAfterS ?? 0) > 0,
       boats,

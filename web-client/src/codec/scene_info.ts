@@ -1,8 +1,9 @@
 // What the page draws of a scene besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
 import { Bulk, Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
-/** More than the server allows; the rest is not drawn. */
+/** As many as the server allows, or more; the rest is ignored. */
 const kMaxObstacleCount = 256;
+const kMaxGaugeCount = 64;
 
 export type SettingName = "openSea" | "pool" | "glassTank" | "flume";
 /** In the order of shader uniforms. */
@@ -177,4 +178,15 @@ export function readBeaches(scene: Scene): BeachInfo[] {
     if (!read.some((other) => other.side === side)) read.push({ side, widthM, shoreDepthM });
   }
   return read;
+}
+
+/** A position where the server measures the water. */
+export interface GaugeInfo {
+  name: string;
+  xM: number;
+  zM: number;
+}
+
+export function readGauges(scene: Scene): GaugeInfo[] {
+  return scene.gauges.slice(0, kMaxGaugeCount).map(({ name, xM = 0, zM = 0 }) => ({ name, xM, zM })).filter(({ xM, zM }) => isPlace(xM) && isPlace(zM));
 }

@@ -43,7 +43,7 @@ export class WaterScene {
   readonly daylight = new Daylight();
   /** The dents of one's own fingers. */
   readonly ripple = new LocalRipple();
-  private readonly frames: StreamedFrames;
+  readonly frames: StreamedFrames;
   private sky: Sky;
   private readonly noise = makeNoiseTexture();
   private readonly wetness = new ShoreWetness();
@@ -228,10 +228,10 @@ export class WaterScene {
   }
 
   /** Returns the newest elevation; 0 before the first frame. */
-  heightAtM(xM: number, zM: number): number {
+  readonly heightAtM = (xM: number, zM: number): number => {
     const frame = this.newestSurface();
     return frame ? elevationAtM(frame, xM, zM) : 0;
-  }
+  };
 
   /** Returns the surface for picking: the newest elevations, or flat water before the first frame. */
   shape(): WaterShape | undefined {

@@ -38,6 +38,13 @@ export class ViewButtons {
     document.body.classList.toggle("boat-view", this.views.view === "boat");
   }
 
+  /** Shows the next view that there is. */
+  step(): void {
+    const names = kViewNames.filter((name) => !byId(`view-${name}`).hidden && !(name === "boat" && this.boat.disabled));
+    const at = this.views.view === undefined ? -1 : names.indexOf(this.views.view);
+    this.show(names[(at + 1) % names.length]!);
+  }
+
   private show(name: ViewName): void {
     this.views.go(name, this.nowS());
     this.refresh();

@@ -1,5 +1,5 @@
 // The camera views, the moves between them, and the view that follows a boat.
-import { MOUSE, TOUCH, Vector3, type PerspectiveCamera } from "three";
+import { MOUSE, Spherical, TOUCH, Vector3, type PerspectiveCamera } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 
 import { clamp, smooth, wrapAngle } from "../maths/interpolate";
@@ -154,6 +154,18 @@ export class CameraViews {
     this.camera.position.set(...eyeM);
     this.controls.target.set(...targetM);
     this.hand.release();
+    this.hand.update();
+  }
+
+  /** Moves the camera round what it looks at, to the right and down, and multiplies its distance: as a key or a gamepad does. */
+  orbit(rightRad: number, downRad: number, distanceRatio: number): void {
+    const { camera, controls, scratchM } = this;
+    const around = new Spherical().setFromVector3(scratchM.copy(camera.position).sub(controls.target));
+    around.theta += rightRad;
+    around.phi = clamp(around.phi + downRad, controls.minPolarAngle, controls.maxPolarAngle);
+    around.radius = clamp(around.radius * distanceRatio, controls.minDistance, controls.maxDistance);
+    camera.position.setFromSpherical(around).add(controls.target);
+    this.movedByHand();
     this.hand.update();
   }
 

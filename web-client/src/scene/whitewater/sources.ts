@@ -44,7 +44,7 @@ function froth(random: () => number, xM: number, yM: number, zM: number, vxMps: 
 }
 
 /** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
-const kNewFoam = 24;
+export const kNewFoam = 24;
 /** Per m^2 of water whose foam grows from none to white. */
 const kCrestDropsPerM2 = 30;
 const kCrestBubblesPerM2 = 12;
