@@ -17,6 +17,7 @@ import { EffectsPanel } from "../ui/effects_panel";
 import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
 import { kHoldLabel } from "../ui/hold_sender";
+import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
 import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
@@ -36,6 +37,8 @@ import { nowS } from "./picture_clock";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
+
+const kNotNowText = "The lesson does not allow this at present.";
 
 /** Labels of commands that are sent many times per second, whose answers are not reported unless they are refusals. */
 const kQuietLabels = [kHelmLabel, kStrokeLabel, kHoldLabel];
@@ -57,9 +60,9 @@ export class App {
   readonly room = new RoomPanel(this.commands.send);
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
+  /** Its role is "viewer" until the server's Welcome, so that no control is enabled before. */
+  readonly lessons = new LessonState();
   state: ConnectionState = { name: "connecting" };
-  /** "viewer" until the server's Welcome, so that no control is enabled before. */
-  role: RoleName = "viewer";
   link: LinkStats | undefined;
   supersededCount = 0;
   simTimeS = 0;
@@ -133,6 +136,11 @@ export class App {
     this.qualityRow.show(this.display.quality);
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
+    this.lessons.watch(() => this.showRole());
+  }
+
+  get role(): RoleName {
+    return this.lessons.role;
   }
 
   /** `isDrawing`: at display rate. */
@@ -162,10 +170,9 @@ export class App {
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => {
         this.identity = { ...this.identity, resumeKey: welcome.resumeKey };
-        this.role = welcome.role;
         this.people.welcomed(welcome);
         this.boats.welcomed(welcome.personId, welcome.resumed);
-        this.showRole();
+        this.lessons.set({ role: welcome.role, ownId: welcome.personId });
       },
       frame: ({ frame }) => {
         this.simTimeS = frame.timeS;
@@ -187,7 +194,9 @@ export class App {
       reject: ({ reason, message, ...reject }) => {
         const commandId = Number(reject.commandId);
         for (const listener of this.answerListeners) listener.reject(commandId, message, reason);
-        this.toast.show(`${this.commands.takeLabel(commandId)}: ${message}`, "bad");
+        const label = this.commands.takeLabel(commandId);
+        // What the lesson forbids is a rule, no failure of a command.
+        this.toast.show(reason === "NOT_NOW" ? message || kNotNowText : `${label}: ${message}`, "bad");
       },
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
@@ -201,7 +210,10 @@ export class App {
         this.tags.setPeople(people);
         this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
+        this.lessons.set({ people });
       },
+      lesson: ({ lesson }) => this.lessons.set({ lesson }),
+      game: ({ game }) => this.lessons.set({ game }),
       strokes: ({ fingers }) => this.fingers.take(fingers),
       boatList: ({ boats }) => {
         this.display.scene.setBoats(boats);
@@ -224,6 +236,7 @@ export class App {
 
   private enter(greeting: GreetingInfo): void {
     if (this.entered?.room !== greeting.room || this.entered.sceneName !== greeting.sceneName) this.entering();
+    if (this.entered?.room !== greeting.room) this.lessons.enter();
     this.entered = greeting;
     this.display.enter(greeting);
     this.effects.enter(greeting);
@@ -278,11 +291,12 @@ export class App {
   private showRole(): void {
     const isPlayer = this.role !== "viewer";
     const isOperator = this.role === "operator";
-    this.effects.setEnabled(this.state.name === "live" && isPlayer);
+    const { lessons } = this;
+    this.effects.setEnabled(this.state.name === "live" && isPlayer, (effect) => lessons.whyNot(effect));
     this.drawing.setAllowed(this.mayDraw);
-    this.tools.setAllowed(this.mayDraw, isOperator, this.hasFloaters);
+    this.tools.setAllowed(this.mayDraw, isOperator, this.hasFloaters, (tool) => lessons.whyNot(lessonToolOf(tool)));
     this.floaterRows.setAllowed(this.hasFloaters, isOperator);
-    this.boats.setAllowed(isPlayer);
+    this.boats.setAllowed(isPlayer, isPlayer ? lessons.whyNot("boat") : undefined);
     this.room.setAllowed(isOperator);
     byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;
     byId("storm").hidden = !isOperator;

@@ -1,6 +1,7 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
+import { readCourse, type CourseInfo } from "./course";
 import { fidelityName, readFidelityLevels, type FidelityLevelInfo, type FidelityName } from "./fidelity";
 import type { GroundGrid } from "./ground";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
@@ -20,7 +21,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 6;
+export const kWireMinor = 7;
 
 export interface ParameterInfo {
   path: string;
@@ -93,6 +94,8 @@ export interface GreetingInfo {
   hasBoats: boolean;
   /** The scene allows objects in the water, and the server streams them. */
   hasFloaters: boolean;
+  /** For games; undefined without one. */
+  course: CourseInfo | undefined;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
   /** The scene has a bed: the ground does not follow from depth and beaches alone. */
@@ -186,6 +189,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,
       hasFloaters: scene?.floaters !== undefined && greeting.layers.includes(kLayers.floaters),
+      course: scene?.course && readCourse(scene.course),
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
       hasBed: scene?.wave !== undefined && scene.bed !== undefined,
