@@ -5,7 +5,7 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
-import { socketUrl, WaterClient } from "../net/water_client";
+import { openWaterClient, socketUrl } from "../net/water_client";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
 import type { MadeRenderer } from "../scene/drawing/renderer";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
@@ -50,7 +50,7 @@ interface AnswerListener {
 }
 
 export class App {
-  readonly client = new WaterClient(new Worker(new URL("../net/worker.ts", import.meta.url), { type: "module" }), this.handlers());
+  readonly client = openWaterClient(this.handlers());
   readonly commands = new CommandSender(this.client);
   readonly display: Display;
   readonly effects = new EffectsPanel(byId("effects"));
