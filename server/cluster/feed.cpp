@@ -116,6 +116,9 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   *view.mutable_fidelity_levels() = room.room->vitals()->fidelity_levels;
   view.set_grace_s(std::chrono::duration<double>(room.room->roster().grace()).count());
   *view.mutable_people() = room.room->roster().people();
+  const auto lesson = room.room->lesson();
+  *view.mutable_lesson() = lesson->lesson;
+  *view.mutable_game() = lesson->game;
   view.set_node_time_s(node_time_s);
   view.set_room_time_s(core::monotonic_s());
   *view.mutable_access() = room.room->access();

@@ -91,6 +91,7 @@ void RemoteRoom::takeView(const v1::RoomView& message) {
                            .grace = std::chrono::milliseconds(static_cast<std::int64_t>(message.grace_s() * 1e3)),
                            .clock_offset_s = offset_s});
     people_ = message.people();
+    lesson_ = std::make_shared<const rooms::LessonState>(rooms::LessonState{message.lesson(), message.game()});
     // Perhaps another scene, or another run of the room: what was kept is out of date.
     for (auto& levels : feeds_) {
       for (Feed& one : levels) one.kept.forget();
@@ -112,6 +113,9 @@ void RemoteRoom::takeView(const v1::RoomView& message) {
   }
   sessions_.roomChanged(*this);
   sessions_.hub().broadcastState(name_, service::topic::kPeople, wire::people(people()));
+  const auto lesson = this->lesson();
+  sessions_.hub().broadcastState(name_, service::topic::kLesson, wire::lesson(lesson->lesson));
+  sessions_.hub().broadcastState(name_, service::topic::kGame, wire::game(lesson->game));
 }
 
 void RemoteRoom::takeNews(const v1::RoomNews& message) {
@@ -123,6 +127,11 @@ void RemoteRoom::takeNews(const v1::RoomNews& message) {
     if (!view_) return;
     if (content.has_people()) {
       people_ = content.people();
+    } else if (content.has_lesson() || content.has_game()) {
+      auto lesson = std::make_shared<rooms::LessonState>(*lesson_);
+      if (content.has_lesson()) lesson->lesson = content.lesson();
+      if (content.has_game()) lesson->game = content.game();
+      lesson_ = std::move(lesson);
     } else if (content.has_room_state() || content.has_boat_list() || content.has_parameter_changed()) {
       auto room = std::make_shared<rooms::RoomSnapshot>(*view_->room);
       if (content.has_room_state()) {

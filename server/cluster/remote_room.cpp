@@ -155,6 +155,11 @@ std::shared_ptr<const service::VenueView> RemoteRoom::view() const {
   return view_;
 }
 
+std::shared_ptr<const rooms::LessonState> RemoteRoom::lesson() const {
+  const std::lock_guard lock(mutex_);
+  return lesson_;
+}
+
 v1::People RemoteRoom::people() const {
   const std::lock_guard lock(mutex_);
   return people_;

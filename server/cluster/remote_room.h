@@ -66,6 +66,7 @@ class RemoteRoom final : public service::Venue {
   [[nodiscard]] const std::string& name() const override { return name_; }
   [[nodiscard]] std::shared_ptr<const service::VenueView> view() const override;
   [[nodiscard]] v1::People people() const override;
+  [[nodiscard]] std::shared_ptr<const rooms::LessonState> lesson() const override;
   [[nodiscard]] std::shared_ptr<core::DemandTable> demand() const override { return demand_; }
   [[nodiscard]] bool isOpen() const override;
   void arrive(const rooms::Arrival& arrival, Arrived arrived) override;
@@ -145,6 +146,7 @@ class RemoteRoom final : public service::Venue {
   Clock::time_point used_;
   std::shared_ptr<const service::VenueView> view_;
   v1::People people_;
+  std::shared_ptr<const rooms::LessonState> lesson_ = std::make_shared<const rooms::LessonState>();
   std::optional<std::array<std::uint32_t, codec::kStreamCount>> reduced_counts_;
   std::map<core::SessionId, Guest> guests_;
   std::uint32_t last_unlisted_ = 0;

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <spindrift/rooms/command_desk.h>
+#include <spindrift/rooms/lesson.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::rooms {
@@ -60,8 +61,13 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, &Desk::beginScene},
       {C::kTakeBoat, {kPlayer, kLight}, &Act::takeBoat, nullptr},
       {C::kSpawnFloater, {kPlayer, kLight}, &Act::spawnFloater, nullptr},
-      {C::kHoldFloater, {kPlayer, kLight}, nullptr, nullptr},
-      {C::kRemoveFloater, {kPlayer, kLight}, nullptr, nullptr},
+      {C::kHoldFloater, {kPlayer, kLight}, &Act::holdFloater, nullptr},
+      {C::kRemoveFloater, {kPlayer, kLight}, &Act::removeFloater, nullptr},
+      {C::kSetLesson, {kOperator, kLight}, &Act::setLesson, nullptr},
+      {C::kMutePerson, {kOperator, kLight}, &Act::mutePerson, nullptr},
+      {C::kSetTeam, {kOperator, kLight}, &Act::setTeam, nullptr},
+      {C::kStartGame, {kOperator, kLight}, &Act::startGame, nullptr},
+      {C::kEndGame, {kOperator, kLight}, &Act::endGame, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action
@@ -89,7 +95,9 @@ CommandDesk::Outcome CommandDesk::admit(Command command, const RoomSnapshot& roo
     refused = wire::rejection(
         v1::REJECT_REASON_FORBIDDEN, "",
         fmt::format("this takes the role of {}; yours is {}", core::roleName(needed), core::roleName(sender.role)));
-  } else {
+  } else if (refused = room_.roster.refuse(sender, command.message); !refused) {
+    const v1::Boat& boat = command.message.spawn_boat().boat();
+    command.is_placed_by_room = command.message.has_spawn_boat() && !boat.has_x_m() && !boat.has_z_m();
     refused = wire::completeCommand(command.message, room.scene);
     command.scene_version = room.scene_version;
   }
@@ -127,10 +135,13 @@ void CommandDesk::carryOut(TimePoint now) {
 void CommandDesk::apply(Batch batch) {
   const Kind& kind = kindOf(batch.front().message);
   if (kind.begin) return (this->*kind.begin)(std::move(batch));
-  room_.water->fillIn(batch.front().message);
-  Outcome outcome = checkAgain(batch.front());
+  Command& first = batch.front();
+  room_.water->fillIn(first.message);
+  Outcome outcome = checkAgain(first);
+  if (!outcome) outcome = room_.roster.refuse(first.sender, first.message);  // the lesson may have changed meanwhile
   if (!outcome) {
-    outcome = kind.in_room ? (actions_.*kind.in_room)(batch.front()) : actions_.applyToWater(batch.front());
+    if (first.sender.role < core::Role::kOperator) limitForce(room_.roster.forceRatio(), first.message);
+    outcome = kind.in_room ? (actions_.*kind.in_room)(first) : actions_.applyToWater(first);
   }
   answer(std::move(batch), outcome, actions_.takeNewIds());
 }

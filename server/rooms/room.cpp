@@ -132,6 +132,7 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP;
   if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
+  reports_.tellGame(now);
   desk_.finishRelayout();
   if (!data_.time.runs() || now >= data_.time.due()) desk_.carryOut(now);
   announce();
@@ -153,6 +154,7 @@ void Room::step(TimePoint now) {
   const TimePoint end = timedStep();
   data_.time.ticked(now, end);
   restartIfOver();
+  actions_.advanceGame();
   frames_.afterTick(scheduled, end);
   reports_.tellStrokes(end);
   data_.time.warnIfSlow(data_.name, end);
@@ -162,6 +164,7 @@ void Room::step(TimePoint now) {
 void Room::advancePaused(TimePoint now) {
   if (data_.time.stepsToCome() > 0) {
     now = timedStep();
+    actions_.advanceGame();
     if (data_.time.stepped()) data_.schedule.setIdleDue(now);  // what was asked for is there to see at once
   }
   frames_.whilePaused(now);
@@ -191,6 +194,7 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
   if (built.water != Water::kSame) {
     frames_.restart();
     data_.tick_meter.restart();
+    if (built.water != Water::kContinues) data_.referee.end();
     // The boats of a new scene have no owner yet, whatever their ids.
     data_.roster.keepOnly(built.water == Water::kContinues ? data_.water->boatIds() : std::set<std::uint32_t>{});
     publishVitals(now);

@@ -36,11 +36,14 @@ void RoomActions::boatsChanged() {
 void RoomActions::stopBoat(std::uint32_t boat_id) {
   Command stop;
   stop.message.mutable_control_boat()->set_boat_id(boat_id);
+  held_.erase(boat_id);
   (void)applyToWater(stop);  // the boat may be gone already
 }
 
 RoomActions::Outcome RoomActions::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
+  room_.referee.end();
+  held_.clear();
   room_.schedule.restart();
   room_.schedule.setIdleDue({});
   room_.time.setSteps(0);
@@ -98,10 +101,19 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
     return wire::rejection(v1::REJECT_REASON_HAS_BOAT, "spawn_boat",
                            "you have a boat: remove it before you launch another");
   }
-  if (auto rejected = applyToWater(command)) return rejected;
+  Command launch = command;
+  v1::Boat& boat = *launch.message.mutable_spawn_boat()->mutable_boat();
+  last_place_.reset();
+  if (command.is_placed_by_room && room_.water->scene().has_course()) placeOnGrid(boat);
+  const double throttle_ratio = boat.throttle_ratio();
+  if (isHeld(command)) boat.set_throttle_ratio(0.0);
+  if (auto rejected = applyToWater(launch)) return rejected;
   boatsChanged();
-  new_ids_.set_boat_id(room_.water->spawnedId());
-  room_.roster.give(room_.water->spawnedId(), sender.person_id);
+  const std::uint32_t boat_id = room_.water->spawnedId();
+  if (last_place_) grid_[boat_id] = *last_place_;
+  if (isHeld(command)) held_[boat_id].set_throttle_ratio(throttle_ratio);
+  new_ids_.set_boat_id(boat_id);
+  room_.roster.give(boat_id, sender.person_id);
   return {};
 }
 
@@ -113,7 +125,12 @@ RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
   if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
     return notYours("control_boat.boat_id", boat_id, owner_id);
   }
-  return applyToWater(command);
+  if (!isHeld(command)) return applyToWater(command);
+  Command still = command;
+  still.message.mutable_control_boat()->set_throttle_ratio(0.0);
+  if (auto rejected = applyToWater(still)) return rejected;
+  held_[boat_id] = command.message.control_boat();
+  return {};
 }
 
 RoomActions::Outcome RoomActions::removeBoat(const Command& command) {

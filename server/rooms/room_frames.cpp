@@ -1,3 +1,5 @@
+#include <map>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,18 @@ std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& wate
                    .velocity_z_mps = now[k].reading.velocity_z_mps,
                    .highest_m = now[k].highest_m,
                    .lowest_m = now[k].lowest_m});
+  }
+  return out;
+}
+
+/// Returns where boats or floaters are, by their ids: BodiesFixed28 and FloatersFixed28 begin with id, x, y, z.
+std::map<std::uint32_t, Referee::Position> placesOf(std::span<const std::uint32_t> words, std::uint32_t count) {
+  constexpr std::size_t kWords = 7;
+  constexpr double kMillimetre_m = 1e-3;
+  std::map<std::uint32_t, Referee::Position> out;
+  for (std::size_t at = 0; at < kWords * count && at + kWords <= words.size(); at += kWords) {
+    out[words[at]] = {kMillimetre_m * static_cast<std::int32_t>(words[at + 1]),
+                      kMillimetre_m * static_cast<std::int32_t>(words[at + 3])};
   }
   return out;
 }
@@ -65,6 +79,9 @@ void RoomFrames::request(TimePoint now, core::LevelSet due) {
       wants_diagnostics_ |= stream.layer == v1::LAYER_DIAGNOSTICS;
     }
   }
+  const Referee& referee = room_.referee;
+  request.bodies |= referee.isWatching() && referee.kind() == v1::GAME_KIND_RACE;
+  request.floaters |= referee.isWatching() && referee.kind() == v1::GAME_KIND_BALL;
   if (request.isEmpty() || sim.requestFrame(request)) return;
   ++dropped_count_;
   room_.schedule.setIdleDue(now + kDroppedFrameRetry);
@@ -75,6 +92,7 @@ void RoomFrames::handOver() {
   for (core::FrameView& frame : sim.takeFrames()) {
     frame.tick = room_.water->tickOf(frame.tick);
     if (std::exchange(wants_diagnostics_, false)) frame.diagnostics = diagnostics();
+    showReferee(frame);
     room_.outlets.frameReady(room_.self, std::move(frame));
   }
   if (!wants_diagnostics_ || sim.framesInFlight() > 0) return;
@@ -85,6 +103,27 @@ void RoomFrames::handOver() {
   frame.state_id = room_.water->stateId();
   frame.diagnostics = diagnostics();
   room_.outlets.frameReady(room_.self, std::move(frame));
+}
+
+void RoomFrames::showReferee(const core::FrameView& frame) {
+  Referee& referee = room_.referee;
+  if (!referee.isWatching()) return;
+  Referee::Sample sample{.tick = frame.tick, .time_s = frame.time_s};
+  std::vector<Referee::Boat> boats;
+  if (referee.kind() == v1::GAME_KIND_RACE && frame.bodies) {
+    const std::map<std::uint32_t, Referee::Position> places = placesOf(frame.bodies->words, frame.bodies->count);
+    for (const Roster::BoatOwner& owner : room_.roster.boatOwners()) {
+      const auto place = places.find(owner.boat_id);
+      if (place != places.end()) boats.push_back({owner.boat_id, owner.person_id, owner.team, place->second});
+    }
+    sample.boats = boats;
+  } else if (referee.kind() == v1::GAME_KIND_BALL && frame.floaters) {
+    const auto places = placesOf(frame.floaters->words, frame.floaters->count);
+    if (const auto ball = places.find(referee.ballId()); ball != places.end()) sample.ball = ball->second;
+  } else {
+    return;
+  }
+  referee.see(sample);
 }
 
 void RoomFrames::restart() {

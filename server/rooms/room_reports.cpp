@@ -10,6 +10,7 @@ namespace {
 
 /// When many clients join at once, they are announced in a few lists instead of one list each.
 constexpr std::chrono::milliseconds kPeopleNewsInterval{200};
+constexpr std::chrono::milliseconds kGameNewsInterval{200};
 constexpr std::chrono::milliseconds kStrokeNewsInterval{33};
 
 }  // namespace
@@ -18,6 +19,7 @@ void RoomReports::begin() {
   recovery_news_.restart(room_.water->sim().recoveredCount());
   boats_ = room_.water->boats();
   publishSnapshot();
+  lesson_.publish({room_.roster.lesson(), game_});
 }
 
 void RoomReports::sceneChanged() {
@@ -41,6 +43,9 @@ void RoomReports::tell() {
   if (!news.recovered.empty()) outlets.hasRecovered(room_.self, news.recovered);
   if (!news.fidelity.empty()) outlets.fidelityChanged(room_.self, news.fidelity);
   if (news.boats) tellBoats();
+  if (!news.lesson) return;
+  lesson_.publish({room_.roster.lesson(), game_});
+  outlets.lessonChanged(room_.self, lesson()->lesson);
 }
 
 void RoomReports::tellBoats() {
@@ -57,6 +62,17 @@ void RoomReports::tellPeople(bool is_news, TimePoint now) {
   has_people_news_ = false;
   next_people_news_ = now + kPeopleNewsInterval;
   room_.outlets.peopleChanged(room_.self, room_.roster.people());
+}
+
+void RoomReports::tellGame(TimePoint now) {
+  const bool is_same = room_.referee.kind() == v1::GAME_KIND_UNSPECIFIED && game_.kind() == v1::GAME_KIND_UNSPECIFIED;
+  if (is_same || now < next_game_news_) return;
+  next_game_news_ = now + kGameNewsInterval;
+  v1::Game game = room_.referee.game();
+  if (game.SerializeAsString() == game_.SerializeAsString()) return;
+  game_ = std::move(game);
+  lesson_.publish({room_.roster.lesson(), game_});
+  room_.outlets.gameChanged(room_.self, game_);
 }
 
 void RoomReports::tellStrokes(TimePoint now) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/rooms/lesson.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/wire/client_message.h>
 
@@ -44,6 +45,8 @@ Admission Roster::arrive(const Arrival& arrival) {
   if (!arrival.name.empty()) person.name = arrival.name;
   if (arrival.color_rgb != 0) person.color_rgb = arrival.color_rgb;
   person.role = arrival.role;
+  if (lesson_.teams() && person.role == core::Role::kPlayer && person.team == v1::TEAM_UNSPECIFIED)
+    person.team = smallerTeam();
   person.session = arrival.session;
   person.boats_stopped = false;
   person.waits = false;
@@ -57,7 +60,7 @@ void Roster::leave(core::SessionId session, Clock::time_point now) {
   const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
   if (session == 0 || found == people_.end()) return;
   changed();
-  if (found->second.boats.empty()) {
+  if (found->second.boats.empty() && !found->second.is_muted) {
     people_.erase(found);
     return;
   }
@@ -95,6 +98,72 @@ void Roster::keepOnly(const std::set<std::uint32_t>& boat_ids) {
   }
 }
 
+std::vector<Roster::BoatOwner> Roster::boatOwners() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<BoatOwner> out;
+  for (const auto& [id, person] : people_) {
+    for (const std::uint32_t boat : person.boats) out.push_back({boat, id, person.role, person.team});
+  }
+  return out;
+}
+
+v1::Lesson Roster::lesson() const {
+  const std::lock_guard lock(mutex_);
+  return lesson_;
+}
+
+double Roster::forceRatio() const {
+  const std::lock_guard lock(mutex_);
+  return lesson_.has_force_ratio() ? lesson_.force_ratio() : 1.0;
+}
+
+v1::Team Roster::smallerTeam() const {
+  const auto count = [&](v1::Team team) {
+    return std::ranges::count_if(people_, [&](const auto& entry) { return entry.second.team == team; });
+  };
+  return count(v1::TEAM_BLUE) < count(v1::TEAM_RED) ? v1::TEAM_BLUE : v1::TEAM_RED;
+}
+
+void Roster::setLesson(const v1::Lesson& lesson) {
+  const News news{*this};
+  const std::lock_guard lock(mutex_);
+  changed();
+  const bool had_teams = lesson_.teams();
+  lesson_ = lesson;
+  if (had_teams == lesson_.teams()) return;
+  for (auto& [id, person] : people_) person.team = v1::TEAM_UNSPECIFIED;
+  if (!lesson_.teams()) return;
+  for (auto& [id, person] : people_) {
+    if (person.role == core::Role::kPlayer) person.team = smallerTeam();
+  }
+}
+
+bool Roster::mute(std::uint32_t person_id, bool is_muted) {
+  const News news{*this};
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  if (found == people_.end()) return false;
+  found->second.is_muted = is_muted;
+  changed();
+  return true;
+}
+
+bool Roster::setTeam(std::uint32_t person_id, v1::Team team) {
+  const News news{*this};
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  if (found == people_.end()) return false;
+  found->second.team = team;
+  changed();
+  return true;
+}
+
+std::optional<wire::CommandRejection> Roster::refuse(const core::Sender& sender, const v1::Command& command) const {
+  const std::lock_guard lock(mutex_);
+  const auto person = people_.find(sender.person_id);
+  return rooms::refuse(lesson_, person != people_.end() && person->second.is_muted, sender.role, command);
+}
+
 Roster::Turn Roster::settle(Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   Turn out;
@@ -104,7 +173,7 @@ Roster::Turn Roster::settle(Clock::time_point now) {
       person.boats_stopped = true;
       out.boats_to_stop.insert(out.boats_to_stop.end(), person.boats.begin(), person.boats.end());
     }
-    const bool is_kept = person.waits || !person.boats.empty();
+    const bool is_kept = person.waits || person.is_muted || !person.boats.empty();
     if (person.session == 0 && (!is_kept || now - person.away_since >= grace_)) {
       it = people_.erase(it);
       changed();
@@ -127,6 +196,8 @@ v1::People Roster::people() const {
     wire.set_role(wire::toWire(person.role));
     for (const std::uint32_t boat : person.boats) wire.add_boat_ids(boat);
     wire.set_away(person.session == 0);
+    wire.set_team(person.team);
+    wire.set_muted(person.is_muted);
   }
   out.set_unlisted_count(unlisted_count_);
   return out;
@@ -156,8 +227,11 @@ v1::RoomPeople Roster::kept() const {
     kept.set_role(wire::toWire(person.role));
     kept.set_resume_key(person.resume_key);
     for (const std::uint32_t boat : person.boats) kept.add_boat_ids(boat);
+    kept.set_team(person.team);
+    kept.set_muted(person.is_muted);
   }
   out.set_last_person_id(last_person_id_);
+  *out.mutable_lesson() = lesson_;
   return out;
 }
 
@@ -171,10 +245,13 @@ void Roster::restore(const v1::RoomPeople& people, Clock::time_point now) {
     person.role = wire::fromWire(kept.role()).value_or(core::Role::kViewer);
     person.resume_key = kept.resume_key();
     person.boats.insert(kept.boat_ids().begin(), kept.boat_ids().end());
+    person.team = kept.team();
+    person.is_muted = kept.muted();
     person.away_since = now;
     person.waits = true;
   }
   last_person_id_ = people.last_person_id();
+  lesson_ = people.lesson();
   changed();
 }
 

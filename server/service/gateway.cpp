@@ -23,6 +23,7 @@ class LocalRoom final : public Venue {
                                                        .grace = room_->roster().grace()});
   }
   [[nodiscard]] v1::People people() const override { return room_->roster().people(); }
+  [[nodiscard]] std::shared_ptr<const rooms::LessonState> lesson() const override { return room_->lesson(); }
   [[nodiscard]] std::shared_ptr<core::DemandTable> demand() const override { return room_->demand(); }
   [[nodiscard]] bool isOpen() const override { return rooms_.find(room_->name()) == room_; }
   void arrive(const rooms::Arrival& arrival, Arrived arrived) override { arrived(room_->roster().arrive(arrival)); }
@@ -112,6 +113,14 @@ void Gateway::peopleChanged(const rooms::Room& room, const v1::People& people) {
 
 void Gateway::strokesChanged(const rooms::Room& room, const v1::Strokes& strokes) {
   tell(room, topic::kStrokes, wire::strokes(strokes));
+}
+
+void Gateway::lessonChanged(const rooms::Room& room, const v1::Lesson& lesson) {
+  tell(room, topic::kLesson, wire::lesson(lesson));
+}
+
+void Gateway::gameChanged(const rooms::Room& room, const v1::Game& game) {
+  tell(room, topic::kGame, wire::game(game));
 }
 
 void Gateway::wasReset(const rooms::Room& room) {

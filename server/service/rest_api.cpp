@@ -91,9 +91,12 @@ unsigned httpStatusOf(v1::RejectReason reason) {
       return 403;
     case v1::REJECT_REASON_UNKNOWN_BOAT:
     case v1::REJECT_REASON_UNKNOWN_FLOATER:
+    case v1::REJECT_REASON_UNKNOWN_PERSON:
     case v1::REJECT_REASON_UNKNOWN_SCENE:
     case v1::REJECT_REASON_UNKNOWN_PARAMETER:
       return 404;
+    case v1::REJECT_REASON_NOT_NOW:
+      return 409;
     case v1::REJECT_REASON_BUSY:
       return 503;
     default:

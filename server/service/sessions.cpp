@@ -87,6 +87,16 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   hub().sendState(session, topic::kGreeting, wire::greeting(std::move(greeting), room.scene));
 }
 
+void Sessions::tellLesson(net::SessionId session, const Venue& venue) {
+  // News that came between reading and sending would be followed by what it has replaced: then send it again.
+  std::shared_ptr<const rooms::LessonState> sent;
+  for (auto now = venue.lesson(); now != sent; now = venue.lesson()) {
+    hub().sendState(session, topic::kLesson, wire::lesson(now->lesson));
+    hub().sendState(session, topic::kGame, wire::game(now->game));
+    sent = std::move(now);
+  }
+}
+
 void Sessions::roomChanged(const Venue& venue) {
   std::vector<net::SessionId> members;
   std::vector<std::pair<net::SessionId, std::string>> outdated;
@@ -283,6 +293,7 @@ void Sessions::arrived(net::SessionId session, const v1::Hello& hello, core::Rol
   }
   greet(session, *venue);
   hub().sendState(session, topic::kPeople, wire::people(venue->people()));
+  tellLesson(session, *venue);
   handleWaiting(session);
 }
 

@@ -45,12 +45,13 @@ State startingState(const core::Boat& boat, std::uint32_t boat_id) {
 Boats::Boats(Creation& create, const core::Scene& scene, double cell_m)
     : cell_m_(cell_m),
       places_(std::min<std::size_t>(scene.boats->capacity_count, MAX_BOATS)),
-      state_(create.texels("boats", std::size_t{MAX_BOATS} * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F)),
+      slot_count_(std::max<std::size_t>(places_.size(), MIN_BOAT_SLOTS)),
+      state_(create.texels("boats", slot_count_ * BOAT_TEXELS, gpu::TexelFormat::kRGBA32F)),
       control_uniforms_(create.uniforms<shared::BoatControls>("boat controls")),
       drift_(create.pass("bodies/drift.comp")),
       kick_(create.pass("bodies/kick.comp")) {
   static_assert(core::kMaxBoats == MAX_BOATS);
-  if (scene.floaters) push_ = create.buffer("boat push", std::size_t{MAX_BOATS} * 2 * 4);
+  if (scene.floaters) push_ = create.buffer("boat push", slot_count_ * 2 * 4);
   if (scene.wave) press_ = create.pass("bodies/press.comp");
   if (scene.boats->boats.size() > scene.boats->capacity_count) {
     create.fail(core::invalid(
@@ -65,7 +66,7 @@ void Boats::declareState(StateBuffers& out) {
 }
 
 void Boats::reset(const core::Scene& scene) {
-  std::array<State, MAX_BOATS> states{};
+  std::vector<State> states(slot_count_);
   for (State& state : states) state[6] = kNobody;
   std::ranges::fill(places_, BoatPlace{});
   std::uint32_t boat_id = first_id_;
@@ -140,7 +141,7 @@ void Boats::uploadControls() {
 }
 
 void Boats::mend() {
-  const auto states = state_.downloadVector<float>(std::size_t{MAX_BOATS} * BOAT_TEXELS * 4);
+  const auto states = state_.downloadVector<float>(slot_count_ * BOAT_TEXELS * 4);
   for (std::size_t at = 0; at < places_.size(); ++at) {
     if (places_[at].boat_id == 0) continue;
     const auto own = std::span(states).subspan(at * BOAT_TEXELS * 4, BOAT_TEXELS * 4);

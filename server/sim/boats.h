@@ -59,7 +59,8 @@ class Boats {
   void uploadControls();
 
   double cell_m_;
-  std::vector<BoatPlace> places_;
+  std::vector<BoatPlace> places_;  ///< BoatsScene.capacity_count
+  std::size_t slot_count_;         ///< of the device's buffers, at least as many
   std::uint32_t first_id_ = 1;
   std::uint32_t next_id_ = 1;  ///< never decreases
   shared::BoatControls controls_{};

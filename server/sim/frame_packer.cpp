@@ -5,7 +5,6 @@
 #include <utility>
 
 #include <shared/bindings.h>
-#include <shared/boats.h>
 
 #include <spindrift/sim_setup/scene_parts.h>
 
@@ -17,7 +16,6 @@ constexpr std::size_t kFrameSlotCount = 4;  ///< one being filled, one in flight
 constexpr std::size_t kParticleHeaderWords = 2;
 constexpr std::size_t kWordsPerParticle = 3;
 constexpr std::size_t kWordsPerBody = 7;  ///< boat or floater
-constexpr std::size_t kBodyWords = std::size_t{MAX_BOATS} * kWordsPerBody;
 
 std::size_t surfaceWords(core::CellCounts count) {
   return (count.total() + 1) / 2;
@@ -38,7 +36,10 @@ FramePacker::FramePacker(Creation& create, const core::Scene& scene, const Deriv
   }
   if (derived.particles) pack_particles_ = create.pass("stream/pack_particles.comp");
   if (hasSurfaceFoam(scene)) pack_foam_ = create.pass("stream/pack_foam.comp");
-  if (scene.boats) pack_bodies_ = create.pass("stream/pack_bodies.comp");
+  if (scene.boats) {
+    pack_bodies_ = create.pass("stream/pack_bodies.comp");
+    body_words_ = scene.boats->capacity_count * kWordsPerBody;
+  }
   if (scene.floaters) {
     pack_floaters_ = create.pass("stream/pack_floaters.comp");
     floater_words_ = scene.floaters->capacity_count * kWordsPerBody;
@@ -50,7 +51,7 @@ void FramePacker::resize(Creation& create, const Derived& derived) {
   const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
   const core::ReducedCounts reduced_counts = core::reducedCounts(surface_, particles);
   // The slot has room for all levels at once.
-  std::size_t words = (pack_bodies_ ? kBodyWords : 0) + floater_words_;
+  std::size_t words = body_words_ + floater_words_;
   for (const core::Level level : core::kLevels) {
     if (isSent(level, reduced_counts.planes)) {
       words += surfaceWords(surfaceCount(level)) + (pack_foam_ ? foamWords(foamCount(level)) : 0);
@@ -103,7 +104,7 @@ bool FramePacker::pack(std::uint64_t tick, double time_s, const core::Scene& sce
     pack_bodies_.dispatchGroups(1);
     pending.bodies = at;
     frame.bodies = core::BodiesView{.count = parts.boats->count(), .words = {}};
-    at += kBodyWords;
+    at += body_words_;
   }
   if (parts.floaters && request.floaters) {
     parts.floaters->bind();

@@ -76,7 +76,8 @@ class FramePacker {
   gpu::Context& ctx_;
   core::CellCounts surface_;  ///< cells of the surface; 0 without one
   std::uint32_t particles_ = 0;
-  std::size_t floater_words_ = 0;  ///< of a frame
+  std::size_t body_words_ = 0;  ///< of a frame, as the next
+  std::size_t floater_words_ = 0;
   core::ReducedCounts reduced_counts_;
   gpu::Buffer packed_;  ///< one frame, its parts in a row
   Pass pack_surface_, pack_particles_, pack_foam_, pack_bodies_, pack_floaters_;

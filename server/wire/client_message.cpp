@@ -1,5 +1,6 @@
 #include <cmath>
 #include <exception>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -26,6 +27,29 @@ constexpr const char* kNoFloaters = "this scene has no floaters; choose a scene 
 
 CommandRejection rejectionOf(std::uint64_t command_id, scene::FieldIssue issue) {
   return rejection(issue.reason, std::move(issue.path), std::move(issue.message), command_id);
+}
+
+/// Returns what is wrong with the tools of a lesson; empty: nothing.
+std::string checkTools(const v1::Lesson& lesson) {
+  std::set<int> seen;
+  for (const int tool : lesson.tools()) {
+    if (tool == v1::TOOL_UNSPECIFIED || !v1::Tool_IsValid(tool))
+      return std::to_string(tool) + " is not a tool; choose 1 to " + std::to_string(v1::Tool_MAX);
+    if (!seen.insert(tool).second) return v1::Tool_Name(tool) + " is named twice; name each tool once";
+  }
+  return "";
+}
+
+/// Adds what a game needs and the scene does not have.
+void checkGame(v1::GameKind kind, const v1::Scene& scene, std::vector<scene::FieldIssue>& issues) {
+  const v1::Course& course = scene.course();
+  if (kind == v1::GAME_KIND_BALL && !(course.has_red_goal() && course.has_blue_goal()))
+    return scene::addAbsent(issues, "start_game.kind", "this scene has no goals; choose a scene whose course has two");
+  if (kind == v1::GAME_KIND_BALL && !scene.has_floaters())
+    return scene::addAbsent(issues, "start_game.kind", kNoFloaters);
+  if (kind == v1::GAME_KIND_RACE && course.marks_size() == 0)
+    return scene::addAbsent(issues, "start_game.kind", "this scene has no marks; choose a scene with a course");
+  if (kind == v1::GAME_KIND_RACE && !scene.has_boats()) scene::addAbsent(issues, "start_game.kind", kNoBoats);
 }
 
 }  // namespace
@@ -67,6 +91,8 @@ std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
                          "\" is not a scene; the greeting lists what there is",
                      id);
   }
+  if (auto why = checkTools(command.set_lesson().lesson()); !why.empty())
+    return rejection(v1::REJECT_REASON_OUT_OF_RANGE, "set_lesson.lesson.tools", std::move(why), id);
   command.DiscardUnknownFields();
   return command;
 }
@@ -192,6 +218,7 @@ std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::
     if (scene.has_floaters()) scene::completeFloater(floater, scene);
   }
   if (command.has_stroke()) scene::completeStroke(*command.mutable_stroke(), scene);
+  if (command.has_set_lesson()) command.mutable_set_lesson()->mutable_lesson();  // left out: that of the beginning
   scene::fillMessageDefaults(command);
   return checkAgainstScene(command, scene);
 }
@@ -245,6 +272,9 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kRemoveFloater:
       needFloaters("remove_floater");
+      break;
+    case v1::Command::kStartGame:
+      checkGame(command.start_game().kind(), scene, issues);
       break;
     default:  // the other commands have no rules about the scene
       break;

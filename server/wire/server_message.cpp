@@ -76,6 +76,14 @@ core::SharedBytes strokes(const v1::Strokes& strokes) {
   return messageWith(&v1::ServerMessage::mutable_strokes, strokes);
 }
 
+core::SharedBytes lesson(const v1::Lesson& lesson) {
+  return messageWith(&v1::ServerMessage::mutable_lesson, lesson);
+}
+
+core::SharedBytes game(const v1::Game& game) {
+  return messageWith(&v1::ServerMessage::mutable_game, game);
+}
+
 core::SharedBytes levelChanged(core::Level level) {
   v1::LevelChanged out;
   out.set_level(codec::toWire(level));

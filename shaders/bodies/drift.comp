@@ -110,7 +110,7 @@ void meetSides(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
 
 void main() {
   const uint own = gl_LocalInvocationID.x;
-  BoatState b = boatAt(own);
+  BoatState b = boatAt(min(own, boat_place_count - 1u));  // the buffer may end after the last one
   const bool is_here = own < boat_place_count && b.age_s >= 0.0;
   if (is_here) {
     b = drifted(b, sim.tick_s);

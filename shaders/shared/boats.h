@@ -15,7 +15,9 @@
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
-#define MAX_BOATS 16
+#define MAX_BOATS 64
+// Slots of a scene with a smaller capacity_count: hashes and states on disk contain them.
+#define MIN_BOAT_SLOTS 16
 #define BOAT_TEXELS 7
 // A new boat reaches its full pressure on the water only after this time, so that it makes no splash.
 #define BOAT_SETTLING_S 1.0f

@@ -31,6 +31,8 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
   void strokesChanged(const rooms::Room&, const v1::Strokes&) override {}
+  void lessonChanged(const rooms::Room&, const v1::Lesson&) override {}
+  void gameChanged(const rooms::Room&, const v1::Game&) override {}
   void wasReset(const rooms::Room&) override {}
   void fidelityChanged(const rooms::Room&, const std::string& how) override { fidelity_news.push_back(how); }
   void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }

@@ -12,6 +12,8 @@ struct SilentOutlets : rooms::RoomOutlets {
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
   void strokesChanged(const rooms::Room&, const v1::Strokes&) override {}
+  void lessonChanged(const rooms::Room&, const v1::Lesson&) override {}
+  void gameChanged(const rooms::Room&, const v1::Game&) override {}
   void wasReset(const rooms::Room&) override {}
   void fidelityChanged(const rooms::Room&, const std::string&) override {}
   void hasRecovered(const rooms::Room&, const std::string&) override {}

@@ -43,7 +43,7 @@ class SceneChange : public OnDevice {
   }
 };
 
-constexpr std::uint64_t kBoatBytes = sizeof(shared::BoatControls) + sizeof(float) * 4 * BOAT_TEXELS * MAX_BOATS;
+constexpr std::uint64_t kBoatBytes = sizeof(shared::BoatControls) + sizeof(float) * 4 * BOAT_TEXELS * MIN_BOAT_SLOTS;
 
 TEST_F(SceneChange, AResetUploadsNoTableThatDidNotChange) {
   WaterSim& sim = make(harbor());

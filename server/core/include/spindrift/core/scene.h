@@ -13,7 +13,7 @@
 namespace spindrift::core {
 
 /// At most this many boats, and gauges, in a scene.
-inline constexpr std::uint32_t kMaxBoats = 16;
+inline constexpr std::uint32_t kMaxBoats = 64;
 inline constexpr std::uint32_t kMaxFloaters = 1024;
 inline constexpr std::uint32_t kMaxGauges = 64;
 

@@ -13,6 +13,7 @@ struct Command {
   v1::Command message{};  ///< accepted by wire::checkCommand(), and from CommandDesk::admit() on completed
   /// RoomWater::sceneVersion() of the scene that the message was checked against; 0: none.
   std::uint64_t scene_version = 0;
+  bool is_placed_by_room = false;  ///< a boat without a position of its own
 
   [[nodiscard]] std::uint64_t id() const { return message.command_id(); }
 };

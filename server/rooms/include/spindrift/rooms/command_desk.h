@@ -51,8 +51,8 @@ class CommandDesk {
   /// The arguments outlive this.
   CommandDesk(RoomData& room, RoomActions& actions, WaterChange& change);
 
-  /// Any thread. Checks the sender's role and the scene, then queues the command. Otherwise returns the rejection with
-  /// the command's number; a full queue is BUSY.
+  /// Any thread. Checks the sender's role, the lesson and the scene, then queues the command. Otherwise returns the
+  /// rejection with the command's number; a full queue is BUSY.
   [[nodiscard]] Outcome admit(Command command, const RoomSnapshot& room);
   /// Any thread. Number of commands that wait.
   [[nodiscard]] std::size_t waitingCount() const { return queue_.size(); }

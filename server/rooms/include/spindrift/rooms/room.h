@@ -50,6 +50,7 @@ class Room {
   /// Digests of the tokens that were made for this room; never changes.
   [[nodiscard]] const v1::RoomAccess& access() const { return data_.access; }
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const { return reports_.snapshot(); }
+  [[nodiscard]] std::shared_ptr<const LessonState> lesson() const { return reports_.lesson(); }
   [[nodiscard]] std::shared_ptr<const RoomVitals> vitals() const { return vitals_.get(); }
   /// The people in the room.
   [[nodiscard]] Roster& roster() { return data_.roster; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <utility>
 
 #include <spindrift/rooms/command.h>
@@ -24,7 +25,12 @@ class RoomActions {
   /// Boats were added or removed: ends the ownership of removed boats and announces the boats.
   void boatsChanged();
 
-  /// Stops a boat whose owner has left.
+  /// Moves the game on after a tick: starts the boats of a race, and puts the ball where it belongs.
+  void advanceGame();
+  /// Ends the game, and takes its ball out of the water.
+  void clearGame();
+
+  /// Stops a boat whose owner has left, or may not steer now.
   void stopBoat(std::uint32_t boat_id);
 
   // One per kind of command that does more; see the table in command_desk.cpp.
@@ -38,6 +44,13 @@ class RoomActions {
   Outcome removeBoat(const Command& command);
   Outcome takeBoat(const Command& command);
   Outcome spawnFloater(const Command& command);
+  Outcome holdFloater(const Command& command);
+  Outcome removeFloater(const Command& command);
+  Outcome setLesson(const Command& command);
+  Outcome mutePerson(const Command& command);
+  Outcome setTeam(const Command& command);
+  Outcome startGame(const Command& command);
+  Outcome endGame(const Command& command);
 
   /// Returns the ids that the last command gave out, once, in an Ack without anything else.
   [[nodiscard]] v1::Ack takeNewIds() { return std::exchange(new_ids_, {}); }
@@ -46,8 +59,28 @@ class RoomActions {
   [[nodiscard]] Outcome writeAhead(const Command& command) { return room_.diary.writeAhead(command.message); }
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return room_.water->boatIds().contains(boat_id); }
 
+  [[nodiscard]] bool isHeld(const Command& command) const {
+    return room_.referee.holdsBoats() && command.sender.role < core::Role::kOperator;
+  }
+  /// Returns whether the lesson lets the owner of a boat steer.
+  [[nodiscard]] bool maySteer(const Roster::BoatOwner& owner) const;
+  void stopBoatsOfIdle();
+  /// Gives the boats of a race the throttles that their owners have chosen while they waited.
+  void releaseBoats();
+  void putBall(const Referee::Position& spot);
+  void removeBall();
+  /// Returns whether a player means the ball of the game.
+  [[nodiscard]] bool isBall(const Command& command, std::uint32_t floater_id) const;
+  static wire::CommandRejection notTheBall(const char* field);
+  /// Moves a new boat to the next free place of the grid behind the start, last_place_; leaves it where it is when no
+  /// place is left. A place is free when no boat on the water was launched there.
+  void placeOnGrid(v1::Boat& boat);
+
   RoomData& room_;
   v1::Ack new_ids_;
+  std::map<std::uint32_t, v1::ControlBoat> held_;  ///< by boat: for the start of the race
+  std::map<std::uint32_t, std::uint32_t> grid_;    ///< places by boat
+  std::optional<std::uint32_t> last_place_;        ///< of the boat that is being launched
 };
 
 }  // namespace spindrift::rooms

@@ -8,6 +8,7 @@
 #include <spindrift/core/demand_table.h>
 #include <spindrift/history/diary.h>
 #include <spindrift/rooms/frame_schedule.h>
+#include <spindrift/rooms/referee.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_rules.h>
 #include <spindrift/rooms/room_time.h>
@@ -32,6 +33,7 @@ struct News {
   bool state = false;  ///< pause or speed
   bool boats = false;
   bool reset = false;
+  bool lesson = false;
   std::map<std::string, double> parameters{};  ///< current values by path
   std::string recovered{};                     ///< one line for people, after the device failed
   std::string fidelity{};                      ///< the same, after the fidelity changed
@@ -53,6 +55,7 @@ struct RoomData {
   water::TickCost tick_cost{};
   TickMeter tick_meter{};
   FrameSchedule schedule{};
+  Referee referee{};  ///< of the game in the room
   ServerLoad load{};
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};

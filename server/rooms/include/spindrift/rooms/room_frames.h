@@ -30,7 +30,9 @@ class RoomFrames {
   [[nodiscard]] std::uint64_t droppedCount() const { return dropped_count_; }
 
  private:
-  /// Requests what is watched of a frame that these levels take.
+  /// Shows the referee of a game where boats and ball are.
+  void showReferee(const core::FrameView& frame);
+  /// Requests what is watched, also by a referee, of a frame that these levels take.
   void request(TimePoint now, core::LevelSet due);
 
   RoomData& room_;

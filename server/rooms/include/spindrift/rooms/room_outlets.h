@@ -28,6 +28,9 @@ class RoomOutlets {
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;
   /// The fingers in the water, while there are any; an empty list after the last one.
   virtual void strokesChanged(const Room& room, const v1::Strokes& strokes) = 0;
+  virtual void lessonChanged(const Room& room, const v1::Lesson& lesson) = 0;
+  /// The game as it stands, up to 5 times per second while it runs.
+  virtual void gameChanged(const Room& room, const v1::Game& game) = 0;
   /// A client reset the scene to its start.
   virtual void wasReset(const Room& room) = 0;
   /// The watchdog or a new device restored the water; `how` is one line for people.

@@ -35,7 +35,7 @@ class GrowthNews {
   TimePoint next_{};
 };
 
-/// Lives on the simulation thread, except for snapshot().
+/// Lives on the simulation thread, except for snapshot() and lesson().
 class RoomReports {
  public:
   using TimePoint = RoomTime::TimePoint;
@@ -44,6 +44,7 @@ class RoomReports {
 
   /// Any thread.
   [[nodiscard]] std::shared_ptr<const RoomSnapshot> snapshot() const { return snapshot_.get(); }
+  [[nodiscard]] std::shared_ptr<const LessonState> lesson() const { return lesson_.get(); }
 
   /// Starts from the present water, of which nobody has to be told.
   void begin();
@@ -53,6 +54,8 @@ class RoomReports {
   void tell();
   /// Tells who is in the room; `is_news`: that has changed.
   void tellPeople(bool is_news, TimePoint now);
+  /// Tells how the game stands if that has changed, up to 5 times per second.
+  void tellGame(TimePoint now);
   /// Tells where the fingers are, up to 30 times per second.
   void tellStrokes(TimePoint now);
   /// Tells that the watchdog has acted, from time to time. Returns whether it did.
@@ -70,9 +73,12 @@ class RoomReports {
   GrowthNews recovery_news_{std::chrono::seconds(1)};
   bool has_people_news_ = false;
   TimePoint next_people_news_{};
+  v1::Game game_;  ///< as last announced
+  TimePoint next_game_news_{};
   bool has_told_strokes_ = false;
   TimePoint next_stroke_news_{};
   Published<RoomSnapshot> snapshot_;
+  Published<LessonState> lesson_;
 };
 
 }  // namespace spindrift::rooms

@@ -25,6 +25,12 @@ struct RoomSnapshot {
   std::shared_ptr<const sim::GaugeHistory> gauges;  ///< null in scenes without gauges
 };
 
+/// The rules for players in a room, and its game.
+struct LessonState {
+  v1::Lesson lesson;
+  v1::Game game;
+};
+
 /// Condition of a room, for /metrics and lists; updated a few times per second.
 struct RoomVitals {
   std::uint64_t tick = 0;

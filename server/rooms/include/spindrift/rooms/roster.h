@@ -1,5 +1,5 @@
-// The people of one room and the owners of its boats. Thread-safe: sessions come and go on I/O threads, ownership of
-// boats changes on the simulation thread.
+// The people of one room, the owners of its boats, and the lesson with its teams. Thread-safe: sessions come and go on
+// I/O threads, ownership of boats changes on the simulation thread.
 #pragma once
 
 #include <chrono>
@@ -15,6 +15,7 @@
 #include <spindrift/core/sender.h>
 #include <spindrift/v1/kept_state.pb.h>
 #include <spindrift/v1/wire.pb.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::rooms {
 
@@ -35,7 +36,7 @@ struct Admission {
 };
 
 /// After a lost connection the person and the person's boats are kept for the grace time; then the boats have no owner.
-/// A person without a boat is removed at once.
+/// A person without a boat is removed at once, except one who is muted: a new page does not end that.
 class Roster {
  public:
   using Clock = std::chrono::steady_clock;
@@ -55,6 +56,29 @@ class Roster {
   void give(std::uint32_t boat_id, std::uint32_t person_id);
   /// Removes the ownership of boats that are no longer on the water.
   void keepOnly(const std::set<std::uint32_t>& boat_ids);
+
+  /// A boat that belongs to somebody.
+  struct BoatOwner {
+    std::uint32_t boat_id = 0;
+    std::uint32_t person_id = 0;
+    core::Role role = core::Role::kViewer;
+    v1::Team team = v1::TEAM_UNSPECIFIED;
+  };
+  /// All of them, by person and boat.
+  [[nodiscard]] std::vector<BoatOwner> boatOwners() const;
+
+  /// The lesson; a room begins with the default, which allows everything.
+  [[nodiscard]] v1::Lesson lesson() const;
+  /// Replaces it; deals the players to the teams when teams begin, and ends the teams when they end.
+  void setLesson(const v1::Lesson& lesson);
+  /// Lesson.force_ratio, with its default.
+  [[nodiscard]] double forceRatio() const;
+  /// False: there is no such person.
+  bool mute(std::uint32_t person_id, bool is_muted);
+  bool setTeam(std::uint32_t person_id, v1::Team team);
+  /// rooms::refuse() by this lesson.
+  [[nodiscard]] std::optional<wire::CommandRejection> refuse(const core::Sender& sender,
+                                                             const v1::Command& command) const;
 
   /// Changes over time since the last settle().
   struct Turn {
@@ -86,6 +110,8 @@ class Roster {
     Clock::time_point away_since{};
     bool boats_stopped = false;  ///< since the connection was lost
     std::set<std::uint32_t> boats;
+    v1::Team team = v1::TEAM_UNSPECIFIED;
+    bool is_muted = false;
     bool waits = false;  ///< was here before a restart: kept for the grace time also without a boat
   };
 
@@ -103,9 +129,12 @@ class Roster {
   std::map<std::uint32_t, Person> people_;
   std::uint32_t last_person_id_ = 0;
   std::uint32_t unlisted_count_ = 0;
+  v1::Lesson lesson_;
   bool is_news_ = false;
   std::uint64_t version_ = 1;
 
+  /// Returns the team with fewer people.
+  [[nodiscard]] v1::Team smallerTeam() const;
   void changed() {
     is_news_ = true;
     ++version_;

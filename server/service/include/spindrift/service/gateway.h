@@ -53,6 +53,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
   void strokesChanged(const rooms::Room& room, const v1::Strokes& strokes) override;
+  void lessonChanged(const rooms::Room& room, const v1::Lesson& lesson) override;
+  void gameChanged(const rooms::Room& room, const v1::Game& game) override;
   void wasReset(const rooms::Room& room) override;
   void hasRecovered(const rooms::Room& room, const std::string& how) override;
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;

@@ -90,6 +90,8 @@ class Sessions {
   /// Sends a greeting with the room's present state and stores that state. Does nothing if the last greeting had the
   /// same state, or while the room cannot be reached.
   void greet(net::SessionId session, const Venue& venue);
+  /// Sends the lesson and the game, no older ones than the room's news.
+  void tellLesson(net::SessionId session, const Venue& venue);
   void handle(net::SessionId session, const State& state, core::ByteView message);
   void hello(net::SessionId session, const State& state, const v1::Hello& hello);
   void arrived(net::SessionId session, const v1::Hello& hello, core::Role role,

@@ -18,6 +18,8 @@ inline net::StateTopic ofParameter(const std::string& path) {
 
 inline const net::StateTopic kPeople{.name = "people"};
 inline const net::StateTopic kStrokes{.name = "strokes"};
+inline const net::StateTopic kLesson{.name = "lesson"};
+inline const net::StateTopic kGame{.name = "game"};
 inline const net::StateTopic kLevel{.name = "level"};
 inline const net::StateTopic kDraining{.name = "draining"};
 inline const net::StateTopic kReset{.name = "reset"};

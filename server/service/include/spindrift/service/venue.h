@@ -35,6 +35,8 @@ class Venue {
   /// can.
   [[nodiscard]] virtual std::shared_ptr<const VenueView> view() const = 0;
   [[nodiscard]] virtual v1::People people() const = 0;
+  /// Never null; replaced by another one whenever it changes.
+  [[nodiscard]] virtual std::shared_ptr<const rooms::LessonState> lesson() const = 0;
   /// Returns what the sessions of the room need of its frames; never null.
   [[nodiscard]] virtual std::shared_ptr<core::DemandTable> demand() const = 0;
   /// Returns whether new sessions may still come in: false once the room was closed.

@@ -24,6 +24,8 @@ core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::str
 core::SharedBytes welcome(const v1::Welcome& welcome);
 core::SharedBytes people(const v1::People& people);
 core::SharedBytes strokes(const v1::Strokes& strokes);
+core::SharedBytes lesson(const v1::Lesson& lesson);
+core::SharedBytes game(const v1::Game& game);
 core::SharedBytes levelChanged(core::Level level);
 core::SharedBytes draining(const v1::Draining& draining);
 core::SharedBytes pong(double client_time_s, double server_time_s);
