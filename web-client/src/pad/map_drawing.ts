@@ -14,6 +14,8 @@ import { WaterShade, type MixedSurface } from "./water_shade";
 
 const kBackground = "#06202f";
 const kFlatWater = "#166c92";
+const kRockColor = "#9c9384";
+const kRockEdge = "#5d564b";
 const kNextColor = "#ffe14d";
 const kMarkColor = "#ff8a2a";
 /** Things are drawn at least so large. */
@@ -66,6 +68,7 @@ export class MapDrawing {
     if (!greeting) return;
     context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
     this.drawWater(view, greeting, things.surface);
+    this.drawObstacles(view, greeting);
     this.drawCourse(view, greeting, things.nextMark);
     for (const floater of things.floaters) this.drawFloater(view, floater, floater.floaterId === things.ballFloaterId);
     for (const boat of things.boats) this.drawBoat(view, boat, things);
@@ -106,6 +109,28 @@ export class MapDrawing {
     this.shade.shade(surface, this.isLand, this.image.data);
     context.putImageData(this.image, 0, 0);
     return true;
+  }
+
+  /** Sharper than the water's samples. */
+  private drawObstacles(view: MapView, { obstacles }: GreetingInfo): void {
+    const { context } = this;
+    for (const obstacle of obstacles) {
+      const [x, y] = toPx(view, obstacle);
+      if (obstacle.shape === "rock") {
+        this.disc(x, y, obstacle.radiusM * view.pxPerM, kRockColor, kRockEdge);
+        continue;
+      }
+      const [length, width] = [obstacle.lengthM * view.pxPerM, obstacle.widthM * view.pxPerM];
+      context.save();
+      context.translate(x, y);
+      context.rotate(view.turnRad + obstacle.headingRad);
+      context.fillStyle = kRockColor;
+      context.strokeStyle = kRockEdge;
+      context.lineWidth = 2;
+      context.fillRect(-length / 2, -width / 2, length, width);
+      context.strokeRect(-length / 2, -width / 2, length, width);
+      context.restore();
+    }
   }
 
   private drawCourse(view: MapView, { course }: GreetingInfo, nextMark: number | undefined): void {

@@ -32,6 +32,16 @@ const kRatesHz = { boat: 15, other: 10 };
 /** Labels of commands that are sent many times per second: only the lesson's refusals are shown. */
 const kQuietLabels = [kPadHelmLabel, kStrokeLabel, kHoldLabel];
 const kHintMs = 3500;
+/** What a finger does with each tool. */
+const kDoes: Record<LessonTool, string> = {
+  finger: "Draw in the water with your fingers.",
+  splash: "Tap for a splash; hold for a larger one.",
+  wave: "Drag to send a wave that way.",
+  rain: "Drag a rain cloud; tap to leave one behind.",
+  float: "Tap to drop an object; drag one to move it.",
+  throw: "Flick to throw a stone; tap to toss one.",
+  boat: "Push the stick ahead and steer.",
+};
 
 export function openPad(): void {
   const pad = new PadPage();
@@ -222,7 +232,11 @@ class PadPage {
 
   private connectPage(): void {
     const { elements } = this;
-    for (const [tool, button] of elements.buttons) button.addEventListener("click", () => this.choose(tool));
+    for (const [tool, button] of elements.buttons)
+      button.addEventListener("click", () => {
+        this.choose(tool);
+        this.hint(kDoes[tool]);
+      });
     elements.retry.addEventListener("click", () => this.client.call("retryNow"));
     elements.launch.addEventListener("click", () => this.greeting && this.boat.launch(this.greeting, this.map.boats()));
     elements.remove.addEventListener("click", () => this.boat.remove());

@@ -45,8 +45,10 @@ export class WaterShade {
           write(pixels, 4 * n, kLand, kLand, 0);
           continue;
         }
-        const alongX = (heights[n - (i > 0 ? 1 : 0)]! - heights[n + (i < countX - 1 ? 1 : 0)]!) * perM;
-        const alongZ = (heights[above + i]! - heights[below + i]!) * perM;
+        // Samples of land and obstacles have no water to compare with.
+        const at = (other: number): number => heights[isLand[other] === 1 ? n : other]!;
+        const alongX = (at(i > 0 ? n - 1 : n) - at(i < countX - 1 ? n + 1 : n)) * perM;
+        const alongZ = (at(above + i) - at(below + i)) * perM;
         squares += alongX * alongX + alongZ * alongZ;
         // Slopes that face the light, which comes from -x and -z, are bright.
         const lit = clamp(-0.7 * (alongX + alongZ) * full, -1, 1);
