@@ -73,7 +73,7 @@ export class App {
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
-  private readonly fingers = new FingerTags(byId("view"));
+  readonly fingers = new FingerTags(byId("view"));
   private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
@@ -154,6 +154,11 @@ export class App {
   keepIdentity(withResumeKey: boolean): void {
     if (withResumeKey) this.identities.leave(this.identity);
     else this.identities.save(this.identity);
+  }
+
+  /** Shows a line about something that does not work as wanted. */
+  warn(text: string): void {
+    this.toast.show(text, "warn");
   }
 
   private handlers(): PageEventHandlers {

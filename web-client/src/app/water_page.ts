@@ -19,9 +19,22 @@ export function openWaterPage(): void {
   const app = new App(made);
   connectInput(app);
   if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
+  openOperatorPanel(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
   app.start(!isStepped);
   // A link with a token was opened in this tab; without it the browser would load nothing.
   window.addEventListener("hashchange", () => location.reload());
+}
+
+/** Adds the operator's controls of a lesson when the server says that this visitor is one. */
+function openOperatorPanel(app: App): void {
+  let isAsked = false;
+  app.lessons.watch(() => {
+    if (isAsked || app.role !== "operator") return;
+    isAsked = true;
+    void import("../class/operator_panel").then(({ OperatorPanel }) => {
+      byId("people-box").before(new OperatorPanel(app.lessons, () => app.entered, app.commands.send).element);
+    });
+  });
 }
