@@ -13,6 +13,7 @@
 #include <spindrift/access/jwt.h>
 #include <spindrift/core/files.h>
 #include <spindrift/http/network_text.h>
+#include <spindrift/net/pad_urls.h>
 
 namespace spindrift::cli {
 namespace {
@@ -55,9 +56,9 @@ core::Result<std::vector<access::JwtKey>> loadJwtKeys(const FrontOptions& option
   return out;
 }
 
-bool hasRoles(const FrontOptions& options) {
+bool hasTokens(const FrontOptions& options) {
   return !options.token_file.empty() || !options.tokens.empty() || !options.jwt_keys.empty() ||
-         !options.jwt_key_set.empty() || !options.guest_role.empty();
+         !options.jwt_key_set.empty();
 }
 
 std::string pageUrl(const FrontOptions& options, const std::string& host, std::uint16_t port) {
@@ -73,17 +74,22 @@ bool isReachable(const FrontOptions& options) {
 
 void makeOperatorToken(FrontOptions& options) {
   constexpr std::size_t kTokenBytes = 16;
-  if (isReachable(options) && !hasRoles(options))
-    options.operator_token = access::toBase64Url(access::randomBytes(kTokenBytes));
+  // A class has guests of its own role, and nevertheless needs an operator.
+  const bool is_wanted = options.is_class || (isReachable(options) && options.guest_role.empty());
+  if (is_wanted && !hasTokens(options)) options.operator_token = access::toBase64Url(access::randomBytes(kTokenBytes));
 }
 
 std::string readyText(const FrontOptions& options, std::uint16_t port) {
   std::string out = "Spindrift is ready: " + pageUrl(options, options.address, port) + "\n";
-  if (options.operator_token.empty()) return out;
   // No browser opens the address that stands for all of a machine's.
   const bool is_any = options.address == "0.0.0.0" || options.address == "::";
-  return out + "Link of the operator: " + pageUrl(options, is_any ? "localhost" : options.address, port) +
-         "#token=" + options.operator_token + "\n";
+  const std::string here = pageUrl(options, is_any ? "localhost" : options.address, port);
+  const std::string token = options.operator_token.empty() ? "" : "#token=" + options.operator_token;
+  if (!options.is_class) return token.empty() ? out : out + "Link of the operator: " + here + token + "\n";
+  out += "Projector: " + here + "?class" + token + "\n";
+  const auto pads = net::padUrls({options.address, port, !options.tls_cert_file.empty(), options.public_url});
+  if (pads.empty()) return out + "Phones cannot reach this machine: connect it to a network, or give --public-url\n";
+  return out + "Phones: " + pads.front() + "\n";
 }
 
 core::Result<access::Access> loadAccess(const FrontOptions& options) {

@@ -16,7 +16,8 @@ namespace spindrift::cli {
 bool isReachable(const FrontOptions& options);
 
 /// Makes a token for the person who starts the server, if others can reach it and neither tokens, keys nor a role of
-/// guests are given; loadAccess() then makes guests players. Call it once, before loadAccess().
+/// guests are given, or if it is for a class and neither tokens nor keys are; loadAccess() then makes guests players.
+/// Call it once, before loadAccess().
 void makeOperatorToken(FrontOptions& options);
 
 /// Reads tokens (from the file or the environment, or FrontOptions::operator_token), keys for JWTs, and the role of
@@ -25,7 +26,8 @@ void makeOperatorToken(FrontOptions& options);
 core::Result<access::Access> loadAccess(const FrontOptions& options);
 
 /// Returns the lines for standard output at the start: the URL of the page, and if makeOperatorToken() made a token, a
-/// link with it. Browsers do not send the fragment of a link to anybody.
+/// link with it; for a class the addresses of the projector and of phones instead. Browsers do not send the fragment of
+/// a link to anybody.
 std::string readyText(const FrontOptions& options, std::uint16_t port);
 
 }  // namespace spindrift::cli

@@ -135,6 +135,16 @@ CLI::Validator isServer() {
           ""};
 }
 
+CLI::Validator isPageUrl() {
+  return {[](std::string& text) {
+            const bool is_http = text.starts_with("http") && text.find_first_of("?#") == std::string::npos;
+            const bool is_url = is_http && net::ClientUrl::parse("ws" + text.substr(4));
+            return is_url ? std::string()
+                          : "Value " + text + " is not the address of a page: write https://HOST or https://HOST/PATH";
+          },
+          ""};
+}
+
 CLI::Validator isNatsServers() {
   return {[](std::string& text) -> std::string {
             std::size_t number = 0;

@@ -28,6 +28,8 @@ CLI::Validator isOrigin();
 CLI::Validator isUrl();
 /// The same without a path.
 CLI::Validator isServer();
+/// http://HOST[:PORT][/PATH] or https://HOST[:PORT][/PATH], without query and fragment.
+CLI::Validator isPageUrl();
 /// One or several nats:// or tls:// URLs with ',' between them. What is wrong is said without their passwords.
 CLI::Validator isNatsServers();
 /// NAME=SCENE.

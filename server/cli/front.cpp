@@ -56,7 +56,7 @@ void drain(const FrontOptions& options, const StopSignals& signals, const Runnin
 void sayReady(const FrontOptions& options, std::uint16_t port) {
   std::fputs(readyText(options, port).c_str(), stdout);
   std::fflush(stdout);
-  if (options.operator_token.empty()) return;
+  if (options.operator_token.empty() || options.is_class) return;
   spdlog::info(
       "no roles are configured and other machines can reach this server: clients without a token are players; the link "
       "of the operator is on standard output and is valid until this process ends; --tokens-file gives lasting roles");

@@ -105,6 +105,15 @@ core::Result<void> OptionSources::takeFromFile(const std::string& field, const s
   return {};
 }
 
+core::Result<void> OptionSources::suggest(const std::string& field, const std::string& value,
+                                          const std::string& place) {
+  Entry& entry = find(field);
+  if (entry.source != OptionSource::kDefault) return {};
+  if (auto given = give(*entry.option, {value}, place); !given) return given;
+  entry.place = place;
+  return {};
+}
+
 void OptionSources::replaceByVariable(const std::string& field, const std::string& variable) {
   Entry& entry = find(field);
   entry.source = OptionSource::kEnvironment;

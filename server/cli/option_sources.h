@@ -42,6 +42,9 @@ class OptionSources {
   core::Result<void> takeFromFile(const std::string& field, const std::vector<std::string>& values, int line,
                                   const std::string& label);
 
+  /// Gives an option that still has its default another one; `place` says why.
+  core::Result<void> suggest(const std::string& field, const std::string& value, const std::string& place);
+
   /// The environment decides about this option by another variable than its own: a file cannot set it any more.
   void replaceByVariable(const std::string& field, const std::string& variable);
 

@@ -100,6 +100,7 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
   out.network = networkOptions(options);
   if (node) out.cluster = node->hooks();
   out.on_drain = endThisProcess;
+  out.public_url = options.public_url;
   return out;
 }
 

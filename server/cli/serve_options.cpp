@@ -145,6 +145,14 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
                   "Scene of the room 'main': a .textproto file or the name of a shipped scene")
       ->check(isNotEmpty())
       ->capture_default_str();
+  command.add_flag("--class", options.is_class,
+                   "For a class with phones and a projector: scene regatta, all addresses, guests who are players, and "
+                   "the addresses for both; other options replace each of these");
+  command
+      .add_option("--public-url", options.public_url,
+                  "Address of the page for phones, http[s]://HOST[:PORT][/PATH], where it is not one of this machine's "
+                  "(a proxy, a container)")
+      ->check(isPageUrl());
   addFidelity(command, options.fidelity);
   command.add_flag("--adapt", options.adapts,
                    "Lower a room's fidelity while this machine cannot keep up, and raise it again when it can");
@@ -197,6 +205,24 @@ void addEdgeOptions(CLI::App& command, FrontOptions& options) {
   addLastOptions(command, options);
 }
 
+namespace {
+
+/// Gives the options that were not given the values of a class.
+core::Result<void> applyClass(OptionSources& sources) {
+  /// A class behind one address: each of forty phones, their reloads, and the projector.
+  constexpr std::pair<const char*, const char*> kValues[] = {{"scene", "regatta"},
+                                                             {"address", "0.0.0.0"},
+                                                             {"guests", "player"},
+                                                             {"address_share", "1"},
+                                                             {"max_sessions", "512"}};
+  for (const auto& [field, value] : kValues) {
+    if (auto given = sources.suggest(field, value, "--class"); !given) return given;
+  }
+  return {};
+}
+
+}  // namespace
+
 core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& command, FrontOptions& options) {
   OptionSources sources{&command, &program};
   if (auto taken = sources.takeEnvironment(); !taken) return taken.error();
@@ -221,6 +247,9 @@ core::Result<OptionSources> completeFrontOptions(CLI::App& program, CLI::App& co
     const char* const given = options.tls_cert_file.empty() ? "--tls-key" : "--tls-cert";
     const char* const missing = options.tls_cert_file.empty() ? "--tls-cert" : "--tls-key";
     return core::invalid(std::string(given) + " is given without " + missing + ": TLS needs both files");
+  }
+  if (options.is_class) {
+    if (auto applied = applyClass(sources); !applied) return applied.error();
   }
   return sources;
 }

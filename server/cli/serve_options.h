@@ -26,6 +26,8 @@ struct FrontOptions {
   std::string tls_key_file;                  ///< empty if and only if tls_cert_file is
   std::vector<std::string> trusted_proxies;  ///< networks, ADDRESS/BITS
   double address_session_share = 0.5;        ///< share of the sessions that one address may hold
+  bool is_class = false;                     ///< see applyClass()
+  std::string public_url;                    ///< of the page as others reach it; empty: by this machine's addresses
   std::string token_file;                    ///< empty: `tokens`
   std::string tokens;                 ///< text of SPINDRIFT_TOKENS where it applies; ';' may end a line. Never printed.
   std::string operator_token;         ///< see makeOperatorToken(); empty: not made. Never logged.

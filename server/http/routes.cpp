@@ -56,7 +56,7 @@ bool matchesEtag(std::string_view list, std::string_view etag) {
 
 Reply fileReply(const Request& request, const std::string& path, StaticFiles& files) {
   const std::shared_ptr<const StaticFile> file = files.find(path, listOf(request, http::field::accept_encoding));
-  if (!file && path == "/") {
+  if (!file && (path == "/" || path == "/pad")) {
     return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
   }
   if (!file) return textReply(404, "There is nothing at " + printable(path) + ".");

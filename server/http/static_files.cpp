@@ -87,7 +87,9 @@ StaticFiles::StaticFiles(const std::string& web_root) {
 
 std::shared_ptr<const StaticFile> StaticFiles::find(std::string_view path, std::string_view accept_encoding) {
   if (root_.empty() || !path.starts_with('/')) return nullptr;
-  const std::string relative(path == "/" ? std::string_view("index.html") : path.substr(1));
+  // The pad of a class is the same page at another address.
+  const bool is_page = path == "/" || path == "/pad";
+  const std::string relative(is_page ? std::string_view("index.html") : path.substr(1));
   if (!plainSegments(relative)) return nullptr;
   std::shared_ptr<const StaticFile> chosen = read(relative, {});
   if (!chosen) return nullptr;

@@ -82,6 +82,13 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
     addAbsent(issues, "coupling.patch_follow",
               "PATCH_FOLLOW_BOAT needs boats; add \"boats {}\" or follow something else");
   }
+  if (scene.has_course() && !scene.has_boats())
+    addAbsent(issues, "course", "needs boats; add \"boats {}\" or remove course");
+  if (scene.course().has_red_goal() != scene.course().has_blue_goal()) {
+    const bool has_red = scene.course().has_red_goal();
+    addAbsent(issues, has_red ? "course.blue_goal" : "course.red_goal",
+              std::string("missing beside ") + (has_red ? "red_goal" : "blue_goal") + "; add it, or remove both");
+  }
   if (scene.has_wave()) return;
   if (scene.setting() == v1::SETTING_OPEN_SEA) {
     addAbsent(issues, "setting",
@@ -95,6 +102,7 @@ void checkParts(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   if (scene.beaches_size() > 0) needsWave("beaches[0]", "the beaches");
   if (scene.has_storm()) needsWave("storm", "storm");
   if (scene.has_floaters()) needsWave("floaters", "floaters");
+  if (scene.has_course()) needsWave("course", "course");
   if (scene.has_bed()) needsWave("bed", "bed");
   if (scene.gauges_size() > 0) needsWave("gauges[0]", "the gauges");
   if (scene.wave_makers_size() > 0) needsWave("wave_makers[0]", "the wave-makers");
@@ -107,6 +115,7 @@ void checkLists(const v1::Scene& scene, std::vector<FieldIssue>& issues) {
   checkCount(scene.boats().boats_size(), static_cast<int>(core::kMaxBoats), "boats.boats", "boats", issues);
   checkCount(scene.floaters().floaters_size(), static_cast<int>(core::kMaxFloaters), "floaters.floaters", "objects",
              issues);
+  checkCount(scene.course().marks_size(), kSceneMarkMaxCount, "course.marks", "marks", issues);
   for (int i = 0; i < scene.obstacles_size(); ++i) {
     if (scene.obstacles(i).shape_case() != v1::Obstacle::SHAPE_NOT_SET) continue;
     issues.push_back({v1::REJECT_REASON_MALFORMED, indexed("obstacles", i),

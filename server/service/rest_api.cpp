@@ -151,6 +151,14 @@ void RestApi::answer(const net::HttpRequest& request, net::HttpResponder respond
     for (const std::string& name : rooms_->rules().scenes.names()) out.add_scenes(name);
     return respond(json(200, out));
   }
+  if (call.path[0] == "join" && call.path.size() == 1) {
+    if (request.method != "GET") return respond(wrongMethod("GET"));
+    v1::JoinInfo out;
+    if (pad_urls_) {
+      for (std::string& url : pad_urls_()) out.add_urls(std::move(url));
+    }
+    return respond(json(200, out));
+  }
   if (call.path[0] == "drain" && call.path.size() == 1) return drainServer(call, respond);
   if (call.path[0] != "rooms") return respond(std::nullopt);
   if (call.path.size() == 1) return rooms(call, std::move(respond));

@@ -1,3 +1,4 @@
+#include <spindrift/net/pad_urls.h>
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {
@@ -17,6 +18,16 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
                                                           .hello_patience = options.hello_patience},
                                              self->sources_, std::move(options.on_drain));
   self->gateway_->join(options.cluster);
+  self->gateway_->rest().tellPadUrls(
+      [&sources = self->sources_, page = net::PageAddress{.address = options.network.address,
+                                                          .is_tls = options.network.tls.has_value(),
+                                                          .public_url = std::move(options.public_url)}]() mutable {
+        const net::Server* const network = sources.network;
+        if (network == nullptr) return std::vector<std::string>{};  // a request of the first moment
+        net::PageAddress now = page;
+        now.port = network->port();
+        return net::padUrls(now);
+      });
   self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
   self->sources_.encoder = self->encoder_.get();
   auto simulation = rooms::SimulationThread::start(options.device, std::move(options.rooms), std::move(options.rules),

@@ -56,6 +56,13 @@ CLIENT_MESSAGES = {
     "spawn_floater": "command { command_id: 23 spawn_floater { floater { kind: FLOATER_KIND_DUCK x_m: 1 y_m: 3 velocity_z_mps: -4 } } }",
     "spawn_floater_in_rock": "command { command_id: 24 spawn_floater { floater { x_m: 4 } } }",
     "hold_floater": "command { command_id: 25 hold_floater { floater_id: 1 x_m: 2 z_m: -1 lift_m: 0.5 turn_radps: 1 } }",
+    "set_lesson": "command { command_id: 27 set_lesson { lesson { frozen: true tools: TOOL_BOAT tools: TOOL_RAIN force_ratio: 0.3 teams: true } } }",
+    "set_lesson_nan": "command { command_id: 28 set_lesson { lesson { tools: TOOL_BOAT tools: TOOL_BOAT force_ratio: nan } } }",
+    "mute_person": "command { command_id: 29 mute_person { person_id: 4294967295 muted: true } }",
+    "set_team": "command { command_id: 30 set_team { person_id: 1 team: TEAM_BLUE } }",
+    "start_race": "command { command_id: 31 start_game { kind: GAME_KIND_RACE laps_count: 0 countdown_s: 5 } }",
+    "start_ball": "command { command_id: 32 start_game { kind: GAME_KIND_BALL goals_count: 2 } }",
+    "end_game": "command { command_id: 33 end_game { } }",
     "remove_floaters": "command { command_id: 26 remove_floater { all: true } }",
 }
 

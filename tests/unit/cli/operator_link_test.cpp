@@ -9,6 +9,7 @@ namespace {
 
 using core::Role;
 using std::chrono::system_clock;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class OperatorLink : public CommandLineTest {
@@ -60,6 +61,35 @@ TEST_F(OperatorLink, HasAnOpenableHostAndTheTokenInItsFragment) {
   EXPECT_THAT(printed(started({"--address", "::"})), HasSubstr("Link of the operator: http://localhost:8080/#token="));
   EXPECT_THAT(printed(started({"--address", "2001:db8::7"})),
               HasSubstr("Link of the operator: http://[2001:db8::7]:8080/#token="));
+}
+
+TEST_F(OperatorLink, AClassHasAddressesForTheProjectorAndForPhones) {
+  const cli::ServeOptions options = started({"--class", "--address", "192.0.2.7"});
+  EXPECT_EQ(printed(options),
+            "Spindrift is ready: http://192.0.2.7:8080/\n"
+            "Projector: http://192.0.2.7:8080/?class#token=" +
+                options.operator_token + "\nPhones: http://192.0.2.7:8080/pad\n");
+  EXPECT_EQ(guestsOf({"--class"}), Role::kPlayer);
+  EXPECT_THAT(printed(started({"--class", "--public-url", "https://water.example/sea/"})),
+              AllOf(HasSubstr("Projector: http://localhost:8080/?class#token="),
+                    HasSubstr("Phones: https://water.example/sea/pad\n")));
+  EXPECT_THAT(printed(started({"--class", "--address", "127.0.0.1"})), HasSubstr("Phones cannot reach"));
+  set("SPINDRIFT_TOKENS", "operator operator-operator-1");
+  EXPECT_EQ(started({"--class"}).operator_token, "");
+  EXPECT_EQ(guestsOf({"--class"}), Role::kPlayer) << "also beside tokens";
+  EXPECT_THAT(printed(started({"--class"})), HasSubstr("Projector: http://localhost:8080/?class\n"));
+}
+
+TEST_F(OperatorLink, WhatIsGivenReplacesTheDefaultsOfAClass) {
+  const cli::ServeOptions plain = started({"--class"});
+  EXPECT_EQ(plain.scene, "regatta");
+  EXPECT_EQ(plain.address, "0.0.0.0");
+  EXPECT_EQ(plain.address_session_share, 1.0);
+  EXPECT_EQ(plain.max_session_count, 512U);
+  const cli::ServeOptions given = started({"--class", "--scene", "harbor", "--guests", "viewer"});
+  EXPECT_EQ(given.scene, "harbor");
+  EXPECT_EQ(given.guest_role, "viewer");
+  EXPECT_NE(CommandLine({"--public-url", "ftp://here"}).error, "");
 }
 
 TEST_F(OperatorLink, ConfiguredRolesReplaceIt) {

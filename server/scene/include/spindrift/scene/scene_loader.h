@@ -23,6 +23,8 @@ inline constexpr int kSceneBeachMaxCount = 4;
 /// Maximum number of wave-makers (one per side), and of rows of a series of elevations.
 inline constexpr int kSceneWaveMakerMaxCount = 4;
 inline constexpr int kSceneSeriesRowMaxCount = 16384;
+/// Maximum number of marks of a course.
+inline constexpr int kSceneMarkMaxCount = 16;
 /// Maximum number of shapes of a bed.
 inline constexpr int kSceneBedShapeMaxCount = 64;
 

@@ -35,6 +35,8 @@ class RestApi {
   void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
   /// Makes the server part of a cluster; call it before the network starts.
   void join(const ClusterHooks& cluster) { cluster_ = cluster; }
+  /// Sets what GET /api/v1/join answers; call it before the network starts.
+  void tellPadUrls(std::function<std::vector<std::string>()> pad_urls) { pad_urls_ = std::move(pad_urls); }
   /// Makes /readyz answer 503 from now on, and opens no more rooms. Thread-safe.
   void drain() { is_draining_ = true; }
   /// Answers any request that net passes to the application. `decided`: what the client may, where the process to which
@@ -80,6 +82,7 @@ class RestApi {
   std::atomic<bool> is_draining_{false};
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   ClusterHooks cluster_;                      ///< set before any request arrives
+  std::function<std::vector<std::string>()> pad_urls_;
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
