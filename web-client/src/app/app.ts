@@ -6,14 +6,17 @@ import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
+import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
 import type { MadeRenderer } from "../scene/drawing/renderer";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
+import { CourseTags } from "../ui/course_tags";
 import { addDetailRow } from "../ui/detail_row";
 import { byId, setText } from "../ui/dom";
 import { DrawingRow } from "../ui/drawing_row";
 import { EffectsPanel } from "../ui/effects_panel";
+import { nextMarkOf } from "../ui/game_texts";
 import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
 import { kHoldLabel } from "../ui/hold_sender";
@@ -38,6 +41,7 @@ import { nowS } from "./picture_clock";
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
 
+const kNextMarkColor = "#ffe14d";
 const kNotNowText = "The lesson does not allow this at present.";
 
 /** Labels of commands that are sent many times per second, whose answers are not reported unless they are refusals. */
@@ -73,6 +77,7 @@ export class App {
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
+  private readonly marks = new CourseTags(byId("view"), markTopM);
   readonly fingers = new FingerTags(byId("view"));
   private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
@@ -136,7 +141,11 @@ export class App {
     this.qualityRow.show(this.display.quality);
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
-    this.lessons.watch(() => this.showRole());
+    this.lessons.watch(() => {
+      this.display.scene.setNextMark(this.nextMark);
+      this.tags.setPlaces(this.lessons.game);
+      this.showRole();
+    });
   }
 
   get role(): RoleName {
@@ -254,6 +263,7 @@ export class App {
     this.room.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
+    this.marks.enter(greeting.course?.marks ?? []);
     this.fingers.clear();
     this.looks.enter(greeting);
     // Not before: the connection exists from now on.
@@ -265,6 +275,11 @@ export class App {
     // The card's height has changed with the text.
     this.display.resize();
     if (greeting.hasBed) this.ground.ask(greeting.room);
+  }
+
+  /** Index of the mark that one's own boat has to round. */
+  private get nextMark(): number | undefined {
+    return nextMarkOf(this.lessons.game, this.lessons.ownId);
   }
 
   /** The server takes effects from this visitor now. */
@@ -288,7 +303,10 @@ export class App {
     const { scene, views, covered } = this.display;
     this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
     const own = this.mayDraw ? this.outline() : undefined;
-    this.preview.update([...(own ? [own] : []), ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
+    const mark = this.nextMark === undefined ? undefined : this.entered?.course?.marks[this.nextMark];
+    const next: Outline[] = mark ? [{ kind: "disc", at: mark, radiusM: mark.radiusM, color: kNextMarkColor }] : [];
+    this.marks.update(scene.camera, this.nextMark, (xM, zM) => scene.heightAtM(xM, zM), covered);
+    this.preview.update([...(own ? [own] : []), ...next, ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 
