@@ -2,7 +2,9 @@ import { describe, expect, it } from "vitest";
 
 import { beginDirecting, direct, wideFraming, type DirectorState, type Sight } from "../src/class/director";
 import { standingOut } from "../src/class/splash_sense";
+import { spokenAddress, withRoom } from "../src/class/join_card";
 import type { GameInfo } from "../src/codec/game";
+import { floatPlaces } from "../src/scene/boats/course_marks";
 
 const calm: Sight = { nowS: 0, sideM: 64, widthM: 48, boats: [], racerBoatIds: [], fingers: [], movedFloaters: [], splash: undefined, game: undefined, ball: undefined, marks: [] };
 const game = (change: Partial<GameInfo>): GameInfo => ({ kind: "race", phase: "running", beginsS: 0, endsS: 0, lapsCount: 2, goalsCount: 3, racers: [], redGoalsCount: 0, blueGoalsCount: 0, winnerPersonId: 0, winnerTeam: undefined, ballFloaterId: 0, ...change });
@@ -100,8 +102,26 @@ describe("waves that stand out", () => {
     const still = new Int16Array(1600);
     expect(standingOut(frame(still))).toBeUndefined();
     still[40 * 30 + 10] = 400;
-    expect(standingOut(frame(still))).toEqual({ xM: -4.75, zM: 5.25 });
+    expect(standingOut(frame(still))).toEqual({ xM: -4.75, zM: expect.closeTo(5.25, 9) });
     expect(standingOut(frame(still.map((_, n) => (n % 3 === 0 ? 300 : -200))))).toBeUndefined();
     expect(standingOut(frame(new Int16Array(1600).fill(0).map((_, n) => (n === 5 ? 3 : 0))))).toBeUndefined();
+  });
+});
+
+describe("the address of the pads", () => {
+  it("leads to the room that the projector shows, and is short to type", () => {
+    expect(withRoom("http://192.168.1.20:8080/pad", "?class")).toBe("http://192.168.1.20:8080/pad");
+    expect(withRoom("http://192.168.1.20:8080/pad", "?class&room=a b")).toBe("http://192.168.1.20:8080/pad?room=a+b");
+    expect(spokenAddress("http://192.168.1.20:8080/pad")).toBe("192.168.1.20:8080/pad");
+    expect(spokenAddress("https://water.example.org/pad/")).toBe("https://water.example.org/pad");
+  });
+});
+
+describe("a goal's floats", () => {
+  it("lie on its frame, each corner once", () => {
+    const places = floatPlaces({ xM: 10, zM: -2, lengthM: 3, widthM: 12 });
+    for (const { xM, zM } of places) expect(Math.max(Math.abs(xM - 10) / 1.5, Math.abs(zM + 2) / 6)).toBeCloseTo(1, 9);
+    expect(new Set(places.map(({ xM, zM }) => `${xM.toFixed(6)} ${zM.toFixed(6)}`)).size).toBe(places.length);
+    expect(places.length).toBeLessThanOrEqual(36);
   });
 });
