@@ -151,8 +151,14 @@ describe("the paint of a boat", () => {
     expect(paintOf("#80FF00")![0]).toBeCloseTo(0.8 * 0.2158, 3);
     expect(paintOf("red")).toBeUndefined();
     expect(paintOf("#12345")).toBeUndefined();
-    const side = (color: string | undefined) => liveryOf("launch", 3, color).side;
+    const side = (color: string) => liveryOf("launch", 3, { owner: color, team: undefined }).side;
     expect(side("#e4572e")).toEqual(paintOf("#e4572e"));
-    expect(side("no colour")).toEqual(side(undefined));
+    expect(side("no colour")).toEqual(liveryOf("launch", 3, undefined).side);
+  });
+
+  it("of a team has the team's colour at its sides, and the owner's on roof and stripe", () => {
+    const { side, roof, stripe } = liveryOf("launch", 3, { owner: "#e4572e", team: "#2667e0" });
+    expect(side).toEqual(paintOf("#2667e0"));
+    expect([roof, stripe]).toEqual([paintOf("#e4572e"), paintOf("#e4572e")]);
   });
 });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { parse } from "../src/codec/parse";
-import { Role } from "../src/gen/spindrift/v1/wire_pb";
+import { Role, Team } from "../src/gen/spindrift/v1/wire_pb";
 import { IdentityStore, type StorageLike } from "../src/net/identity_store";
 import { Rig } from "./fakes";
 import { encode } from "./wire";
@@ -15,11 +15,11 @@ function storage(): StorageLike & { map: Map<string, string> } {
 
 describe("people in messages", () => {
   it("are read with CSS colours", () => {
-    const person = { personId: 3, name: "Ada", colorRgb: 0x0a0b0c, role: Role.OPERATOR, boatIds: [2, 5], away: true };
+    const person = { personId: 3, name: "Ada", colorRgb: 0x0a0b0c, role: Role.OPERATOR, boatIds: [2, 5], away: true, team: Team.BLUE, muted: true };
     expect(parse(encode({ case: "people", value: { people: [person], unlistedCount: 930 } }))).toEqual({
       kind: "people",
       unlistedCount: 930,
-      people: [{ personId: 3, name: "Ada", color: "#0a0b0c", role: "operator", boatIds: [2, 5], away: true }],
+      people: [{ personId: 3, name: "Ada", color: "#0a0b0c", role: "operator", boatIds: [2, 5], away: true, team: "blue", muted: true }],
     });
   });
 

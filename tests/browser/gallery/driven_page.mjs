@@ -64,7 +64,7 @@ export class DrivenPage {
     await page.setViewportSize({ width: kSmallWidthPx, height: Math.round((kSmallWidthPx * size.height) / size.width) });
     await page.goto(`${this.#server.url}?pictures=stepped&${query}`, { timeout: kWaitMs });
     await page.addStyleTag({ content: kBare });
-    await page.waitForFunction(() => window.spindrift.stats().connectionState === "live", undefined, { timeout: kWaitMs, polling: 20 });
+    await page.waitForFunction(() => window.spindrift?.stats().connectionState === "live", undefined, { timeout: kWaitMs, polling: 20 });
     await page.evaluate(() => {
       window.command = async (action) => {
         const answer = await fetch("/api/v1/rooms/main/commands", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(action) });

@@ -2,6 +2,18 @@
 
 const kTokenField = "token=";
 
+type PageAddress = Pick<Location, "pathname" | "search">;
+
+/** /pad, or ?pad where the server does not know that path. */
+export function isPadAddress({ pathname, search }: PageAddress): boolean {
+  return pathname.endsWith("/pad") || new URLSearchParams(search).has("pad");
+}
+
+/** ?class: the page is shown to a class by a projector. */
+export function isProjectorAddress({ search }: Pick<PageAddress, "search">): boolean {
+  return new URLSearchParams(search).has("class");
+}
+
 /** `value` undefined: the default, which the address leaves out. */
 export function setAddressParameter(name: string, value: string | undefined): void {
   const url = new URL(location.href);

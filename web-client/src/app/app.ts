@@ -5,18 +5,22 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
-import { socketUrl, WaterClient } from "../net/water_client";
+import { openWaterClient, socketUrl } from "../net/water_client";
+import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
 import type { MadeRenderer } from "../scene/drawing/renderer";
 import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
+import { CourseTags } from "../ui/course_tags";
 import { addDetailRow } from "../ui/detail_row";
 import { byId, setText } from "../ui/dom";
 import { DrawingRow } from "../ui/drawing_row";
 import { EffectsPanel } from "../ui/effects_panel";
+import { nextMarkOf } from "../ui/game_texts";
 import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
 import { kHoldLabel } from "../ui/hold_sender";
+import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
 import { addLightRows } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
@@ -39,6 +43,9 @@ import { SoundControls } from "./sound_controls";
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
 
+const kNextMarkColor = "#ffe14d";
+const kNotNowText = "The lesson does not allow this at present.";
+
 /** Labels of commands that are sent many times per second, whose answers are not reported unless they are refusals. */
 const kQuietLabels = [kHelmLabel, kStrokeLabel, kHoldLabel];
 
@@ -49,7 +56,7 @@ interface AnswerListener {
 }
 
 export class App {
-  readonly client = new WaterClient(new Worker(new URL("../net/worker.ts", import.meta.url), { type: "module" }), this.handlers());
+  readonly client = openWaterClient(this.handlers());
   readonly commands = new CommandSender(this.client);
   readonly display: Display;
   readonly effects = new EffectsPanel(byId("effects"));
@@ -61,9 +68,9 @@ export class App {
   readonly sound: SoundControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
+  /** Its role is "viewer" until the server's Welcome, so that no control is enabled before. */
+  readonly lessons = new LessonState();
   state: ConnectionState = { name: "connecting" };
-  /** "viewer" until the server's Welcome, so that no control is enabled before. */
-  role: RoleName = "viewer";
   link: LinkStats | undefined;
   supersededCount = 0;
   simTimeS = 0;
@@ -74,7 +81,8 @@ export class App {
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
-  private readonly fingers = new FingerTags(byId("view"));
+  private readonly marks = new CourseTags(byId("view"), markTopM);
+  readonly fingers = new FingerTags(byId("view"));
   private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
@@ -138,6 +146,15 @@ export class App {
     this.qualityRow.show(this.display.quality);
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
+    this.lessons.watch(() => {
+      this.display.scene.setNextMark(this.nextMark);
+      this.tags.setPlaces(this.lessons.game);
+      this.showRole();
+    });
+  }
+
+  get role(): RoleName {
+    return this.lessons.role;
   }
 
   /** `isDrawing`: at display rate. */
@@ -151,6 +168,11 @@ export class App {
   keepIdentity(withResumeKey: boolean): void {
     if (withResumeKey) this.identities.leave(this.identity);
     else this.identities.save(this.identity);
+  }
+
+  /** Shows a line about something that does not work as wanted. */
+  warn(text: string): void {
+    this.toast.show(text, "warn");
   }
 
   private handlers(): PageEventHandlers {
@@ -167,10 +189,9 @@ export class App {
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => {
         this.identity = { ...this.identity, resumeKey: welcome.resumeKey };
-        this.role = welcome.role;
         this.people.welcomed(welcome);
         this.boats.welcomed(welcome.personId, welcome.resumed);
-        this.showRole();
+        this.lessons.set({ role: welcome.role, ownId: welcome.personId });
       },
       frame: ({ frame }) => {
         this.simTimeS = frame.timeS;
@@ -193,7 +214,9 @@ export class App {
       reject: ({ reason, message, ...reject }) => {
         const commandId = Number(reject.commandId);
         for (const listener of this.answerListeners) listener.reject(commandId, message, reason);
-        this.toast.show(`${this.commands.takeLabel(commandId)}: ${message}`, "bad");
+        const label = this.commands.takeLabel(commandId);
+        // What the lesson forbids is a rule, no failure of a command.
+        this.toast.show(reason === "NOT_NOW" ? message || kNotNowText : `${label}: ${message}`, "bad");
       },
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
@@ -207,7 +230,10 @@ export class App {
         this.tags.setPeople(people);
         this.fingers.setPeople(people);
         this.display.scene.setPeople(people);
+        this.lessons.set({ people });
       },
+      lesson: ({ lesson }) => this.lessons.set({ lesson }),
+      game: ({ game }) => this.lessons.set({ game }),
       strokes: ({ fingers }) => {
         this.fingers.take(fingers);
         this.sound.setFingers(fingers);
@@ -233,6 +259,7 @@ export class App {
 
   private enter(greeting: GreetingInfo): void {
     if (this.entered?.room !== greeting.room || this.entered.sceneName !== greeting.sceneName) this.entering();
+    if (this.entered?.room !== greeting.room) this.lessons.enter();
     this.entered = greeting;
     this.display.enter(greeting);
     this.effects.enter(greeting);
@@ -245,6 +272,7 @@ export class App {
     this.room.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
+    this.marks.enter(greeting.course?.marks ?? []);
     this.fingers.clear();
     this.looks.enter(greeting);
     this.sound.enter(greeting);
@@ -257,6 +285,11 @@ export class App {
     // The card's height has changed with the text.
     this.display.resize();
     if (greeting.hasBed) this.ground.ask(greeting.room);
+  }
+
+  /** Index of the mark that one's own boat has to round. */
+  private get nextMark(): number | undefined {
+    return nextMarkOf(this.lessons.game, this.lessons.ownId);
   }
 
   /** The server takes effects from this visitor now. */
@@ -280,7 +313,10 @@ export class App {
     const { scene, views, covered } = this.display;
     this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
     const own = this.mayDraw ? this.outline() : undefined;
-    this.preview.update([...(own ? [own] : []), ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
+    const mark = this.nextMark === undefined ? undefined : this.entered?.course?.marks[this.nextMark];
+    const next: Outline[] = mark ? [{ kind: "disc", at: mark, radiusM: mark.radiusM, color: kNextMarkColor }] : [];
+    this.marks.update(scene.camera, this.nextMark, (xM, zM) => scene.heightAtM(xM, zM), covered);
+    this.preview.update([...(own ? [own] : []), ...next, ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 
@@ -288,11 +324,12 @@ export class App {
   private showRole(): void {
     const isPlayer = this.role !== "viewer";
     const isOperator = this.role === "operator";
-    this.effects.setEnabled(this.state.name === "live" && isPlayer);
+    const { lessons } = this;
+    this.effects.setEnabled(this.state.name === "live" && isPlayer, (effect) => lessons.whyNot(effect));
     this.drawing.setAllowed(this.mayDraw);
-    this.tools.setAllowed(this.mayDraw, isOperator, this.hasFloaters);
+    this.tools.setAllowed(this.mayDraw, isOperator, this.hasFloaters, (tool) => lessons.whyNot(lessonToolOf(tool)));
     this.floaterRows.setAllowed(this.hasFloaters, isOperator);
-    this.boats.setAllowed(isPlayer);
+    this.boats.setAllowed(isPlayer, isPlayer ? lessons.whyNot("boat") : undefined);
     this.room.setAllowed(isOperator);
     byId("parameters-box").hidden = !this.parameters.hasRows || !isOperator;
     byId("storm").hidden = !isOperator;

@@ -69,7 +69,7 @@ export class FloaterHands {
 
   /** Returns the object under a pointer that a press with this tool would hold. */
   under(pointer: PointerAt, tool: ToolName): Grip | undefined {
-    if (!this.app.hasFloaters || (tool !== "finger" && tool !== "float")) return undefined;
+    if (!this.app.hasFloaters || this.app.lessons.whyNot("float") !== undefined || (tool !== "finger" && tool !== "float")) return undefined;
     const pose = this.poseUnder(pointer, tool === "float");
     if (!pose) return undefined;
     const { floaterId, xM, yM, zM } = pose;

@@ -7,6 +7,9 @@ import { connectKeyboardTools, GamepadTools } from "./virtual_pointer";
 export function connectInput(app: App): void {
   const hands = new PointerHands(app);
   app.entering = () => hands.liftAll(true);
+  app.lessons.watch(() => {
+    if (app.lessons.whyNot(undefined) !== undefined) hands.liftAll();
+  });
   connectButtons(app);
   connectHelmKeys(app);
   connectKeyboardTools(app);

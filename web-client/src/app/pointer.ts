@@ -7,6 +7,7 @@ import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from
 import { floaterLabel } from "../ui/floater_rows";
 import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
 import { kTapMs, TapDetector, type PointerSample } from "../ui/tap";
+import { lessonToolOf } from "../ui/lesson_state";
 import type { Outline } from "../ui/tool_preview";
 import { heldRatio, kTapStrokeS, paddleWave, paddleWidthM, strokeSize, type StrokeSize, type Tool, type ToolScale, type WaterPlace } from "../ui/tools";
 import type { App } from "./app";
@@ -99,6 +100,8 @@ export class PointerHands {
     if (partner) return this.handOver(partner.down, event);
     const { tool } = app.tools;
     const grip = this.floaters.under(event, tool.name);
+    const reason = grip ? undefined : this.whyNot(tool);
+    if (reason !== undefined) return app.tools.explain(reason);
     const place = this.placeUnder(event) ?? grip?.at;
     if (!place || (isTouch && event.timeStamp - this.cameraTouchMs < kTogetherMs)) {
       if (isTouch) this.cameraTouchMs = event.timeStamp;
@@ -123,7 +126,8 @@ export class PointerHands {
     }
     event.stopPropagation();
     hand.last = event;
-    const coalesced = event.getCoalescedEvents();
+    // Browsers tell of them in secure contexts only.
+    const coalesced = event.getCoalescedEvents?.() ?? [];
     for (const each of coalesced.length > 0 ? coalesced : [event]) {
       const place = this.placeUnder(each);
       if (!place) continue;
@@ -173,6 +177,8 @@ export class PointerHands {
   }
 
   private tap(place: WaterPlace, tool: Tool, scale: ToolScale, by: PointerEvent): void {
+    const reason = this.whyNot(tool);
+    if (reason !== undefined) return this.app.tools.explain(reason);
     // The server tells a viewer why not.
     if (!this.app.mayDraw) return this.splash(place, undefined, by);
     const forS = kTapStrokeS[tool.name];
@@ -182,6 +188,11 @@ export class PointerHands {
     else if (tool.name === "throw") this.launch(this.tossTo(place), scale);
     else if (forS === undefined || !size) this.splash(place, tool.name === "splash" ? scale : undefined, by);
     else this.sender.stay(place, size, forS, scale.strengthRatio);
+  }
+
+  /** Returns why the lesson withholds a tool; undefined if it does not. */
+  private whyNot({ name }: Tool): string | undefined {
+    return this.app.lessons.whyNot(lessonToolOf(name));
   }
 
   private splash(place: WaterPlace, scale: ToolScale | undefined, by: PointerEvent): void {

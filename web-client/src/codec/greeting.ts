@@ -1,6 +1,7 @@
 // The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
+import { readCourse, type CourseInfo } from "./course";
 import { fidelityName, readFidelityLevels, type FidelityLevelInfo, type FidelityName } from "./fidelity";
 import type { GroundGrid } from "./ground";
 import { kLayerNames, kLayers, type LayerName } from "./layers";
@@ -95,6 +96,8 @@ export interface GreetingInfo {
   hasBoats: boolean;
   /** The scene allows objects in the water, and the server streams them. */
   hasFloaters: boolean;
+  /** For games; undefined without one. */
+  course: CourseInfo | undefined;
   obstacles: ObstacleInfo[];
   beaches: BeachInfo[];
   gauges: GaugeInfo[];
@@ -189,6 +192,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       isTwoWay: scene?.coupling?.mode === CouplingMode.TWO_WAY,
       hasBoats: scene?.boats !== undefined,
       hasFloaters: scene?.floaters !== undefined && greeting.layers.includes(kLayers.floaters),
+      course: scene?.course && readCourse(scene.course),
       obstacles: scene ? readObstacles(scene) : [],
       beaches: scene ? readBeaches(scene) : [],
       gauges: scene ? readGauges(scene) : [],

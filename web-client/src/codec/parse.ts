@@ -7,8 +7,10 @@ import { fromBinary } from "@bufbuild/protobuf";
 
 import { RejectReason, RoomEventKind, ServerMessageSchema, type Diagnostics, type Draining, type ServerMessage } from "../gen/spindrift/v1/wire_pb";
 import type { PackedFrame, PlainFrame } from "./frame_types";
+import { readGame } from "./game";
 import { readBoatList, readGreeting } from "./greeting";
 import { levelName } from "./layers";
+import { readLesson } from "./lesson";
 import { isMalformed, malformed, type Malformed } from "./malformed";
 import { parseFrame } from "./parse_frame";
 import { readPeople, readWelcome } from "./people";
@@ -36,6 +38,8 @@ const kReaders = {
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
   people: (people) => ({ people: readPeople(people), unlistedCount: people.unlistedCount }),
   strokes: (strokes) => readStrokes(strokes),
+  lesson: (lesson) => readLesson(lesson),
+  game: (game) => readGame(game),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
   draining: (draining) => readDraining(draining),
   pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),

@@ -5,7 +5,7 @@ import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 import type { PlainFrame } from "../codec/frame_types";
 import { FrameUnpacker } from "../codec/frame_unpacker";
 import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
-import { coarserLevel, kFinestLevel, kLayers, wireLevel, type LevelName } from "../codec/layers";
+import { coarserLevel, kFinestLevel, kLayerNames, kLayers, wireLevel, type LayerName, type LevelName } from "../codec/layers";
 import { parse, type DrainingInfo } from "../codec/parse";
 import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
@@ -54,6 +54,7 @@ export class Connection implements ConnectionCalls {
   private greeting: GreetingInfo | undefined;
   private visible = true;
   private frameRateMaxHz = 60;
+  private layers: readonly LayerName[] = kLayerNames;
   private exactParticles = false;
   private readonly pending = new PendingCommands();
   private readonly meter: LinkMeter;
@@ -110,6 +111,11 @@ export class Connection implements ConnectionCalls {
   setExactParticles(exact: boolean): void {
     if (exact === this.exactParticles) return;
     this.exactParticles = exact;
+    if (this.state.name === "live") this.subscribe();
+  }
+
+  setLayers(layers: readonly LayerName[]): void {
+    this.layers = layers;
     if (this.state.name === "live") this.subscribe();
   }
 
@@ -287,7 +293,8 @@ export class Connection implements ConnectionCalls {
     const level = wireLevel(this.detail === "auto" ? this.governor.level : this.detail);
     for (const layer of this.greeting.layers) {
       const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
-      const maxRateHz = this.visible || layer === "diagnostics" ? rateHz : 0;
+      const isShown = this.layers.includes(layer) && (this.visible || layer === "diagnostics");
+      const maxRateHz = isShown ? rateHz : 0;
       this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: layer === "particles" && this.exactParticles ? Packing.PLAIN : Packing.PACKED, level, adapts } });
     }
   }

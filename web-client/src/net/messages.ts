@@ -86,6 +86,8 @@ export interface ConnectionCalls {
   setDetail(detail: DetailChoice): void;
   /** Particles in the plain packing: finer velocities and densities, and more bytes. */
   setExactParticles(exact: boolean): void;
+  /** The layers that the page shows, of those that the room has; all unless called. */
+  setLayers(layers: readonly LayerName[]): void;
   /** Frames of each layer per second, at most. */
   setFrameRate(maxHz: number): void;
   /** A hidden page gets no frames; showing it again subscribes to them again. */

@@ -1,6 +1,11 @@
 // The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
 import type { CommandAction, ConnectionCalls, Frame, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
 
+/** Starts the worker; the page calls it once. */
+export function openWaterClient(handlers: PageEventHandlers): WaterClient {
+  return new WaterClient(new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }), handlers);
+}
+
 export class WaterClient {
   private nextCommandId = 1;
 

@@ -7,6 +7,7 @@ import type { PersonInfo } from "../codec/people";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import { diveWater, type DiveWater } from "./camera/dive";
 import type { ViewedBox } from "./camera/framing";
+import type { BoatColors } from "./boats/livery";
 import { makeNoiseTexture } from "./drawing/noise_texture";
 import type { Pass, Picture } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
@@ -28,6 +29,8 @@ import { isIndoors, viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
 
+/** Colours of boats in teams. */
+const kTeamPaints = { red: "#e02b33", blue: "#2667e0" } as const;
 /** Room for waves above the water in a view, as a share of its side. */
 const kWaveRoom = 0.04;
 /** Sides of the square per near plane, and sides of the square at the far plane: behind the last cell of an open sea. */
@@ -56,7 +59,8 @@ export class WaterScene {
   /** Those of the above whose results are used, in the order in which they are drawn. */
   private passes: readonly Pass[] = [];
   private darknessShare = 0;
-  private ownerColors: ReadonlyMap<number, string> = new Map();
+  private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
+  private nextMark: number | undefined;
   private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
   /** Range of the elevations of the frame that was picked last. */
@@ -96,6 +100,7 @@ export class WaterScene {
     this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
     this.base = makeBase(greeting, this.tools);
     this.base.solids.setOwnerColors(this.ownerColors);
+    this.base.solids.setNextMark(this.nextMark);
     this.base.solids.darkness.value = this.darknessShare;
     this.makeWater();
     this.findFloor();
@@ -175,9 +180,16 @@ export class WaterScene {
     this.base?.solids.setBoats(boats);
   }
 
-  /** Paints boats in the colours of their owners. */
+  /** Highlights the mark of the course that one's own boat has to round; undefined: none. */
+  setNextMark(next: number | undefined): void {
+    this.nextMark = next;
+    this.base?.solids.setNextMark(next);
+  }
+
+  /** Paints boats in the colours of their owners and teams. */
   setPeople(people: readonly PersonInfo[]): void {
-    this.ownerColors = new Map(people.flatMap(({ color, boatIds }) => boatIds.map((boatId): [number, string] => [boatId, color])));
+    const colorsOf = ({ color: owner, team }: PersonInfo): BoatColors => ({ owner, team: team && kTeamPaints[team] });
+    this.ownerColors = new Map(people.flatMap((person) => person.boatIds.map((boatId): [number, BoatColors] => [boatId, colorsOf(person)])));
     this.base?.solids.setOwnerColors(this.ownerColors);
   }
 

@@ -39,6 +39,9 @@ export class BoatPanel {
   private takeBoatId = 0;
   private isLive = false;
   private isAllowed = false;
+  /** Why the lesson withholds boats. */
+  private reason: string | undefined;
+  private readonly reasonLine = make("p", { class: "hint", "data-testid": "no-boats", hidden: "" });
   private myPersonId = 0;
   private owners = new Map<number, number>();
   private lastS = 0;
@@ -61,7 +64,7 @@ export class BoatPanel {
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kHelmEveryMs);
     this.mine = new SelectRow("my-boat", "My boat", "The boat that you steer and that the boat view follows.", (value) => this.request(Number(value)));
-    byId("my-boat-row").append(this.mine.element);
+    byId("my-boat-row").append(this.reasonLine, this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());
     for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
       const key = button.dataset["helm"] as HelmKey;
@@ -105,9 +108,12 @@ export class BoatPanel {
     this.refresh();
   }
 
-  /** `isAllowed`: the role of this page may steer boats. */
-  setAllowed(isAllowed: boolean): void {
+  /** `isAllowed`: the role of this page may steer boats; `reason`: why the lesson withholds them. */
+  setAllowed(isAllowed: boolean, reason: string | undefined): void {
     this.isAllowed = isAllowed;
+    this.reason = reason;
+    this.reasonLine.textContent = reason ?? "";
+    this.reasonLine.hidden = reason === undefined;
     this.refresh();
   }
 
@@ -212,13 +218,18 @@ export class BoatPanel {
     if (!this.greeting || !this.limits) return;
     const boat = boatOfLength(this.lengthM);
     const { draughtM, ...hull } = boat;
+    // A course has a grid at its start.
+    if (this.greeting.course) {
+      this.spawnId = this.send({ case: "spawnBoat", value: { boat: hull } }, "New boat");
+      return;
+    }
     const others = this.boats.flatMap(({ boatId }) => this.poseOf(boatId) ?? []).map(({ xM, zM }) => ({ xM, zM }));
     const place = spawnPlace(this.greeting, boat.lengthM, draughtM, others);
     this.spawnId = this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, "New boat");
   }
 
   private order(): void {
-    if (!this.mineId || !this.isLive) return;
+    if (!this.mineId || !this.isLive || this.reason !== undefined) return;
     this.orders.offer({ boatId: this.mineId, throttleRatio: this.helm.throttle, rudderRatio: this.helm.rudder });
   }
 
@@ -252,7 +263,7 @@ export class BoatPanel {
     const open = this.boats.filter(({ boatId }) => boatId === this.mineId || [undefined, this.myPersonId].includes(this.owners.get(boatId)));
     const choices = [{ value: "0", label: open.length ? "none" : "no free boat" }, ...open.map(({ boatId, lengthM }) => ({ value: String(boatId), label: `Boat ${boatId} (${lengthM.toFixed(1)} m)${this.owners.has(boatId) || boatId === this.mineId ? "" : ", free"}` }))];
     this.mine.setChoices(choices, String(this.mineId));
-    const isOn = this.isLive && this.isAllowed;
+    const isOn = this.isLive && this.isAllowed && this.reason === undefined;
     const hasMine = isOn && this.mineId !== 0;
     this.mine.disabled = !isOn || open.length === 0;
     this.spawn.disabled = !isOn;

@@ -2,6 +2,7 @@
 // readers: the list of people says the same.
 import { Matrix4, type PerspectiveCamera } from "three";
 
+import type { GameInfo } from "../codec/game";
 import type { BoatDetail } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { BodyPose } from "../scene/frames/bodies";
@@ -23,6 +24,8 @@ export class BoatTags {
   private readonly element = make("div", { class: "boat-tags", "aria-hidden": "true", "data-testid": "boat-tags" });
   private readonly labels = new Map<number, HTMLElement>();
   private owners = new Map<number, PersonInfo>();
+  /** Places in a race, by person. */
+  private places = new Map<number, number>();
   private lengthsM = new Map<number, number>();
   private readonly seen = new Matrix4();
 
@@ -33,6 +36,11 @@ export class BoatTags {
 
   setPeople(people: readonly PersonInfo[]): void {
     this.owners = new Map(people.flatMap((person) => person.boatIds.map((boatId): [number, PersonInfo] => [boatId, person])));
+  }
+
+  /** In a race a name has its place before it. */
+  setPlaces(game: GameInfo | undefined): void {
+    this.places = new Map(game?.kind === "race" && game.phase !== "countdown" ? game.racers.map(({ personId }, n): [number, number] => [personId, n + 1]) : []);
   }
 
   setBoats(boats: readonly BoatDetail[]): void {
@@ -59,7 +67,8 @@ export class BoatTags {
   }
 
   private show(label: HTMLElement, person: PersonInfo, { xPx, yPx }: TagPlace, order: number): void {
-    setText(label, person.name);
+    const at = this.places.get(person.personId);
+    setText(label, at === undefined ? person.name : `${at}. ${person.name}`);
     label.classList.toggle("away", person.away);
     label.style.setProperty("--owner", person.color);
     label.style.zIndex = String(kTagsMax - order);

@@ -84,6 +84,11 @@ export function boatOfLength(lengthM: number): { lengthM: number; beamM: number;
   return { lengthM, beamM, heightM, densityRatio: kBoatShape.density, draughtM: kBoatShape.density * heightM };
 }
 
+/** The range of a message's field, as its options say. */
+export function fieldRange(field: DescField): EffectRange {
+  return range(field, Infinity);
+}
+
 export function speedRange(): EffectRange {
   return range(SetSpeedSchema.field.speed, Infinity);
 }

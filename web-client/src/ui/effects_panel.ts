@@ -36,7 +36,6 @@ export class EffectsPanel {
   private limits: EffectLimits | undefined;
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
-  private readonly buttons = ["splash", "wave"].map((id) => byId<HTMLButtonElement>(id));
   private readonly side = new SelectRow("wave-side", "Wave from", "Side at which the wave starts. The open side is the one with the deepest water.", () => this.showDirection());
   private readonly shape = new SelectRow("wave-shape", "Wave shape", "Breaking: a steep front. Swell: a symmetric crest.", () => {});
 
@@ -79,8 +78,13 @@ export class EffectsPanel {
     return this.values !== undefined;
   }
 
-  setEnabled(isEnabled: boolean): void {
-    for (const button of this.buttons) button.disabled = !isEnabled || !this.available;
+  /** `whyNot`: why the lesson withholds an effect. */
+  setEnabled(isEnabled: boolean, whyNot: (effect: "splash" | "wave") => string | undefined): void {
+    for (const effect of ["splash", "wave"] as const) {
+      const button = byId<HTMLButtonElement>(effect);
+      button.title = whyNot(effect) ?? "";
+      button.disabled = !isEnabled || !this.available || button.title !== "";
+    }
   }
 
   /** `scale`: over what the sliders say. */

@@ -40,6 +40,11 @@ export class FingerTags {
     this.fingers = fingers;
   }
 
+  /** Those that the server named last. */
+  get list(): readonly FingerInfo[] {
+    return this.fingers;
+  }
+
   clear(): void {
     this.fingers = [];
   }

@@ -1,4 +1,5 @@
-// The row of tools at the edge of the water, the line that says what the chosen one does, and its sliders. Keys 1 to 7 choose, too.
+// The row of tools at the edge of the water, the line that says what the chosen one does, and its sliders. Keys 1 to 7 choose, too. A tool
+// that the lesson does not hand out says so when it is chosen.
 import { byId, isTyping, make, setText } from "./dom";
 import { keepChoice, keptChoice } from "./kept";
 import { SliderRow } from "./slider_row";
@@ -22,6 +23,7 @@ export class ToolBar {
   private hintTimer = 0;
   private isGreeted = false;
   private hasFloaters = false;
+  private whyNot: (name: ToolName) => string | undefined = () => undefined;
 
   /** `bar`: where the buttons go; `rows`: the sliders. */
   constructor(
@@ -31,8 +33,8 @@ export class ToolBar {
     /** Called with the tool that is chosen, or undefined while no tool can be chosen. */
     private readonly changed: (name: ToolName | undefined) => void,
   ) {
-    for (const [k, { name, label, does }] of kTools.entries()) {
-      const button = make("button", { type: "button", "data-testid": `tool-${name}`, title: `${does} (key ${k + 1})`, class: "glass" }, [label]);
+    for (const { name, label } of kTools) {
+      const button = make("button", { type: "button", "data-testid": `tool-${name}`, class: "glass" }, [label]);
       button.addEventListener("click", () => this.choose(name, true));
       this.buttons.set(name, button);
       bar.append(button);
@@ -55,13 +57,22 @@ export class ToolBar {
     return this.scales.get(this.current.name)!;
   }
 
-  /** `mayDraw`: there is water that this visitor may change; `hasFloaters`: and objects in it. */
-  setAllowed(mayDraw: boolean, isOperator: boolean, hasFloaters: boolean): void {
+  /** `mayDraw`: there is water that this visitor may change; `hasFloaters`: and objects in it. `whyNot`: why the lesson withholds a tool. */
+  setAllowed(mayDraw: boolean, isOperator: boolean, hasFloaters: boolean, whyNot: (name: ToolName) => string | undefined): void {
     this.hasFloaters = hasFloaters;
+    this.whyNot = whyNot;
     this.bar.hidden = !mayDraw;
-    const isBarred = ({ isOperators, needsFloaters }: Tool): boolean => (isOperators === true && !isOperator) || (needsFloaters === true && !hasFloaters);
-    for (const tool of kTools) this.buttons.get(tool.name)!.hidden = isBarred(tool);
-    if (mayDraw && isBarred(this.current)) this.choose("finger", false);
+    const isAbsent = ({ isOperators, needsFloaters }: Tool): boolean => (isOperators === true && !isOperator) || (needsFloaters === true && !hasFloaters);
+    for (const tool of kTools) {
+      const button = this.buttons.get(tool.name)!;
+      const reason = whyNot(tool.name);
+      button.hidden = isAbsent(tool);
+      // A disabled button could not say why.
+      button.setAttribute("aria-disabled", String(reason !== undefined));
+      button.title = reason ?? titleOf(tool);
+    }
+    const isUseless = (tool: Tool): boolean => isAbsent(tool) || whyNot(tool.name) !== undefined;
+    if (mayDraw && isUseless(this.current)) this.choose((kTools.find((tool) => !isUseless(tool)) ?? kTools[0]!).name, false);
     this.showRows();
     if (!mayDraw) this.hint.hidden = true;
     else if (!this.isGreeted) this.greet();
@@ -69,7 +80,7 @@ export class ToolBar {
 
   /** Chooses a tool so many places further in the row, among those that may be used. */
   step(count: number): void {
-    const names = kTools.map(({ name }) => name).filter((name) => !this.buttons.get(name)!.hidden);
+    const names = kTools.map(({ name }) => name).filter((name) => !this.buttons.get(name)!.hidden && this.whyNot(name) === undefined);
     const at = names.indexOf(this.current.name);
     if (!this.bar.hidden) this.choose(names[(at + count + names.length) % names.length]!, true);
   }
@@ -89,6 +100,8 @@ export class ToolBar {
   }
 
   private choose(name: ToolName, isByUser: boolean): void {
+    const reason = isByUser ? this.whyNot(name) : undefined;
+    if (reason !== undefined) return this.explain(reason);
     this.current = kTools.find((tool) => tool.name === name)!;
     for (const [each, button] of this.buttons) button.setAttribute("aria-pressed", String(each === name));
     const { sizeRatio, strengthRatio } = this.scale;
@@ -116,4 +129,8 @@ export class ToolBar {
     this.isGreeted = true;
     if (keptChoice(kHintKey) === undefined) this.explain(`${this.does} ${this.viewTurns()}`);
   }
+}
+
+function titleOf(tool: Tool): string {
+  return `${tool.does} (key ${kTools.indexOf(tool) + 1})`;
 }

@@ -5,7 +5,7 @@ import type { BoatDetail } from "../../codec/greeting";
 import { MeshBuilder, type Point } from "../meshes/mesh_builder";
 import { addFittings, launchSoleM, type BoatLamp, type Detail } from "./fittings";
 import { HullLines, kLowestAt } from "./lines";
-import { liveryOf, type Livery } from "./livery";
+import { liveryOf, type BoatColors, type Livery } from "./livery";
 import { addInside, addOutside, mirrored, stationsOf, type Floor } from "./shell";
 
 /** Stations along the hull, and rows of its bottom. */
@@ -41,10 +41,10 @@ export function addShell(builder: MeshBuilder, lines: HullLines, livery: Livery,
   return addInside(builder, lines, livery, stations, edge, floors);
 }
 
-/** `ownerColor`: CSS colour of the boat's owner; undefined without one. */
-export function makeBoatParts(boat: BoatDetail, ownerColor: string | undefined, plain: boolean): BoatParts {
+/** `colors` undefined: nobody owns the boat. */
+export function makeBoatParts(boat: BoatDetail, colors: BoatColors | undefined, plain: boolean): BoatParts {
   const lines = new HullLines(boat);
-  const livery = liveryOf(lines.kind, boat.boatId, ownerColor);
+  const livery = liveryOf(lines.kind, boat.boatId, colors);
   const builder = new MeshBuilder();
   const rim = addShell(builder, lines, livery, plain);
   const lamps = addFittings(builder, lines, livery, plain ? kDetails.plain : kDetails.full);

@@ -11,11 +11,12 @@ import { makeBoatParts } from "./boat_geometry";
 import { addBoatLamps } from "./boat_lamps";
 import type { HullPlan } from "./buoys";
 import type { BoatLamp } from "./fittings";
+import type { BoatColors } from "./livery";
 
 /** A boat as it is drawn. */
 interface DrawnBoat {
   detail: BoatDetail;
-  ownerColor: string | undefined;
+  colors: BoatColors | undefined;
   group: Group;
   geometries: BufferGeometry[];
   lamps: BoatLamp[];
@@ -25,7 +26,7 @@ export class Boats {
   private readonly boats = new Map<number, DrawnBoat>();
   private readonly poses: BodyPose[] = [];
   private posesCount = 0;
-  private ownerColors: ReadonlyMap<number, string> = new Map();
+  private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
 
   /** `material` is shared, and the caller disposes it; this object disposes `lidMaterial`, which writes no colour. */
   constructor(
@@ -42,11 +43,12 @@ export class Boats {
     for (const boat of boats) if (!this.boats.has(boat.boatId)) this.build(boat);
   }
 
-  /** Paints the boats in the CSS colours of their owners, by boat; the others in one of their own. */
-  setOwnerColors(colors: ReadonlyMap<number, string>): void {
+  /** Paints the boats in the colours of their owners and teams, by boat; the others in one of their own. */
+  setOwnerColors(colors: ReadonlyMap<number, BoatColors>): void {
     this.ownerColors = colors;
-    for (const { detail, ownerColor } of [...this.boats.values()]) {
-      if (ownerColor === colors.get(detail.boatId)) continue;
+    for (const { detail, colors: before } of [...this.boats.values()]) {
+      const now = colors.get(detail.boatId);
+      if (before?.owner === now?.owner && before?.team === now?.team) continue;
       this.drop(detail.boatId);
       this.build(detail);
     }
@@ -94,8 +96,8 @@ export class Boats {
   }
 
   private build(detail: BoatDetail): void {
-    const ownerColor = this.ownerColors.get(detail.boatId);
-    const { hull, lid, lamps } = makeBoatParts(detail, ownerColor, this.plain);
+    const colors = this.ownerColors.get(detail.boatId);
+    const { hull, lid, lamps } = makeBoatParts(detail, colors, this.plain);
     const group = new Group();
     // Pitch (bow up) turns about z, roll (starboard down) about x. Headings turn from +x toward +z, opposite to three's y rotation.
     group.rotation.order = "YZX";
@@ -105,7 +107,7 @@ export class Boats {
     const body = new Mesh(hull, this.material);
     castsShadow(body);
     group.add(body, cover);
-    this.boats.set(detail.boatId, { detail, ownerColor, group, geometries: [hull, lid], lamps });
+    this.boats.set(detail.boatId, { detail, colors, group, geometries: [hull, lid], lamps });
     this.scene.add(group);
   }
 

@@ -39,14 +39,22 @@ export function paintOf(cssColor: string): Paint | undefined {
   return [channel(0), channel(2), channel(4), 0];
 }
 
-/** `ownerColor`: CSS colour of the owner; undefined without one. */
-export function liveryOf(kind: HullKind, boatId: number, ownerColor: string | undefined): Livery {
-  const side = (ownerColor && paintOf(ownerColor)) || kSideColors[boatId % kSideColors.length]!;
+/** Of a boat with an owner, as CSS colours. */
+export interface BoatColors {
+  owner: string;
+  /** Of the owner's team; undefined without one. */
+  team: string | undefined;
+}
+
+/** `colors` undefined: nobody owns the boat. A team's boats have its colour all over but for stripe and roof, which are the owner's. */
+export function liveryOf(kind: HullKind, boatId: number, colors: BoatColors | undefined): Livery {
+  const own = (colors && paintOf(colors.owner)) || kSideColors[boatId % kSideColors.length]!;
+  const side = (colors?.team && paintOf(colors.team)) || own;
   const wood: Paint = [0.40, 0.22, 0.10, 0.3];
   const cream: Paint = [0.80, 0.78, 0.70, 0];
   const white: Paint = [0.86, 0.87, 0.85, 0];
-  const common = { bottom: [0.30, 0.05, 0.04, 0] as Paint, stripe: white, side, transom: side, roof: side };
-  if (kind === "dinghy") return { ...common, bottom: white, stripe: side, transom: wood, strake: wood, gunwale: wood, inside: [0.52, 0.33, 0.17, 0.3], deck: [0.46, 0.30, 0.16, 0.5], house: cream };
+  const common = { bottom: [0.30, 0.05, 0.04, 0] as Paint, stripe: side === own ? white : own, side, transom: side, roof: own };
+  if (kind === "dinghy") return { ...common, bottom: white, stripe: own, transom: side === own ? wood : own, strake: side === own ? wood : own, gunwale: wood, inside: [0.52, 0.33, 0.17, 0.3], deck: [0.46, 0.30, 0.16, 0.5], house: cream };
   if (kind === "launch") return { ...common, strake: wood, gunwale: wood, inside: white, deck: [0.55, 0.40, 0.24, 0.4], house: white };
   return { ...common, strake: kBlack, gunwale: kBlack, inside: [0.62, 0.62, 0.58, 0], deck: [0.24, 0.30, 0.27, 0.5], house: cream, roof: [0.72, 0.73, 0.70, 0] };
 }

@@ -116,6 +116,11 @@ export class CameraViews {
     this.controls.enabled = takes;
   }
 
+  /** What the camera looks at. */
+  get targetM(): Vector3 {
+    return this.controls.target.clone();
+  }
+
   get canDive(): boolean {
     return this.water !== undefined;
   }
@@ -167,6 +172,23 @@ export class CameraViews {
     camera.position.setFromSpherical(around).add(controls.target);
     this.movedByHand();
     this.hand.update();
+  }
+
+  /** Returns where the camera shows a disc of the water, from the direction of the view from above; one as large as the water is that view. */
+  frame({ xM, zM, radiusM }: { xM: number; zM: number; radiusM: number }): Placement {
+    const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
+    const whole = focusBox(this.extent, tangents);
+    const widthM = whole.widthM ?? whole.sideM;
+    const within = (atM: number, outM: number): number => clamp(atM, -Math.max(outM, 0), Math.max(outM, 0));
+    const box = {
+      ...whole,
+      sideM: Math.min(2 * radiusM, whole.sideM),
+      widthM: Math.min(2 * radiusM, widthM),
+      centreM: { x: (whole.centreM?.x ?? 0) + within(xM, this.extent.sideM / 2 - radiusM), z: (whole.centreM?.z ?? 0) + within(zM, (this.extent.widthM ?? this.extent.sideM) / 2 - radiusM) },
+      // The bed does not matter for a part of the water.
+      minYM: Math.max(whole.minYM, -0.25 * radiusM),
+    };
+    return frameBox(box, this.backwardOf("above", tangents), tangents);
   }
 
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
@@ -254,6 +276,15 @@ export class CameraViews {
     this.camera.updateProjectionMatrix();
   }
 
+  /** Direction from the water to the camera. */
+  private backwardOf(name: Exclude<FixedView, "below">, tangents: { across: number; up: number }): Vector3 {
+    const { extent } = this;
+    const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
+    if (name === "above") backward.y *= raisedBy(extent, tangents);
+    if (name === "side") backward.y *= extent.sideRaised ?? 1;
+    return backward;
+  }
+
   private placed(name: FixedView): Placement {
     const { extent, water } = this;
     if (name === "below" && water) {
@@ -262,10 +293,7 @@ export class CameraViews {
     }
     if (name === "below") return this.placed("above");
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
-    const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
-    if (name === "above") backward.y *= raisedBy(extent, tangents);
-    if (name === "side") backward.y *= extent.sideRaised ?? 1;
-    const placement = frameBox(focusBox(extent, tangents), backward, tangents);
+    const placement = frameBox(focusBox(extent, tangents), this.backwardOf(name, tangents), tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
     this.controls.minDistance = 0.25 * extent.sideM;
     this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);

@@ -6,6 +6,8 @@ import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarg
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import { Boats } from "../boats/boats";
 import { buoyPlaces, Buoys } from "../boats/buoys";
+import { CourseMarks } from "../boats/course_marks";
+import type { BoatColors } from "../boats/livery";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import { Floaters } from "../floaters/floaters";
@@ -48,6 +50,7 @@ export class SolidsPass implements Pass {
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
   private readonly floaters: Floaters | undefined;
+  private readonly course: CourseMarks | undefined;
 
   /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. */
   constructor(
@@ -90,6 +93,10 @@ export class SolidsPass implements Pass {
       this.buoys = new Buoys(buoys, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
       this.scene.add(this.buoys.group);
     }
+    if (field && greeting.course) {
+      this.course = new CourseMarks(greeting.course, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+      this.scene.add(this.course.group);
+    }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
     this.target = new WebGLRenderTarget(1, 1, { type: quality.texelType, samples });
     this.target.depthTexture = new DepthTexture(1, 1, UnsignedIntType);
@@ -104,8 +111,13 @@ export class SolidsPass implements Pass {
     this.boats?.setBoats(boats);
   }
 
-  /** `colors`: CSS colours of the owners, by boat. */
-  setOwnerColors(colors: ReadonlyMap<number, string>): void {
+  /** Highlights the mark of the course that one's own boat has to round; undefined: none. */
+  setNextMark(next: number | undefined): void {
+    this.course?.setNext(next);
+  }
+
+  /** `colors`: of the owners and their teams, by boat. */
+  setOwnerColors(colors: ReadonlyMap<number, BoatColors>): void {
     this.boats?.setOwnerColors(colors);
   }
 
@@ -154,6 +166,7 @@ export class SolidsPass implements Pass {
     this.boats?.dispose();
     this.buoys?.dispose();
     this.floaters?.dispose();
+    this.course?.dispose();
     this.surroundings.dispose();
     this.material.dispose();
     this.target.dispose();

@@ -1,0 +1,40 @@
+// The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class.
+import { makeRenderer } from "../scene/drawing/renderer";
+import { byId } from "../ui/dom";
+import { showNotice } from "../ui/notice";
+import { isProjectorAddress } from "./address";
+import { App } from "./app";
+import { connectInput } from "./input";
+import { wantsSteppedPictures } from "./stepped_pictures";
+import { installTestHooks } from "./test_hooks";
+
+export function openWaterPage(): void {
+  const made = makeRenderer(byId<HTMLCanvasElement>("view"));
+  if (!made) {
+    showNotice(
+      "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",
+    );
+    return;
+  }
+  const app = new App(made);
+  connectInput(app);
+  if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
+  openOperatorPanel(app);
+  const isStepped = wantsSteppedPictures(location.search);
+  installTestHooks(app, isStepped);
+  app.start(!isStepped);
+  // A link with a token was opened in this tab; without it the browser would load nothing.
+  window.addEventListener("hashchange", () => location.reload());
+}
+
+/** Adds the operator's controls of a lesson when the server says that this visitor is one. */
+function openOperatorPanel(app: App): void {
+  let isAsked = false;
+  app.lessons.watch(() => {
+    if (isAsked || app.role !== "operator") return;
+    isAsked = true;
+    void import("../class/operator_panel").then(({ OperatorPanel }) => {
+      byId("people-box").before(new OperatorPanel(app.lessons, () => app.entered, app.commands.send).element);
+    });
+  });
+}

@@ -1,0 +1,88 @@
+// How to join: the address of the pad in large letters, and as a QR code. Large while nobody is in, in a corner while people play.
+import { generate } from "lean-qr";
+
+import { make, setText } from "../ui/dom";
+
+/** Modules of the quiet zone that readers of QR codes need. */
+const kQuietModules = 4;
+
+/** Returns the addresses of the pad as this server's network has them. Throws an Error with a line for people. */
+export async function joinAddresses(search: string): Promise<string[]> {
+  const answer = await fetch("api/v1/join");
+  if (!answer.ok) throw new Error(`the server does not say how to join (${answer.status}); start it with --class`);
+  const { urls }: { urls?: unknown } = await answer.json();
+  if (!Array.isArray(urls) || urls.length === 0) throw new Error("the server has no address that phones could reach");
+  return urls.map((url) => withRoom(String(url), search));
+}
+
+/** Returns the address of the pad of the room that the projector shows. */
+export function withRoom(address: string, search: string): string {
+  const room = new URLSearchParams(search).get("room");
+  const url = new URL(address);
+  if (room) url.searchParams.set("room", room);
+  return url.href;
+}
+
+/** As one types it. */
+export function spokenAddress(address: string): string {
+  return address.replace(/^http:\/\//, "").replace(/\/$/, "");
+}
+
+export class JoinCard {
+  readonly element = make("button", { type: "button", class: "join-card", "data-testid": "join-card", title: "Larger or smaller; with several addresses, the next one", hidden: "" });
+  private readonly canvas = make("canvas", { "data-testid": "join-qr", role: "img", "aria-label": "QR code of the pad's address" });
+  private readonly address = make("strong", { "data-testid": "join-address" });
+  private readonly more = make("small");
+  private addresses: string[] = [];
+  private shown = 0;
+  /** By hand. */
+  private wantsLarge: boolean | undefined;
+  private isEmpty = true;
+
+  constructor() {
+    this.element.append(this.canvas, make("span", { class: "join-text" }, [make("span", {}, ["Scan, or open"]), this.address, this.more]));
+    this.element.addEventListener("click", () => this.clicked());
+  }
+
+  show(addresses: string[]): void {
+    this.addresses = addresses;
+    this.element.hidden = addresses.length === 0;
+    this.draw();
+  }
+
+  /** `isEmpty`: nobody plays yet. */
+  setPlayers(isEmpty: boolean): void {
+    if (isEmpty !== this.isEmpty) this.wantsLarge = undefined;
+    this.isEmpty = isEmpty;
+    this.refresh();
+  }
+
+  /** A click makes it large; while it is large, the next address, and small again after the last one. */
+  private clicked(): void {
+    if (!this.isLarge) this.wantsLarge = true;
+    else if (this.shown + 1 < this.addresses.length) ++this.shown;
+    else {
+      this.shown = 0;
+      this.wantsLarge = false;
+    }
+    this.draw();
+  }
+
+  private get isLarge(): boolean {
+    return this.wantsLarge ?? this.isEmpty;
+  }
+
+  private refresh(): void {
+    this.element.classList.toggle("large", this.isLarge);
+  }
+
+  private draw(): void {
+    const address = this.addresses[this.shown];
+    if (address === undefined) return;
+    generate(address).toCanvas(this.canvas, { pad: kQuietModules, on: [0, 0, 0], off: [255, 255, 255] });
+    this.canvas.dataset["address"] = address;
+    setText(this.address, spokenAddress(address));
+    setText(this.more, this.addresses.length > 1 ? `address ${this.shown + 1} of ${this.addresses.length}` : "");
+    this.refresh();
+  }
+}

@@ -1,0 +1,159 @@
+// The operator's controls of a lesson: who may do what, teams, games, and order in the water.
+import "./class.css";
+import type { GreetingInfo } from "../codec/greeting";
+import { kLessonToolNames, wireLesson, type LessonInfo, type LessonTool } from "../codec/lesson";
+import { wireTeam, type PersonInfo, type TeamName } from "../codec/people";
+import { GameKind, LessonSchema, StartGameSchema } from "../gen/spindrift/v1/wire_pb";
+import type { CommandAction } from "../net/messages";
+import { make, setText } from "../ui/dom";
+import { fieldRange } from "../ui/effect_limits";
+import { kTeamColors, kTeamLabels } from "../ui/game_texts";
+import { LatestSender } from "../ui/latest_sender";
+import { kLessonToolLabels, type LessonState } from "../ui/lesson_state";
+import { SliderRow } from "../ui/slider_row";
+import { playersOf } from "./boards";
+
+/** At most so often while the slider moves. */
+const kForceEveryMs = 250;
+/** A second press within this time confirms. */
+const kConfirmMs = 4000;
+/** The next team when a person's team is pressed. */
+const kNextTeam: Record<TeamName | "none", TeamName | undefined> = { none: "red", red: "blue", blue: undefined };
+
+function button(testId: string, label: string, pressed: () => void): HTMLButtonElement {
+  const element = make("button", { type: "button", "data-testid": testId }, [label]);
+  element.addEventListener("click", pressed);
+  return element;
+}
+
+/** A button that asks for a second press. */
+function confirmed(testId: string, label: string, question: string, pressed: () => void): HTMLButtonElement {
+  let timer: number | undefined;
+  const calm = (): void => {
+    window.clearTimeout(timer);
+    timer = undefined;
+    setText(element, label);
+  };
+  const element = button(testId, label, () => {
+    if (timer !== undefined) {
+      calm();
+      return pressed();
+    }
+    setText(element, question);
+    timer = window.setTimeout(calm, kConfirmMs);
+  });
+  return element;
+}
+
+export class OperatorPanel {
+  readonly element: HTMLDetailsElement;
+  private readonly freeze = button("lesson-freeze", "Pause pads", () => this.change({ frozen: !this.lessons.lesson.frozen }));
+  private readonly teams = button("lesson-teams", "Teams", () => this.change({ teams: !this.lessons.lesson.teams }));
+  private readonly tools = new Map<LessonTool, HTMLButtonElement>();
+  private readonly force: SliderRow;
+  private readonly forces: LatestSender<number>;
+  private readonly clear = button("lesson-clear", "Take out all objects", () => this.send({ case: "removeFloater", value: { all: true } }, "Take out all objects"));
+  private readonly race: HTMLElement;
+  private readonly ball: HTMLElement;
+  private readonly end = button("game-end", "End the game", () => this.send({ case: "endGame", value: {} }, "End of the game"));
+  private readonly noGames = make("p", { class: "hint" }, ["This scene has no course for a race and no goals; the scene “regatta” has both."]);
+  private readonly people = make("ul", { class: "lesson-people", "data-testid": "lesson-people", "aria-label": "Who plays" });
+  private readonly nobody = make("p", { class: "hint" }, ["Nobody plays yet."]);
+  private lapsCount: number;
+  private goalsCount: number;
+
+  constructor(
+    private readonly lessons: LessonState,
+    private readonly greeting: () => GreetingInfo | undefined,
+    private readonly send: (action: CommandAction, label: string) => number,
+  ) {
+    for (const tool of kLessonToolNames) this.tools.set(tool, button(`lesson-tool-${tool}`, kLessonToolLabels[tool], () => this.toggle(tool)));
+    this.forces = new LatestSender((forceRatio) => this.change({ forceRatio }), {
+      nowMs: () => performance.now(),
+      setTimer: (callback, ms) => window.setTimeout(callback, ms),
+      clearTimer: (timer) => window.clearTimeout(timer),
+    }, kForceEveryMs);
+    const percent = { ...fieldRange(LessonSchema.field.forceRatio), describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
+    this.force = new SliderRow("lesson-force", percent, 1, "Share of what a pupil's tool does to the water.", (ratio) => this.forces.offer(ratio));
+    const laps = fieldRange(StartGameSchema.field.lapsCount);
+    const goals = fieldRange(StartGameSchema.field.goalsCount);
+    this.lapsCount = laps.default;
+    this.goalsCount = goals.default;
+    const lapsRow = new SliderRow("game-laps", laps, laps.default, "Laps of a race.", (count) => (this.lapsCount = count));
+    const goalsRow = new SliderRow("game-goals", goals, goals.default, "Goals that win.", (count) => (this.goalsCount = count));
+    this.race = make("div", {}, [lapsRow.element, button("game-race", "Start a race", () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, "Race"))]);
+    this.ball = make("div", {}, [goalsRow.element, button("game-ball", "Start a ball game", () => this.send({ case: "startGame", value: { kind: GameKind.BALL, goalsCount: this.goalsCount } }, "Ball game"))]);
+    const reset = confirmed("lesson-reset", "Start the scene again", "Really? Press again", () => this.send({ case: "reset", value: {} }, "Reset"));
+    const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h3", {}, [name]), ...children]);
+    this.element = make("details", { id: "class-box", "data-testid": "class-box" }, [
+      make("summary", {}, ["Class"]),
+      make("div", { class: "buttons" }, [this.freeze, this.teams]),
+      group("Tools handed out", [make("div", { class: "lesson-tools" }, [...this.tools.values()]), this.force.element]),
+      group("Game", [this.race, this.ball, this.noGames, this.end]),
+      group("Water", [make("div", { class: "buttons" }, [this.clear, reset])]),
+      group("People", [this.nobody, this.people]),
+    ]);
+    lessons.watch(() => this.refresh());
+    this.refresh();
+  }
+
+  /** Shows what the scene has; after every greeting. */
+  refresh(): void {
+    const { lesson, game, people, role } = this.lessons;
+    this.element.hidden = role !== "operator";
+    setText(this.freeze, lesson.frozen ? "Let pads go on" : "Pause pads");
+    this.freeze.setAttribute("aria-pressed", String(lesson.frozen));
+    this.teams.setAttribute("aria-pressed", String(lesson.teams));
+    for (const [tool, element] of this.tools) element.setAttribute("aria-pressed", String(lesson.tools.includes(tool)));
+    if (!this.element.contains(document.activeElement) || document.activeElement?.id !== "slider-lesson-force") this.force.show(lesson.forceRatio, "");
+    const course = this.greeting()?.course;
+    this.race.hidden = !course?.marks.length;
+    this.ball.hidden = !course?.goals;
+    this.noGames.hidden = !this.race.hidden || !this.ball.hidden;
+    this.end.hidden = game === undefined;
+    this.clear.hidden = this.greeting()?.hasFloaters !== true;
+    const players = playersOf(people);
+    this.nobody.hidden = players.length > 0;
+    this.showPeople(players);
+  }
+
+  /** Keeps the buttons of people who stay: one may have the focus. */
+  private showPeople(players: readonly PersonInfo[]): void {
+    const rows = new Map([...this.people.children].map((row) => [(row as HTMLElement).dataset["person"], row as HTMLElement]));
+    this.people.replaceChildren(...players.map((person) => this.rowOf(person, rows.get(String(person.personId)))));
+  }
+
+  private rowOf(person: PersonInfo, known: HTMLElement | undefined): HTMLElement {
+    const row = known ?? this.makeRow(person.personId);
+    const [swatch, name, team, mute] = [...row.children] as [HTMLElement, HTMLElement, HTMLElement, HTMLElement];
+    swatch.style.background = person.color;
+    setText(name, person.name);
+    team.hidden = !this.lessons.lesson.teams;
+    setText(team, person.team ? kTeamLabels[person.team] : "–");
+    team.style.borderColor = person.team ? kTeamColors[person.team] : "";
+    team.setAttribute("aria-label", `Team of ${person.name}: ${person.team ?? "none"}`);
+    setText(mute, person.muted ? "Unmute" : "Mute");
+    mute.setAttribute("aria-pressed", String(person.muted));
+    mute.setAttribute("aria-label", `${person.muted ? "Unmute" : "Mute"} ${person.name}`);
+    return row;
+  }
+
+  private makeRow(personId: number): HTMLElement {
+    const person = (): PersonInfo | undefined => this.lessons.personOf(personId);
+    const team = button(`team-${personId}`, "", () => this.send({ case: "setTeam", value: { personId, team: wireTeam(kNextTeam[person()?.team ?? "none"]) } }, "Team"));
+    const mute = button(`mute-${personId}`, "", () => this.send({ case: "mutePerson", value: { personId, muted: !person()?.muted } }, "Mute"));
+    return make("li", { "data-person": String(personId) }, [make("i", { "aria-hidden": "true" }), make("span"), team, mute]);
+  }
+
+  private toggle(tool: LessonTool): void {
+    const { tools } = this.lessons.lesson;
+    const rest = kLessonToolNames.filter((name) => (name === tool) !== tools.includes(name));
+    // No tool in the list is all of them: who wants none pauses the pads.
+    if (rest.length === 0) return void this.change({ frozen: true });
+    this.change({ tools: rest });
+  }
+
+  private change(change: Partial<LessonInfo>): void {
+    this.send({ case: "setLesson", value: { lesson: wireLesson({ ...this.lessons.lesson, ...change }) } }, "Lesson");
+  }
+}

@@ -1,0 +1,47 @@
+// The pad's lines: connection, place in a race, score, countdown, result, and why nothing can be done.
+import type { ConnectionState } from "../net/messages";
+import { setText } from "../ui/dom";
+import { countdownText, gameHeadline, kTeamLabels, standingText } from "../ui/game_texts";
+import { describeState } from "../ui/hud";
+import type { LessonState } from "../ui/lesson_state";
+import type { PadElements } from "./pad_layout";
+import type { OwnPose } from "./pad_map";
+
+/** Compass heading of a boat: +x is east, and -z north. */
+export function compassText(headingRad: number): string {
+  const degrees = Math.round((headingRad * 180) / Math.PI + 90);
+  return `${String(((degrees % 360) + 360) % 360).padStart(3, "0")}°`;
+}
+
+export class PadWords {
+  constructor(
+    private readonly elements: PadElements,
+    private readonly lessons: LessonState,
+  ) {}
+
+  /** `reason`: why nobody, or this visitor, may do anything now. */
+  refresh(state: ConnectionState, reason: string | undefined): void {
+    const { elements, lessons } = this;
+    const { game, people, ownId } = lessons;
+    const isLive = state.name === "live";
+    setText(elements.state, isLive ? "" : describeState(state));
+    elements.retry.hidden = state.name !== "retrying" && state.name !== "refused";
+    const offline = state.name === "refused" ? state.reason : state.name === "retrying" ? "The connection was lost. The pad comes back by itself." : "Connecting to the water…";
+    const veil = isLive ? (lessons.role === "viewer" && lessons.ownId !== 0 ? "You may watch here. Ask the teacher for a link to play." : reason) : offline;
+    setText(elements.veil, veil ?? "");
+    elements.veil.hidden = veil === undefined;
+    const team = lessons.me?.team;
+    setText(elements.standing, (game && standingText(game, ownId)) ?? (game?.kind === "ball" ? `Red ${game.redGoalsCount} : ${game.blueGoalsCount} Blue` : team ? `Team ${kTeamLabels[team].toLowerCase()}` : ""));
+    setText(elements.headline, game ? gameHeadline(game, people) : "");
+    elements.headline.hidden = !game;
+    elements.headline.classList.toggle("over", game?.phase === "over");
+  }
+
+  /** Called for each picture. */
+  update(simTimeS: number, pose: OwnPose | undefined): void {
+    const { elements, lessons: { game } } = this;
+    setText(elements.count, game ? countdownText(game, simTimeS) : "");
+    setText(elements.speed, pose ? `${Math.abs(pose.speedMps).toFixed(1)} m/s` : "–");
+    setText(elements.heading, pose ? compassText(pose.headingRad) : "–");
+  }
+}

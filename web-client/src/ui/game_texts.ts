@@ -1,0 +1,106 @@
+// A game in words: countdown, order of a race, score, result. Pure.
+import type { GameInfo, RacerInfo } from "../codec/game";
+import type { PersonInfo, TeamName } from "../codec/people";
+
+/** "Go!" is shown so long after the beginning. */
+const kGoS = 1.5;
+
+export const kTeamLabels: Record<TeamName, string> = { red: "Red", blue: "Blue" };
+export const kTeamColors: Record<TeamName, string> = { red: "#f2545b", blue: "#4d9bff" };
+
+type Person = Pick<PersonInfo, "personId" | "name" | "color" | "team">;
+
+export interface RaceRow {
+  place: number;
+  personId: number;
+  name: string;
+  color: string;
+  team: TeamName | undefined;
+  /** Finish time, or the lap that the boat is in. */
+  progress: string;
+  /** Best lap; empty: none yet. */
+  best: string;
+}
+
+/** Minutes and seconds with tenths, such as 1:03.4. */
+export function raceTime(seconds: number): string {
+  const tenths = Math.round(10 * Math.max(seconds, 0));
+  const minutes = Math.floor(tenths / 600);
+  const rest = ((tenths % 600) / 10).toFixed(1);
+  return `${minutes}:${rest.padStart(4, "0")}`;
+}
+
+export function ordinal(place: number): string {
+  const tens = place % 100;
+  const ending = tens >= 11 && tens <= 13 ? "th" : (["th", "st", "nd", "rd"][place % 10] ?? "th");
+  return `${place}${ending}`;
+}
+
+function progressOf(racer: RacerInfo, game: GameInfo): string {
+  if (racer.finishedS > 0) return raceTime(racer.finishedS);
+  if (game.phase === "over") return "–";
+  return `lap ${Math.min(racer.lapsCount + 1, game.lapsCount)} of ${game.lapsCount}`;
+}
+
+/** The race, best first. People who have left have no name. */
+export function raceRows(game: GameInfo, people: readonly Person[]): RaceRow[] {
+  return game.racers.map((racer, n) => {
+    const person = people.find(({ personId }) => personId === racer.personId);
+    return {
+      place: n + 1,
+      personId: racer.personId,
+      name: person?.name ?? "left",
+      color: person?.color ?? "#8fa3ad",
+      team: person?.team,
+      progress: progressOf(racer, game),
+      best: racer.lapBestS > 0 ? raceTime(racer.lapBestS) : "",
+    };
+  });
+}
+
+/** Returns the number of a countdown, "Go!" just after it, and otherwise nothing. `simTimeS`: the newest time of the simulation. */
+export function countdownText(game: GameInfo, simTimeS: number): string {
+  const leftS = game.beginsS - simTimeS;
+  if (game.phase === "countdown") return leftS > 0 ? String(Math.ceil(leftS)) : "Go!";
+  return game.phase === "running" && -leftS >= 0 && -leftS < kGoS ? "Go!" : "";
+}
+
+/** What a game is about, or how it ended. */
+export function gameHeadline(game: GameInfo, people: readonly Person[]): string {
+  const { kind, phase, lapsCount, goalsCount, winnerTeam } = game;
+  if (phase === "over") return resultText(game, people);
+  if (kind === "race") return `Race: ${lapsCount} ${lapsCount === 1 ? "lap" : "laps"}`;
+  return winnerTeam === undefined ? `Ball: first to ${goalsCount}` : resultText(game, people);
+}
+
+function resultText({ kind, winnerPersonId, winnerTeam, racers, redGoalsCount, blueGoalsCount }: GameInfo, people: readonly Person[]): string {
+  if (kind === "ball") return winnerTeam ? `${kTeamLabels[winnerTeam]} wins ${Math.max(redGoalsCount, blueGoalsCount)} : ${Math.min(redGoalsCount, blueGoalsCount)}` : "The game has ended in a draw";
+  const winner = people.find(({ personId }) => personId === winnerPersonId);
+  if (!winner) return winnerPersonId === 0 ? "The race has ended" : "The winner has left";
+  const finishedS = racers.find(({ personId }) => personId === winnerPersonId)?.finishedS ?? 0;
+  const team = winnerTeam ? ` for ${kTeamLabels[winnerTeam].toLowerCase()}` : "";
+  return `${winner.name} wins${team}${finishedS > 0 ? ` in ${raceTime(finishedS)}` : ""}`;
+}
+
+/** Time since the beginning, or of the whole game; empty before. */
+export function clockText({ phase, beginsS, endsS }: GameInfo, simTimeS: number): string {
+  if (phase === "countdown") return "";
+  return raceTime((endsS > 0 ? endsS : simTimeS) - beginsS);
+}
+
+/** One person's race in a line, such as "3rd of 12, lap 1 of 2"; undefined for who is not in it. */
+export function standingText(game: GameInfo, ownId: number): string | undefined {
+  if (game.kind !== "race") return undefined;
+  const at = game.racers.findIndex(({ personId }) => personId === ownId);
+  const racer = game.racers[at];
+  if (!racer || game.phase === "countdown") return undefined;
+  const place = `${ordinal(at + 1)} of ${game.racers.length}`;
+  return racer.finishedS > 0 ? `Finished ${place}, ${raceTime(racer.finishedS)}` : `${place}, ${progressOf(racer, game)}`;
+}
+
+/** Returns the mark that this person's boat has to round next; undefined outside of a race and after the finish. */
+export function nextMarkOf(game: GameInfo | undefined, personId: number): number | undefined {
+  if (game?.kind !== "race" || game.phase === "over") return undefined;
+  const racer = game.racers.find((each) => each.personId === personId);
+  return racer && racer.finishedS === 0 ? racer.nextMark : undefined;
+}
