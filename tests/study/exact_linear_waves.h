@@ -1,5 +1,5 @@
-// Exact linear waves on water of even depth (Airy): omega^2 = (g k + sigma k^3 / rho) tanh(k d). Closed forms that the simulation is
-// compared with; double precision, on the host.
+// Exact linear waves on water of even depth (Airy): omega^2 = (g k + sigma k^3 / rho) tanh(k d). Closed forms that the
+// simulation is compared with; double precision, on the host.
 #pragma once
 
 #include <complex>
