@@ -45,7 +45,8 @@ std::vector<std::string> addressesOfInterfaces() {
     std::string text = textOf(one->ifa_addr);
     if (!text.empty() && std::ranges::find(out, text) == out.end()) out.push_back(std::move(text));
   }
-  std::ranges::stable_partition(out, [](const std::string& address) { return !isIpv6(address); });
+  // clang 14 cannot compile the one of std::ranges.
+  std::stable_partition(out.begin(), out.end(), [](const std::string& address) { return !isIpv6(address); });
   return out;
 }
 

@@ -1,6 +1,5 @@
 // Actions of lessons and games: what players may do, teams, the start of races, the ball, and the grid of boats.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -87,11 +86,7 @@ RoomActions::Outcome RoomActions::startGame(const Command& command) {
   }
   clearGame();
   room_.referee.start(wanted, scene.course(), room_.water->tick(), room_.water->sim().time_s());
-  if (room_.referee.holdsBoats()) {
-    for (const Roster::BoatOwner& owner : room_.roster.boatOwners()) {
-      if (owner.role < core::Role::kOperator) stopBoat(owner.boat_id);
-    }
-  }
+  if (room_.referee.holdsBoats()) holdBoats();
   advanceGame();
   return {};
 }
@@ -103,8 +98,9 @@ RoomActions::Outcome RoomActions::endGame(const Command& /*command*/) {
 
 void RoomActions::clearGame() {
   if (room_.referee.ballId() != 0) removeBall();
+  const bool held_boats = room_.referee.holdsBoats();
   room_.referee.end();
-  held_.clear();
+  if (held_boats) releaseBoats();
 }
 
 void RoomActions::advanceGame() {
@@ -116,14 +112,22 @@ void RoomActions::advanceGame() {
   if (const auto spot = referee.wantedBall()) putBall(*spot);
 }
 
+void RoomActions::holdBoats() {
+  for (const Roster::BoatOwner& owner : room_.roster.boatOwners()) {
+    if (owner.role >= core::Role::kOperator) continue;
+    Command still;
+    still.message.mutable_control_boat()->set_boat_id(owner.boat_id);
+    (void)applyToWater(still);  // the boat may be gone already, as in the next
+  }
+}
+
 void RoomActions::releaseBoats() {
-  const auto owners = room_.roster.boatOwners();
-  for (const auto& [boat_id, control] : std::exchange(held_, {})) {
-    const auto owner = std::ranges::find(owners, boat_id, &Roster::BoatOwner::boat_id);
-    if (owner == owners.end() || !maySteer(*owner)) continue;
+  for (const Roster::BoatOwner& owner : room_.roster.boatOwners()) {
+    const auto lever = levers_.find(owner.boat_id);
+    if (owner.role >= core::Role::kOperator || lever == levers_.end() || !maySteer(owner)) continue;
     Command start;
-    *start.message.mutable_control_boat() = control;
-    (void)applyToWater(start);  // the boat may be gone already
+    *start.message.mutable_control_boat() = lever->second;
+    (void)applyToWater(start);
   }
 }
 
@@ -164,8 +168,6 @@ wire::CommandRejection RoomActions::notTheBall(const char* field) {
 void RoomActions::placeOnGrid(v1::Boat& boat) {
   const v1::Scene& scene = room_.water->scene();
   const v1::Course& course = scene.course();
-  const std::set<std::uint32_t> on_the_water = room_.water->boatIds();
-  std::erase_if(grid_, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
   const double heading = course.start_heading_deg() * std::numbers::pi / 180;
   const double ahead_x = std::cos(heading), ahead_z = std::sin(heading);
   v1::Boat placed = boat;

@@ -1,3 +1,6 @@
+#include <set>
+#include <utility>
+
 #include <fmt/format.h>
 
 #include <spindrift/rooms/room_actions.h>
@@ -29,21 +32,24 @@ void RoomActions::parameterChanged(const v1::SetParameter& change) {
 }
 
 void RoomActions::boatsChanged() {
-  room_.roster.keepOnly(room_.water->boatIds());
+  const std::set<std::uint32_t> on_the_water = room_.water->boatIds();
+  room_.roster.keepOnly(on_the_water);
+  std::erase_if(levers_, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
+  std::erase_if(grid_, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
   room_.news.boats = true;
 }
 
 void RoomActions::stopBoat(std::uint32_t boat_id) {
   Command stop;
   stop.message.mutable_control_boat()->set_boat_id(boat_id);
-  held_.erase(boat_id);
+  levers_.erase(boat_id);
   (void)applyToWater(stop);  // the boat may be gone already
 }
 
 RoomActions::Outcome RoomActions::reset(const Command& command) {
   if (auto rejected = applyToWater(command)) return rejected;
   room_.referee.end();
-  held_.clear();
+  levers_.clear();
   room_.schedule.restart();
   room_.schedule.setIdleDue({});
   room_.time.setSteps(0);
@@ -105,13 +111,16 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   v1::Boat& boat = *launch.message.mutable_spawn_boat()->mutable_boat();
   last_place_.reset();
   if (command.is_placed_by_room && room_.water->scene().has_course()) placeOnGrid(boat);
-  const double throttle_ratio = boat.throttle_ratio();
+  v1::ControlBoat lever;
+  lever.set_throttle_ratio(boat.throttle_ratio());
+  lever.set_rudder_ratio(boat.rudder_ratio());
   if (isHeld(command)) boat.set_throttle_ratio(0.0);
   if (auto rejected = applyToWater(launch)) return rejected;
   boatsChanged();
   const std::uint32_t boat_id = room_.water->spawnedId();
   if (last_place_) grid_[boat_id] = *last_place_;
-  if (isHeld(command)) held_[boat_id].set_throttle_ratio(throttle_ratio);
+  lever.set_boat_id(boat_id);
+  levers_[boat_id] = std::move(lever);
   new_ids_.set_boat_id(boat_id);
   room_.roster.give(boat_id, sender.person_id);
   return {};
@@ -125,11 +134,10 @@ RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
   if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
     return notYours("control_boat.boat_id", boat_id, owner_id);
   }
-  if (!isHeld(command)) return applyToWater(command);
-  Command still = command;
-  still.message.mutable_control_boat()->set_throttle_ratio(0.0);
-  if (auto rejected = applyToWater(still)) return rejected;
-  held_[boat_id] = command.message.control_boat();
+  Command control = command;
+  if (isHeld(command)) control.message.mutable_control_boat()->set_throttle_ratio(0.0);
+  if (auto rejected = applyToWater(control)) return rejected;
+  levers_[boat_id] = command.message.control_boat();
   return {};
 }
 

@@ -166,6 +166,28 @@ TEST_F(ClassTest, TheBallIsPutInTheMiddleAndPlayersMayNotTouchIt) {
   EXPECT_EQ(over.winner_team(), v1::TEAM_BLUE);
 }
 
+TEST_F(ClassTest, ALeverThatIsHeldBeforeTheCountdownCountsAtTheStart) {
+  ScriptedClient ada = client();
+  ScriptedClient operator_ = teacher();
+  const std::uint32_t boat_id = ada.ask(launch()).ack().boat_id();
+  ASSERT_TRUE(ada.apply(controlBoat(boat_id, 0.5, 0)));
+  ASSERT_TRUE(operator_.apply(startGame(v1::GAME_KIND_RACE, 1.0)));
+  const double begins_s =
+      gameWhen(operator_, [](const v1::Game& g) { return g.phase() == v1::GAME_PHASE_COUNTDOWN; }).begins_s();
+  operator_.subscribe(v1::LAYER_BODIES);
+  double throttle_ratio = 0.0;
+  for (int k = 0; k < 2000 && throttle_ratio == 0.0; ++k) {
+    const auto frame = operator_.nextFrame(v1::LAYER_BODIES);
+    ASSERT_TRUE(frame);
+    const auto bodies = codec::decodeBodies(*frame);
+    ASSERT_TRUE(bodies);
+    ASSERT_EQ(bodies->size(), 1U);
+    throttle_ratio = bodies->front().throttle_ratio;
+    EXPECT_TRUE(throttle_ratio == 0.0 || frame->time_s() >= begins_s);
+  }
+  EXPECT_NEAR(throttle_ratio, 0.5, 0.01);
+}
+
 TEST_F(ClassTest, AResetEndsTheGame) {
   ScriptedClient operator_ = teacher();
   ASSERT_TRUE(operator_.apply(startGame(v1::GAME_KIND_RACE, 60)));

@@ -89,7 +89,7 @@ TEST_F(OperatorLink, WhatIsGivenReplacesTheDefaultsOfAClass) {
   const cli::ServeOptions given = started({"--class", "--scene", "harbor", "--guests", "viewer"});
   EXPECT_EQ(given.scene, "harbor");
   EXPECT_EQ(given.guest_role, "viewer");
-  EXPECT_NE(CommandLine({"--public-url", "ftp://here"}).error, "");
+  EXPECT_THROW(CommandLine({"--public-url", "ftp://here"}), CLI::ValidationError);
 }
 
 TEST_F(OperatorLink, ConfiguredRolesReplaceIt) {

@@ -34,7 +34,10 @@ void fill(google::protobuf::Message& message) {
         reflection.SetUInt32(&message, &field, 7);
         break;
       case FieldDescriptor::CPPTYPE_ENUM:
-        reflection.SetEnumValue(&message, &field, 2);
+        if (field.is_repeated())
+          reflection.AddEnumValue(&message, &field, 2);
+        else
+          reflection.SetEnumValue(&message, &field, 2);
         break;
       case FieldDescriptor::CPPTYPE_BOOL:
         reflection.SetBool(&message, &field, true);

@@ -65,7 +65,8 @@ class RoomActions {
   /// Returns whether the lesson lets the owner of a boat steer.
   [[nodiscard]] bool maySteer(const Roster::BoatOwner& owner) const;
   void stopBoatsOfIdle();
-  /// Gives the boats of a race the throttles that their owners have chosen while they waited.
+  /// Stops the boats of players before a race; releaseBoats() gives them the throttles that their owners hold.
+  void holdBoats();
   void releaseBoats();
   void putBall(const Referee::Position& spot);
   void removeBall();
@@ -78,9 +79,9 @@ class RoomActions {
 
   RoomData& room_;
   v1::Ack new_ids_;
-  std::map<std::uint32_t, v1::ControlBoat> held_;  ///< by boat: for the start of the race
-  std::map<std::uint32_t, std::uint32_t> grid_;    ///< places by boat
-  std::optional<std::uint32_t> last_place_;        ///< of the boat that is being launched
+  std::map<std::uint32_t, v1::ControlBoat> levers_;  ///< by boat: as their owners hold them, also before a start
+  std::map<std::uint32_t, std::uint32_t> grid_;      ///< places by boat
+  std::optional<std::uint32_t> last_place_;          ///< of the boat that is being launched
 };
 
 }  // namespace spindrift::rooms
