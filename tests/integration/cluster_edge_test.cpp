@@ -147,7 +147,7 @@ TEST_F(ClusterTest, EdgePassesOnTheLevelThatAClientAsksFor) {
   const Member s1 = server("s1");
   const Member e1 = edge("e1");
   ScriptedClient one(e1.port);
-  one.hello();
+  one.hello({.minor = 7});
   v1::Subscribe coarse;
   coarse.set_layer(v1::LAYER_FLOATERS);
   coarse.set_max_rate_hz(60.0);

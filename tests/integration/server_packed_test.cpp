@@ -179,7 +179,7 @@ class PackedFloaters : public ServerTest {
 };
 
 TEST_F(PackedFloaters, HaveThePositionsOfPlainOnesWhileObjectsComeAndGo) {
-  ScriptedClient packed = client();
+  ScriptedClient packed = person({.minor = 7});
   ScriptedClient plain = client();
   packed.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
   plain.subscribe(v1::LAYER_FLOATERS);
@@ -230,10 +230,10 @@ TEST_F(PackedFloaters, HaveThePositionsOfPlainOnesWhileObjectsComeAndGo) {
 }
 
 TEST_F(PackedFloaters, EveryLevelHasDeltasOfItsOwn) {
-  ScriptedClient full = client();
+  ScriptedClient full = person({.minor = 7});
   full.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
   for (const v1::Level level : {v1::LEVEL_COARSE, v1::LEVEL_MEDIUM, v1::LEVEL_FINE}) {
-    ScriptedClient one = client();
+    ScriptedClient one = person({.minor = 7});
     v1::Subscribe wanted;
     wanted.set_layer(v1::LAYER_FLOATERS);
     wanted.set_max_rate_hz(60.0);
@@ -256,13 +256,7 @@ TEST_F(PackedFloaters, EveryLevelHasDeltasOfItsOwn) {
 }
 
 TEST_F(PackedFloaters, AreSentPlainToClientsOfOlderVersions) {
-  ScriptedClient old(server().port());
-  ASSERT_TRUE(old.isOpen());
-  v1::ClientMessage hello;
-  hello.mutable_hello()->mutable_version()->set_major(1);
-  hello.mutable_hello()->mutable_version()->set_minor(6);
-  old.send(hello);
-  ASSERT_TRUE(old.waitFor(v1::ServerMessage::kWelcome));
+  ScriptedClient old = person({.minor = 6});
   old.subscribe(v1::LAYER_FLOATERS, 60.0, v1::PACKING_PACKED);
   const auto frame = old.nextFrame(v1::LAYER_FLOATERS);
   ASSERT_TRUE(frame);

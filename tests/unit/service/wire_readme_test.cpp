@@ -184,8 +184,8 @@ TEST_F(WireReadme, ListsLayersLevelsAndRoles) {
                   names.insert("LAYER_" + name);
                 return names;
               }()));
-  EXPECT_THAT(namesOf(rowsOf("| `Level` | surface, at most | foam, at most | particles, at most | frames/s, at most | "
-                             "Mbit/s packed, at most |")),
+  EXPECT_THAT(namesOf(rowsOf("| `Level` | surface, at most | foam, at most | particles, at most | floaters, to | "
+                             "frames/s, at most | Mbit/s packed, at most |")),
               UnorderedElementsAreArray(valuesOf(*v1::Level_descriptor(), "LEVEL_")));
   EXPECT_THAT(namesOf(rowsOf("| `Role` | may |")),
               UnorderedElementsAreArray(valuesOf(*v1::Role_descriptor(), "ROLE_")));
