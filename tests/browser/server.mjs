@@ -16,8 +16,8 @@ const STOP_LIMIT_MS = 30_000;
  * @param {number} port 0 = any free port
  * @param {string[]} scenes options that choose scenes; by default those of this folder
  * @param {string} command "serve" or "edge"
- * @returns {Promise<{url: string, port: number, ended: Promise<{code: number | null, signal: string | null}>, stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
- *   rejects with the server's output if it ends before it is ready, or after 120 s
+ * @returns {Promise<{url: string, port: number, ended: Promise<{code: number | null, signal: string | null}>, lines: string[], stop: (signal: NodeJS.Signals) => Promise<{code: number | null, signal: string | null}>}>}
+ *   `lines`: what the server has printed; rejects with the server's output if it ends before it is ready, or after 120 s
  */
 export function startServer(port = 0, scenes = kTestScenes, command = "serve") {
   const child = spawn(
@@ -43,11 +43,13 @@ export function startServer(port = 0, scenes = kTestScenes, command = "serve") {
       clearTimeout(timer);
       reject(error ?? new Error(`the server ended before it was ready (code ${code}, signal ${signal}):\n${words}`));
     });
+    const lines = [];
     createInterface({ input: child.stdout }).on("line", (line) => {
+      lines.push(line);
       const match = /^Spindrift is ready: (https?:\/\/[^/]+:(\d+)\/)/.exec(line);
       if (!match) return;
       clearTimeout(timer);
-      resolve({ url: match[1], port: Number(match[2]), ended, stop: (signal) => stop(child, ended, signal) });
+      resolve({ url: match[1], port: Number(match[2]), ended, lines, stop: (signal) => stop(child, ended, signal) });
     });
   });
 }

@@ -4,6 +4,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 import type { App } from "../src/app/app";
 import { FloaterHands, type PointerAt } from "../src/app/floater_hands";
 import type { FloaterPose } from "../src/scene/frames/floaters";
+import { LessonState } from "../src/ui/lesson_state";
 import { World } from "./fakes";
 
 const kWidthPx = 800;
@@ -37,6 +38,7 @@ function makePage(floaters: FloaterPose[]) {
   const app = {
     mayDraw: true,
     hasFloaters: true,
+    lessons: new LessonState(),
     entered: { sideM: 8, widthM: 8 },
     answerListeners: [] as { ack(id: number): void; reject(id: number): void }[],
     commands: { send: (action: Sent) => sent.push(action) },

@@ -30,7 +30,7 @@ export function openProjector(app: App): void {
     (addresses) => card.show(addresses),
     (error: unknown) => app.warn(error instanceof Error ? error.message : String(error)),
   );
-  app.lessons.watch(() => card.setPlayers(playersOf(app.lessons.people).length === 0));
+  app.lessons.watch(() => card.setPlayers(playersOf(app.lessons).length === 0));
   wakeControls();
   const camera = new DirectedCamera(app);
   const before = app.poll;

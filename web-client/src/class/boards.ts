@@ -8,9 +8,9 @@ import type { LessonState } from "../ui/lesson_state";
 const kPeopleMax = 44;
 const kRowsMax = 10;
 
-/** People who play: operators steer the lesson. */
-export function playersOf(people: readonly PersonInfo[]): PersonInfo[] {
-  return people.filter(({ role, away }) => role === "player" && !away);
+/** People who play: neither operators, who steer the lesson, nor the page that shows them. */
+export function playersOf({ people, ownId }: LessonState): PersonInfo[] {
+  return people.filter(({ personId, role, away }) => role === "player" && !away && personId !== ownId);
 }
 
 export class Boards {
@@ -59,8 +59,8 @@ export class Boards {
 
   /** `isRace`: the order has all names already. */
   private showPeople(isRace: boolean): void {
-    const { people, lesson } = this.lessons;
-    const players = playersOf(people);
+    const { lesson } = this.lessons;
+    const players = playersOf(this.lessons);
     this.people.hidden = isRace || players.length === 0;
     const sorted = lesson.teams ? [...players].sort((a, b) => (a.team ?? "").localeCompare(b.team ?? "")) : players;
     this.people.replaceChildren(...sorted.slice(0, kPeopleMax).map(personItem), ...(players.length > kPeopleMax ? [make("li", {}, [`and ${players.length - kPeopleMax} more`])] : []));

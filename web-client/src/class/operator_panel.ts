@@ -99,9 +99,9 @@ export class OperatorPanel {
 
   /** Shows what the scene has; after every greeting. */
   refresh(): void {
-    const { lesson, game, people, role } = this.lessons;
+    const { lesson, game, role } = this.lessons;
     this.element.hidden = role !== "operator";
-    setText(this.freeze, lesson.frozen ? "Let pads go on" : "Pause pads");
+    setText(this.freeze, lesson.frozen ? "Resume pads" : "Pause pads");
     this.freeze.setAttribute("aria-pressed", String(lesson.frozen));
     this.teams.setAttribute("aria-pressed", String(lesson.teams));
     for (const [tool, element] of this.tools) element.setAttribute("aria-pressed", String(lesson.tools.includes(tool)));
@@ -112,7 +112,7 @@ export class OperatorPanel {
     this.noGames.hidden = !this.race.hidden || !this.ball.hidden;
     this.end.hidden = game === undefined;
     this.clear.hidden = this.greeting()?.hasFloaters !== true;
-    const players = playersOf(people);
+    const players = playersOf(this.lessons);
     this.nobody.hidden = players.length > 0;
     this.showPeople(players);
   }

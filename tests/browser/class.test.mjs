@@ -1,0 +1,90 @@
+// A class in Chromium: a projector, and a pad that is used by touch alone.
+import assert from "node:assert/strict";
+import { after, before, describe, it } from "node:test";
+
+import jsQR from "jsqr";
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { startServer } from "./server.mjs";
+import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
+
+describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
+  let server;
+  let browser;
+  let projector;
+  let pad;
+
+  const open = async (options, path) => {
+    const page = await (await browser.newContext(options)).newPage();
+    page.on("pageerror", (error) => assert.fail(error));
+    await page.goto(new URL(path, `http://127.0.0.1:${server.port}/`).href, { timeout: WAIT_MS });
+    await waitFor(page, "the page to be live", ({ connectionState, role }) => connectionState === "live" && role !== "viewer");
+    return page;
+  };
+  /** Presses a button of the operator, wherever its panel is. */
+  const press = (testId) => projector.getByTestId(testId).dispatchEvent("click");
+
+  before(async () => {
+    server = await startServer(0, ["--class", "--address", "127.0.0.1", "--public-url", "http://192.168.1.20:8080/pad"]);
+    const projectorLine = () => server.lines.find((line) => line.startsWith("Projector: "));
+    const deadlineMs = Date.now() + WAIT_MS;
+    while (!projectorLine() && Date.now() < deadlineMs) await new Promise((done) => setTimeout(done, 50));
+    const token = /#token=(\S+)/.exec(projectorLine() ?? "")?.[1];
+    assert.ok(token, `the server prints the projector's address with a token:\n${server.lines.join("\n")}`);
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    projector = await open({ viewport: { width: 1280, height: 720 } }, `?class&quality=minimal#token=${token}`);
+  });
+  after(async () => {
+    await browser?.close();
+    await server?.stop("SIGTERM");
+  });
+
+  it("shows a QR code of the address that the server names", async () => {
+    const canvas = projector.getByTestId("join-qr");
+    await canvas.waitFor({ timeout: WAIT_MS });
+    const { data, width, height } = await canvas.evaluate((qr) => {
+      const large = Object.assign(document.createElement("canvas"), { width: 8 * qr.width, height: 8 * qr.height });
+      const context = large.getContext("2d");
+      context.imageSmoothingEnabled = false;
+      context.drawImage(qr, 0, 0, large.width, large.height);
+      return { data: [...context.getImageData(0, 0, large.width, large.height).data], width: large.width, height: large.height };
+    });
+    const { urls } = await (await fetch(`http://127.0.0.1:${server.port}/api/v1/join`)).json();
+    assert.equal(jsQR(Uint8ClampedArray.from(data), width, height)?.data, urls[0]);
+    assert.ok(await projector.getByTestId("join-card").evaluate((card) => card.classList.contains("large")), "nobody plays yet");
+  });
+
+  it("launches a boat from a pad, which the projector shows", async () => {
+    pad = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }, "pad");
+    await pad.getByTestId("pad-tool-boat").tap();
+    await pad.getByTestId("pad-launch").tap();
+    const { myBoat } = await waitFor(pad, "its boat", ({ myBoat }) => myBoat > 0);
+    await waitFor(projector, "the boat", ({ boats }) => boats.some(({ boatId }) => boatId === myBoat));
+    assert.ok(!(await projector.getByTestId("join-card").evaluate((card) => card.classList.contains("large"))), "the code is in a corner");
+  });
+
+  it("has only targets that a thumb hits", async () => {
+    const sizes = await pad.evaluate(() => [...document.querySelectorAll("button")].filter((each) => each.checkVisibility()).map((each) => [each.textContent, each.getBoundingClientRect().width, each.getBoundingClientRect().height]));
+    assert.deepEqual(sizes.filter(([, width, height]) => width < 44 || height < 44), []);
+  });
+
+  it("pauses the pads, takes a tool away, and gives both back", async () => {
+    await press("lesson-freeze");
+    await waitFor(pad, "the pause", ({ whyNot }) => /paused/.test(whyNot ?? ""));
+    await press("lesson-freeze");
+    await waitFor(pad, "the end of the pause", ({ whyNot }) => whyNot === null);
+    await press("lesson-tool-rain");
+    await pad.getByTestId("pad-tool-rain").waitFor({ state: "hidden", timeout: WAIT_MS });
+    await press("lesson-tool-rain");
+    await pad.getByTestId("pad-tool-rain").waitFor({ state: "visible", timeout: WAIT_MS });
+  });
+
+  it("starts a race with the pad's boat in it", async () => {
+    await press("game-race");
+    await projector.getByTestId("board-race").waitFor({ timeout: WAIT_MS });
+    assert.match(await pad.getByTestId("pad-headline").textContent(), /^Race/);
+    await press("game-end");
+    await pad.getByTestId("pad-headline").waitFor({ state: "hidden", timeout: WAIT_MS });
+  });
+});
