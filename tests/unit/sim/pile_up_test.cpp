@@ -48,7 +48,7 @@ class PileUp : public OnDevice {
     uniforms->uploadValue(derived->uniforms);
     uniforms->bindUniform(SIM_UNIFORMS);
     Creation create(*ctx_, defines);
-    ParticleBuffers particles(create, derived->particles->count, false);
+    ParticleBuffers particles(create, derived->particles->count, false, false);
     NeighborGrid grid(create, *derived->particles, false);
     std::vector<float> position;
     for (std::uint32_t i = 0; i < derived->particles->count; ++i)

@@ -85,10 +85,14 @@ TEST_F(SurfaceTension, RipplesStayBoundedAndKeepTheirWater) {
       highest_m = std::max(std::abs(*std::ranges::max_element(now.elevation_m)),
                            std::abs(*std::ranges::min_element(now.elevation_m)));
       EXPECT_LT(highest_m, 1e-3);
-      if (sides == core::WaveBoundary::kReflect) EXPECT_EQ(sumOf(now), volume);
+      if (sides == core::WaveBoundary::kReflect) {
+        EXPECT_EQ(sumOf(now), volume);
+      }
     }
     // The chequerboard has an amplitude of 0.25 mm and does not travel; the hump has left.
-    if (sides == core::WaveBoundary::kAbsorb) EXPECT_LT(highest_m, 2.5e-4);
+    if (sides == core::WaveBoundary::kAbsorb) {
+      EXPECT_LT(highest_m, 2.5e-4);
+    }
   }
 }
 
