@@ -73,9 +73,9 @@ TEST(Lesson, ForceScalesWhatACommandDoesAndStaysInRange) {
   limitForce(0.5, splash);
   EXPECT_DOUBLE_EQ(splash.splash().depth_m(), 0.4);
   EXPECT_DOUBLE_EQ(splash.splash().radius_m(), 1.5);
-  v1::Command flat = test::splash(0.012);
+  v1::Command flat = test::splash(0.0012);
   limitForce(0.05, flat);
-  EXPECT_DOUBLE_EQ(flat.splash().depth_m(), 0.01) << "the least that the field takes";
+  EXPECT_DOUBLE_EQ(flat.splash().depth_m(), 0.0001) << "the least that the field takes";
   v1::Command finger = test::stroke(1, 0, 0, 0);
   finger.mutable_stroke()->mutable_points(0)->set_pressure_ratio(0.6);
   limitForce(0.5, finger);
