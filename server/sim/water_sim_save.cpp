@@ -2,6 +2,7 @@
 // or of the same water.
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <span>
 
@@ -20,6 +21,10 @@ namespace {
 std::vector<std::uint32_t> layoutWords(const Derived& derived) {
   std::vector<std::uint32_t> out(sizeof(shared::SimUniforms) / sizeof(std::uint32_t));
   std::memcpy(out.data(), &derived.uniforms, sizeof(shared::SimUniforms));
+  // Scenes without surface tension keep the hashes and the saved states that they had before there was any.
+  const auto& u = derived.uniforms;
+  if (u.capillary_ratio == 0.0f && u.tension_area_ps2 == 0.0f)
+    out.resize(offsetof(shared::SimUniforms, capillary_ratio) / sizeof(std::uint32_t));
   out.push_back(derived.substeps_count);
   out.push_back(derived.wave ? derived.wave->substeps_count : 0);
   return out;

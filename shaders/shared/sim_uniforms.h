@@ -91,7 +91,6 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   float wave_transfer;          // dt / dx in units: elevation moved per flow
   float steepening_ratio;
   float breaking_loss_per_s;    // of flow, where the intensity is 1
-  float capillary_ratio;        // head of surface tension over the sum of a cell's height above its neighbours (sim_setup/surface_tension.h)
   float wave_friction;          // g n^2, n being Manning's roughness of the bed [m^(1/3)]
 
   // Frames: range of the quantized positions in x and z; in y it is min_y_m to max_y_m.
@@ -105,7 +104,9 @@ layout(std140, binding = SIM_UNIFORMS) uniform SimUniforms {
   // (sim_setup/derive.cpp).
   uint candidates_max_count;
 
-  // Surface tension of particles (particles/tension.glsl, sim_setup/surface_tension.h).
+  // Surface tension of the wave and of particles (particles/tension.glsl, sim_setup/surface_tension.h); 0 without. Last: hashes and
+  // saved states of scenes without tension end before (sim/water_sim_save.cpp).
+  float capillary_ratio;        // head of surface tension over the sum of a cell's height above its neighbours
   float tension_area_ps2;
   float tension_pull_ps2;
   float tension_wall_m5pkg;     // turns a gradient of boundaryDensity into one of SURFACE_GRADIENT
