@@ -226,7 +226,9 @@ StateBuffers WaterSim::Parts::stateBuffers() {
   add(boats);
   add(floaters);
   add(grid);
-  out.push_back({.buffer = &uniforms});  // the pass that moves the patch of particles changes them
+  // The pass that moves the patch of particles changes them; the values of surface tension follow from the scene.
+  out.push_back({.buffer = &uniforms,
+                 .first_word_count = offsetof(shared::SimUniforms, capillary_ratio) / sizeof(std::uint32_t)});
   return out;
 }
 

@@ -111,7 +111,8 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   for (const StateBuffer& each : buffers) {
     const auto from = std::ranges::find(saved.buffers, each.buffer->name(), &SavedBuffer::name);
     if (from == saved.buffers.end()) return differs(fmt::format("it has no buffer {}", each.buffer->name()));
-    const std::size_t word_count = each.buffer->sizeBytes() / sizeof(std::uint32_t);
+    const std::size_t word_count =
+        each.first_word_count > 0 ? each.first_word_count : each.buffer->sizeBytes() / sizeof(std::uint32_t);
     const bool fits =
         parts_->pool && each.per_particle ? from->words.size() <= word_count : from->words.size() == word_count;
     if (!fits)

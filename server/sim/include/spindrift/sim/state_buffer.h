@@ -23,10 +23,12 @@ struct StateBuffer {
   bool carried = false;
   /// 4 words per particle: those of live particles count, and in a pool others may lie behind them.
   bool per_particle = false;
+  std::size_t first_word_count = 0;  ///< only so many words count, the first ones; 0: all
 
   /// Number of words that count. `live_count`: of particles.
   [[nodiscard]] std::size_t wordCount(std::size_t live_count) const {
-    return per_particle ? 4 * live_count : buffer->sizeBytes() / sizeof(std::uint32_t);
+    if (per_particle) return 4 * live_count;
+    return first_word_count > 0 ? first_word_count : buffer->sizeBytes() / sizeof(std::uint32_t);
   }
 };
 
