@@ -1,5 +1,3 @@
-#include <cstddef>
-
 #include <shared/bindings.h>
 
 #include "shader_defines.h"
@@ -227,8 +225,7 @@ StateBuffers WaterSim::Parts::stateBuffers() {
   add(floaters);
   add(grid);
   // The pass that moves the patch of particles changes them; the values of surface tension follow from the scene.
-  out.push_back({.buffer = &uniforms,
-                 .first_word_count = offsetof(shared::SimUniforms, capillary_ratio) / sizeof(std::uint32_t)});
+  out.push_back({.buffer = &uniforms, .first_word_count = kUniformWordsBeforeTension});
   return out;
 }
 

@@ -1,6 +1,8 @@
 // The parts of a WaterSim. Only for its own source files.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -40,6 +42,10 @@ struct BasinInputs {
   std::vector<core::Beach> beaches;
   std::optional<core::Bed> bed;
 };
+
+/// The uniforms that states contain, whatever the scene: those of surface tension are behind them and follow from it.
+inline constexpr std::size_t kUniformWordsBeforeTension =
+    offsetof(shared::SimUniforms, capillary_ratio) / sizeof(std::uint32_t);
 
 /// The parts that the scene names; all others are null.
 struct WaterSim::Parts {

@@ -2,7 +2,6 @@
 // or of the same water.
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstring>
 #include <span>
 
@@ -22,9 +21,8 @@ std::vector<std::uint32_t> layoutWords(const Derived& derived) {
   std::vector<std::uint32_t> out(sizeof(shared::SimUniforms) / sizeof(std::uint32_t));
   std::memcpy(out.data(), &derived.uniforms, sizeof(shared::SimUniforms));
   // Scenes without surface tension keep the hashes and the saved states that they had before there was any.
-  const auto& u = derived.uniforms;
-  if (u.capillary_ratio == 0.0f && u.tension_area_ps2 == 0.0f)
-    out.resize(offsetof(shared::SimUniforms, capillary_ratio) / sizeof(std::uint32_t));
+  const shared::SimUniforms& u = derived.uniforms;
+  if (u.capillary_ratio == 0.0f && u.tension_area_ps2 == 0.0f) out.resize(kUniformWordsBeforeTension);
   out.push_back(derived.substeps_count);
   out.push_back(derived.wave ? derived.wave->substeps_count : 0);
   return out;
@@ -111,8 +109,7 @@ core::Result<void> WaterSim::restore(const SavedState& saved) {
   for (const StateBuffer& each : buffers) {
     const auto from = std::ranges::find(saved.buffers, each.buffer->name(), &SavedBuffer::name);
     if (from == saved.buffers.end()) return differs(fmt::format("it has no buffer {}", each.buffer->name()));
-    const std::size_t word_count =
-        each.first_word_count > 0 ? each.first_word_count : each.buffer->sizeBytes() / sizeof(std::uint32_t);
+    const std::size_t word_count = each.wordCount(derived_.particles ? derived_.particles->count : 0);
     const bool fits =
         parts_->pool && each.per_particle ? from->words.size() <= word_count : from->words.size() == word_count;
     if (!fits)
