@@ -30,6 +30,14 @@ void checkCount(int count, int max_count, const char* path, const char* what, st
 /// Checks that a point lies in the water along one axis.
 void checkPosition(double value_m, double side_m, const std::string& path, std::vector<FieldIssue>& issues);
 
+/// Checks that an object with the half extent `reach_m` around its centre lies in the water along one axis.
+void checkInside(double centre_m, double reach_m, double side_m, const std::string& path,
+                 std::vector<FieldIssue>& issues);
+
+/// Checks that a disc lies in no obstacle.
+void checkDiscIsFree(double x_m, double z_m, double radius_m, const v1::Scene& scene, const std::string& prefix,
+                     std::vector<FieldIssue>& issues);
+
 /// Checks a length; `what` says of one that is too long what it is: "is more than the side of the water".
 void checkAtMost(double value_m, double max_m, const std::string& path, const std::string& what,
                  std::vector<FieldIssue>& issues);
@@ -40,6 +48,9 @@ void checkMakerStructure(const v1::Scene& scene, std::vector<FieldIssue>& issues
 /// Wave-makers: sides, heights over the depth, and series, in a scene with a wave. Rules that need the waves' lengths
 /// are those of sim::derive().
 void checkMakerNumbers(const v1::Scene& scene, std::vector<FieldIssue>& issues);
+
+/// Marks and goals of a course, in a scene with a wave.
+void checkCourse(const v1::Course& course, const v1::Scene& scene, std::vector<FieldIssue>& issues);
 
 /// Returns where a file lies that a scene names: in the folder of the scene or below, links followed. `folder`: nullopt
 /// for scenes that are not files; `instead` says what those give in place of a name. Error: kInvalidInput.

@@ -57,7 +57,7 @@ void disturb(sim::WaterSim& water, double up_m, double tilt_deg) {
   water.setState(state);
 }
 
-/// Time between rises through the mean; 0 if there are none. [s]
+/// Time between rises through the mean; 0 with fewer than two. [s]
 double periodOf(const std::vector<double>& values) {
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   std::vector<double> rises_s;

@@ -35,7 +35,7 @@ export function readLesson({ frozen, tools, forceRatio = 1, teams }: Lesson): { 
   return { lesson: { frozen, tools: handedOut, forceRatio, teams } };
 }
 
-/** Returns the fields of a Lesson. All tools are none in the list: those that a newer server adds are handed out, too. */
+/** Returns the fields of a Lesson. An empty list means all tools, those that a newer server adds included. */
 export function wireLesson({ frozen, tools, forceRatio, teams }: LessonInfo): { frozen: boolean; tools: Tool[]; forceRatio: number; teams: boolean } {
   const isAll = tools.length === kLessonToolNames.length;
   return { frozen, tools: isAll ? [] : tools.map((name) => kLessonTools[name]), forceRatio, teams };
