@@ -42,7 +42,7 @@ core::Result<rooms::RoomSetup> loadRoom(const std::string& name, const std::stri
 
 core::Result<std::vector<rooms::RoomSetup>> loadRooms(const ServeOptions& options, water::SceneCatalog& catalog) {
   std::vector<rooms::RoomSetup> rooms;
-  auto first = loadRoom("main", options.scene, options.fidelity, catalog);
+  auto first = loadRoom(core::kDefaultRoom, options.scene, options.fidelity, catalog);
   if (!first) return first.error();
   rooms.push_back(*std::move(first));
   for (const std::string& text : options.rooms) {

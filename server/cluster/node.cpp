@@ -29,7 +29,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kDefaultRoom = "main";
 constexpr auto kRound = 50ms;
 constexpr auto kDirectoryInterval = 250ms;
 constexpr std::size_t kInboxWaitingMaxBytes = 64u << 20;
@@ -288,7 +287,7 @@ core::Result<void> NodeImpl::ready() const {
 }
 
 std::shared_ptr<service::Venue> NodeImpl::find(const std::string& asked) {
-  const std::string& name = asked.empty() ? kDefaultRoom : asked;
+  const std::string& name = asked.empty() ? core::kDefaultRoom : asked;
   if (!serving_ || !core::isRoomName(name)) return nullptr;
   const std::lock_guard lock(mutex_);
   const auto known = remote_.find(name);

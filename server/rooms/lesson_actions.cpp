@@ -165,7 +165,7 @@ wire::CommandRejection RoomActions::notTheBall(const char* field) {
 
 // The grid
 
-void RoomActions::placeOnGrid(v1::Boat& boat) {
+std::optional<std::uint32_t> RoomActions::placeOnGrid(v1::Boat& boat) {
   const v1::Scene& scene = room_.water->scene();
   const v1::Course& course = scene.course();
   const double heading = course.start_heading_deg() * std::numbers::pi / 180;
@@ -181,9 +181,9 @@ void RoomActions::placeOnGrid(v1::Boat& boat) {
     placed.set_z_m(course.start_z_m() - back_m * ahead_z + aside_m * ahead_x);
     if (!scene::checkBoat(scene::toCore(placed), scene, "").empty()) continue;
     boat = std::move(placed);
-    last_place_ = place;
-    return;
+    return place;
   }
+  return std::nullopt;
 }
 
 }  // namespace spindrift::rooms

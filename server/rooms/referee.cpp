@@ -1,5 +1,7 @@
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <optional>
 #include <utility>
 
 #include <spindrift/rooms/referee.h>
@@ -97,7 +99,7 @@ bool Referee::isWatching() const {
 void Referee::see(const Sample& sample) {
   if (!isWatching() || sample.tick < first_tick_) return;
   if (kind_ == v1::GAME_KIND_RACE) return seeRace(sample);
-  if (phase_ == v1::GAME_PHASE_RUNNING && ball_id_ != 0 && sample.tick >= ball_tick_) seeBall(sample);
+  if (phase_ == v1::GAME_PHASE_RUNNING && ball_id_ != 0 && sample.tick > ball_tick_) seeBall(sample);
 }
 
 // Races

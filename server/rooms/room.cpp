@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -132,9 +131,9 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP;
   if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
-  reports_.tellGame(now);
   desk_.finishRelayout();
   if (!data_.time.runs() || now >= data_.time.due()) desk_.carryOut(now);
+  reports_.tellGame(now);
   announce();
   if (change_.stopsTime()) {
     // The state stands still until the particles are laid out.
@@ -194,9 +193,11 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
   if (built.water != Water::kSame) {
     frames_.restart();
     data_.tick_meter.restart();
-    if (built.water != Water::kContinues) data_.referee.end();
-    // The boats of a new scene have no owner yet, whatever their ids.
-    data_.roster.keepOnly(built.water == Water::kContinues ? data_.water->boatIds() : std::set<std::uint32_t>{});
+    if (built.water != Water::kContinues) {
+      data_.referee.end();
+      data_.roster.keepOnly({});  // the boats of a new scene have no owner yet, whatever their ids
+    }
+    actions_.boatsChanged();
     publishVitals(now);
     reports_.sceneChanged();
   }

@@ -109,8 +109,8 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   }
   Command launch = command;
   v1::Boat& boat = *launch.message.mutable_spawn_boat()->mutable_boat();
-  last_place_.reset();
-  if (command.is_placed_by_room && room_.water->scene().has_course()) placeOnGrid(boat);
+  std::optional<std::uint32_t> place;
+  if (command.is_placed_by_room && room_.water->scene().has_course()) place = placeOnGrid(boat);
   v1::ControlBoat lever;
   lever.set_throttle_ratio(boat.throttle_ratio());
   lever.set_rudder_ratio(boat.rudder_ratio());
@@ -118,7 +118,7 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   if (auto rejected = applyToWater(launch)) return rejected;
   boatsChanged();
   const std::uint32_t boat_id = room_.water->spawnedId();
-  if (last_place_) grid_[boat_id] = *last_place_;
+  if (place) grid_[boat_id] = *place;
   lever.set_boat_id(boat_id);
   levers_[boat_id] = std::move(lever);
   new_ids_.set_boat_id(boat_id);

@@ -1,4 +1,4 @@
-#include <map>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -30,16 +30,16 @@ std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& wate
   return out;
 }
 
-/// Returns where boats or floaters are, by their ids: BodiesFixed28 and FloatersFixed28 begin with id, x, y, z.
-std::map<std::uint32_t, Referee::Position> placesOf(std::span<const std::uint32_t> words, std::uint32_t count) {
+/// Returns where the boat or the floater with this id is: BodiesFixed28 and FloatersFixed28 begin with id, x, y, z.
+std::optional<Referee::Position> placeOf(std::uint32_t id, std::span<const std::uint32_t> words, std::uint32_t count) {
   constexpr std::size_t kWords = 7;
   constexpr double kMillimetre_m = 1e-3;
-  std::map<std::uint32_t, Referee::Position> out;
   for (std::size_t at = 0; at < kWords * count && at + kWords <= words.size(); at += kWords) {
-    out[words[at]] = {kMillimetre_m * static_cast<std::int32_t>(words[at + 1]),
-                      kMillimetre_m * static_cast<std::int32_t>(words[at + 3])};
+    if (words[at] != id) continue;
+    return Referee::Position{kMillimetre_m * static_cast<std::int32_t>(words[at + 1]),
+                             kMillimetre_m * static_cast<std::int32_t>(words[at + 3])};
   }
-  return out;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -111,15 +111,13 @@ void RoomFrames::showReferee(const core::FrameView& frame) {
   Referee::Sample sample{.tick = frame.tick, .time_s = frame.time_s};
   std::vector<Referee::Boat> boats;
   if (referee.kind() == v1::GAME_KIND_RACE && frame.bodies) {
-    const std::map<std::uint32_t, Referee::Position> places = placesOf(frame.bodies->words, frame.bodies->count);
     for (const Roster::BoatOwner& owner : room_.roster.boatOwners()) {
-      const auto place = places.find(owner.boat_id);
-      if (place != places.end()) boats.push_back({owner.boat_id, owner.person_id, owner.team, place->second});
+      if (const auto place = placeOf(owner.boat_id, frame.bodies->words, frame.bodies->count))
+        boats.push_back({owner.boat_id, owner.person_id, owner.team, *place});
     }
     sample.boats = boats;
   } else if (referee.kind() == v1::GAME_KIND_BALL && frame.floaters) {
-    const auto places = placesOf(frame.floaters->words, frame.floaters->count);
-    if (const auto ball = places.find(referee.ballId()); ball != places.end()) sample.ball = ball->second;
+    sample.ball = placeOf(referee.ballId(), frame.floaters->words, frame.floaters->count);
   } else {
     return;
   }

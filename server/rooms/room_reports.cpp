@@ -43,9 +43,10 @@ void RoomReports::tell() {
   if (!news.recovered.empty()) outlets.hasRecovered(room_.self, news.recovered);
   if (!news.fidelity.empty()) outlets.fidelityChanged(room_.self, news.fidelity);
   if (news.boats) tellBoats();
-  if (!news.lesson) return;
-  lesson_.publish({room_.roster.lesson(), game_});
-  outlets.lessonChanged(room_.self, lesson()->lesson);
+  if (news.lesson) {
+    lesson_.publish({room_.roster.lesson(), game_});
+    outlets.lessonChanged(room_.self, lesson()->lesson);
+  }
 }
 
 void RoomReports::tellBoats() {
@@ -65,8 +66,8 @@ void RoomReports::tellPeople(bool is_news, TimePoint now) {
 }
 
 void RoomReports::tellGame(TimePoint now) {
-  const bool is_same = room_.referee.kind() == v1::GAME_KIND_UNSPECIFIED && game_.kind() == v1::GAME_KIND_UNSPECIFIED;
-  if (is_same || now < next_game_news_) return;
+  const bool has_none = room_.referee.kind() == v1::GAME_KIND_UNSPECIFIED && game_.kind() == v1::GAME_KIND_UNSPECIFIED;
+  if (has_none || now < next_game_news_) return;
   next_game_news_ = now + kGameNewsInterval;
   v1::Game game = room_.referee.game();
   if (game.SerializeAsString() == game_.SerializeAsString()) return;

@@ -75,6 +75,7 @@ SimulationThread::~SimulationThread() {
 }
 
 core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
+  if (!setups.empty()) default_room_ = setups.front().name;
   std::set<std::string> names;
   for (RoomSetup& setup : setups) {
     setup.goes_on = true;
@@ -264,7 +265,7 @@ void SimulationThread::add(std::shared_ptr<Room> room) {
 core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
   const auto room = find(name);
   if (!room) return core::invalid("there is no room '" + name + "'");
-  if (room == find("")) {
+  if (name == default_room_) {
     return core::invalid("room '" + name + "' is the default room: it stays as long as the server");
   }
   end(room, before);

@@ -21,7 +21,7 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
   self->gateway_->rest().tellPadUrls(
       [&sources = self->sources_, page = net::PageAddress{.address = options.network.address,
                                                           .is_tls = options.network.tls.has_value(),
-                                                          .public_url = std::move(options.public_url)}]() mutable {
+                                                          .public_url = std::move(options.public_url)}]() {
         const net::Server* const network = sources.network;
         if (network == nullptr) return std::vector<std::string>{};  // a request of the first moment
         net::PageAddress now = page;

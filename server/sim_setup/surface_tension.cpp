@@ -67,8 +67,7 @@ core::Result<void> ripplesFit(const core::Scene& scene, double cell_m) {
   if (cell_m > most_m * (1 + 1e-9))
     return refuse(
         fmt::format("needs cells of at most {:.3g} mm, a sixth of its slowest ripples of {:.3g} mm, and these have "
-                    "{:.3g} mm: use a "
-                    "resolution_count of {:.0f} or more, a shorter side_m",
+                    "{:.3g} mm: use a resolution_count of {:.0f} or more, a shorter side_m",
                     1e3 * most_m, 1e3 * slowestRipple_m(scene), 1e3 * cell_m, std::ceil(wave.side_m / most_m)));
   return {};
 }
@@ -82,8 +81,7 @@ core::Result<void> tensionFits(const core::ParticleScene& p, double spacing_m) {
   if (p.solver == core::PressureSolver::kPositionBased || p.sound_speed_mps >= least_mps * (1 - 1e-9)) return {};
   return core::invalid(
       fmt::format("particles.sound_speed_mps: {} m/s is too soft for a surface_tension_npm of {} N/m and particles "
-                  "{:.3g} mm apart: "
-                  "use at least {:.3g} m/s, less tension, or PRESSURE_SOLVER_POSITION_BASED",
+                  "{:.3g} mm apart: use at least {:.3g} m/s, less tension, or PRESSURE_SOLVER_POSITION_BASED",
                   p.sound_speed_mps, p.surface_tension_npm, 1e3 * spacing_m, least_mps));
 }
 

@@ -2,8 +2,8 @@
 // Reads PRESSURE_POINT (position, m/rho), ACCELERATION (velocity, rho), SORTED_POSITION.w (id), SORTED_VELOCITY.w (foam), CELL_START, the
 // floor; with TENSION SURFACE_GRADIENT. Writes POSITION, VELOCITY (in sorted order).
 // Equation: the weakly compressible solver's viscosity, mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian W (thesis 3.18), and its
-// collisions, -1/rho_0 sum_j m q grad W (particles/collision.glsl), and the surface tension of particles/tension.glsl, over one step. The gradients
-// of the surface are those before the last correction.
+// collisions, -1/rho_0 sum_j m q grad W (particles/collision.glsl), and the surface tension of
+// particles/tension.glsl, over one step. The gradients of the surface are those before the last correction.
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"

@@ -3,7 +3,8 @@
 // Equations: -sum_j m (p_i/rho_i^2 + p_j/rho_j^2) grad W (momentum-conserving form of thesis 3.17) or, with MEAN_FORCE,
 // -1/rho_i sum_j m (p_i + p_j)/(2 rho_j) grad W (thesis 3.17 unchanged); mu/rho_i sum_j m/rho_j (v_j - v_i) laplacian
 // W, viscosity kernel (thesis 3.18, with the velocity difference that its text describes); -1/rho_0 sum_j m q grad W for
-// pairs that approach each other (particles/collision.glsl); with TENSION that of particles/tension.glsl; above the water -downforce (y - eta)^2 (thesis 3.6.2).
+// pairs that approach each other (particles/collision.glsl); with TENSION that of particles/tension.glsl; above the water
+// -downforce (y - eta)^2 (thesis 3.6.2).
 // Invariant: the pair terms are antisymmetric up to rounding (not with MEAN_FORCE); the particle itself adds nothing (r = 0).
 #include "shared/groups.h"
 #include "grid/candidates.glsl"

@@ -83,7 +83,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   it("starts a race with the pad's boat in it", async () => {
     await press("game-race");
     await projector.getByTestId("board-race").waitFor({ timeout: WAIT_MS });
-    assert.match(await pad.getByTestId("pad-headline").textContent(), /^Race/);
+    await pad.getByTestId("pad-headline").filter({ hasText: /^Race/ }).waitFor({ timeout: WAIT_MS });
     await press("game-end");
     await pad.getByTestId("pad-headline").waitFor({ state: "hidden", timeout: WAIT_MS });
   });

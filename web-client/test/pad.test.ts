@@ -5,7 +5,7 @@ import type { GreetingInfo } from "../src/codec/greeting";
 import type { CommandAction } from "../src/net/messages";
 import { isPadAddress } from "../src/app/address";
 import { friendlyName } from "../src/pad/friendly_name";
-import { gameTouch, KnockSense } from "../src/pad/haptics";
+import { gameTouch } from "../src/pad/game_touch";
 import { boatView, ontoWater, toPlace, toPx, turnFor, wholeView } from "../src/pad/map_view";
 import { PadHands, type PadWater } from "../src/pad/pad_hands";
 import { compassText } from "../src/pad/pad_words";
@@ -110,7 +110,7 @@ describe("fingers on the pad", () => {
       hands.press(1, 200, 240, mode, water);
       time.advance(300);
       hands.move(1, 320, 240, water);
-      expect(hands.previews(water).length).toBe(1);
+      expect(hands.previews(water.greeting).length).toBe(1);
       hands.release(1, water);
       expect(sent.map((action) => action.case)).toEqual([wanted]);
     }
@@ -129,13 +129,6 @@ describe("fingers on the pad", () => {
 });
 
 describe("what the phone says to the hand", () => {
-  it("knocks when the boat loses speed at once, not when it slows down", () => {
-    const sense = new KnockSense();
-    expect([[0, 3], [0.1, 2.9], [0.2, 2.8], [0.3, 0.5], [0.4, 0.4]].map(([timeS, speedMps]) => sense.feel(timeS!, speedMps!))).toEqual([false, false, false, true, false]);
-    sense.forget();
-    expect(sense.feel(9, 0)).toBe(false);
-  });
-
   it("tells start, marks, laps, the finish and goals apart", () => {
     const racer = { personId: 4, lapsCount: 0, nextMark: 1, lapBestS: 0, finishedS: 0 };
     const game: GameInfo = { kind: "race", phase: "running", beginsS: 0, endsS: 0, lapsCount: 2, goalsCount: 3, racers: [racer], redGoalsCount: 0, blueGoalsCount: 0, winnerPersonId: 0, winnerTeam: undefined, ballFloaterId: 0 };

@@ -201,7 +201,7 @@ TEST_F(RefereeTest, AGoalCountsForTheOtherTeamAndTheBallIsPutBack) {
 TEST_F(RefereeTest, ALostBallIsPutBackWithoutAGoal) {
   start(v1::GAME_KIND_BALL);
   putBall(7);
-  referee.see({.tick = tick - 1, .time_s = time_s});
+  referee.see({.tick = tick, .time_s = time_s});
   EXPECT_FALSE(referee.wantedBall()) << "a frame from before it was put there";
   seeBall(std::nullopt);
   EXPECT_TRUE(referee.wantedBall());

@@ -259,7 +259,7 @@ export class App {
 
   private enter(greeting: GreetingInfo): void {
     if (this.entered?.room !== greeting.room || this.entered.sceneName !== greeting.sceneName) this.entering();
-    if (this.entered?.room !== greeting.room) this.lessons.enter();
+    const isOtherRoom = this.entered?.room !== greeting.room;
     this.entered = greeting;
     this.display.enter(greeting);
     this.effects.enter(greeting);
@@ -280,7 +280,9 @@ export class App {
     this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;
     this.viewButtons.canDive = this.display.views.canDive;
-    this.showRole();
+    // Tells all that depend on the lesson, the role or the scene.
+    if (isOtherRoom) this.lessons.enter();
+    else this.lessons.set({});
     this.viewButtons.refresh();
     // The card's height has changed with the text.
     this.display.resize();
@@ -311,12 +313,13 @@ export class App {
 
   private showTags(atS: number): void {
     const { scene, views, covered } = this.display;
-    this.fingers.update(scene.camera, scene.ripple.down(), this.people.ownId, (xM, zM) => scene.heightAtM(xM, zM), covered, atS);
+    this.fingers.update(scene.camera, scene.ripple.down(), this.lessons.ownId, scene.heightAtM, covered, atS);
     const own = this.mayDraw ? this.outline() : undefined;
-    const mark = this.nextMark === undefined ? undefined : this.entered?.course?.marks[this.nextMark];
+    const { nextMark } = this;
+    const mark = nextMark === undefined ? undefined : this.entered?.course?.marks[nextMark];
     const next: Outline[] = mark ? [{ kind: "disc", at: mark, radiusM: mark.radiusM, color: kNextMarkColor }] : [];
-    this.marks.update(scene.camera, this.nextMark, (xM, zM) => scene.heightAtM(xM, zM), covered);
-    this.preview.update([...(own ? [own] : []), ...next, ...this.fingers.discs()], scene.camera, (xM, zM) => scene.heightAtM(xM, zM));
+    this.marks.update(scene.camera, nextMark, scene.heightAtM, covered);
+    this.preview.update([...(own ? [own] : []), ...next, ...this.fingers.discs()], scene.camera, scene.heightAtM);
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }
 

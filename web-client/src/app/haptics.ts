@@ -46,13 +46,19 @@ export class Haptics {
     void standardGamepad()?.vibrationActuator?.playEffect("dual-rumble", { duration: Math.max(ms, kMotorMs), strongMagnitude: strong, weakMagnitude: weak }).catch(() => {});
   }
 
+  /** Lets a phone tell more: durations of vibration and pause in turn, ms. */
+  tell(patternMs: readonly number[]): void {
+    // Not on all phones.
+    if (this.isOn) navigator.vibrate?.([...patternMs]);
+  }
+
   /** Lets slaps and knocks of one's own boat be felt. Call it after each picture. */
   follow({ frames, heightAtM }: Pick<WaterScene, "frames" | "heightAtM">, greeting: GreetingInfo | undefined, boatId: number): void {
     const state = frames.bodies.newest();
     if (!this.isOn || !greeting || boatId === 0 || !state || state === this.bodies) return;
     this.bodies = state;
     this.events.clear();
-    this.boats.take(state, greeting.boats, greeting.gravityMps2 || 9.81, heightAtM, this.events);
-    for (const event of this.events.all.slice(0, this.events.count)) if (event.boatId === boatId && (event.kind === "slap" || event.kind === "knock")) this.feel(event.kind);
+    this.boats.take({ ...state, bodies: state.bodies.filter((body) => body.boatId === boatId) }, greeting.boats, greeting.gravityMps2 || 9.81, heightAtM, this.events);
+    for (const event of this.events.all.slice(0, this.events.count)) if (event.kind === "slap" || event.kind === "knock") this.feel(event.kind);
   }
 }

@@ -100,13 +100,13 @@ export class PointerHands {
     if (partner) return this.handOver(partner.down, event);
     const { tool } = app.tools;
     const grip = this.floaters.under(event, tool.name);
-    const reason = grip ? undefined : this.whyNot(tool);
-    if (reason !== undefined) return app.tools.explain(reason);
     const place = this.placeUnder(event) ?? grip?.at;
     if (!place || (isTouch && event.timeStamp - this.cameraTouchMs < kTogetherMs)) {
       if (isTouch) this.cameraTouchMs = event.timeStamp;
       return;
     }
+    const reason = grip ? undefined : this.whyNot(tool);
+    if (reason !== undefined) return app.tools.explain(reason);
     app.display.views.takesPointers = false;
     // Those of keys and gamepads exist for this page only.
     if (event.isTrusted) app.display.canvas.setPointerCapture(event.pointerId);

@@ -2,7 +2,7 @@
 // the address of the pads, the people and the game lie over the water.
 import { Vector3 } from "three";
 
-import { beginDirecting, direct, wideFraming, type DirectorState, type Sight } from "../class/director";
+import { beginDirecting, direct, type DirectorState, type Sight } from "../class/director";
 import { Boards, playersOf } from "../class/boards";
 import { JoinCard, joinAddresses } from "../class/join_card";
 import "../class/class.css";
@@ -71,6 +71,7 @@ class DirectedCamera {
     const { canvas } = app.display;
     for (const type of ["pointerdown", "wheel", "keydown"] as const) canvas.addEventListener(type, hold, { passive: true });
     for (const button of document.querySelectorAll(".views button")) button.addEventListener("click", hold);
+    app.display.views.turned = hold;
   }
 
   update(atS: number): void {
@@ -78,15 +79,17 @@ class DirectedCamera {
     const { app } = this;
     const { entered, display } = app;
     if (!entered) return;
-    const sight = this.see(atS);
     if (atS < this.handsUntilS || display.views.view === "boat") {
       this.state = undefined;
       this.left = { eyeM: display.scene.camera.position.clone(), targetM: display.views.targetM, sinceS: atS };
       return;
     }
-    const isNew = this.room !== `${entered.room} ${entered.sceneName}`;
-    this.room = `${entered.room} ${entered.sceneName}`;
-    this.state = this.state && !isNew ? direct(this.state, sight) : beginDirecting(sight, wideFraming(sight));
+    const room = `${entered.room} ${entered.sceneName}`;
+    const isNew = this.room !== room;
+    this.room = room;
+    if (isNew) this.floatersBefore.clear();
+    const sight = this.see(atS);
+    this.state = this.state && !isNew ? direct(this.state, sight) : beginDirecting(sight);
     const { positionM, targetM } = display.views.frame(this.state.now);
     const back = this.left ? smooth(clamp((atS - this.left.sinceS) / kReturnS, 0, 1)) : 1;
     if (this.left && back < 1) {

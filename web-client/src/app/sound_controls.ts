@@ -30,8 +30,6 @@ export class SoundControls {
   private middleMs = 0;
   private readonly tone = { xM: 0, zM: 0, octaveM: 1 };
   private isToneKnown = false;
-  private costMs = 0;
-  private pictureCount = 0;
 
   /** `failed`: the code of the sound could not be loaded. */
   constructor(
@@ -42,11 +40,11 @@ export class SoundControls {
     this.rows = new SoundRows(() => this.changed(), haptics);
     this.button.addEventListener("click", () => this.toggle());
     window.addEventListener("keydown", (event) => {
-      if (event.code === "KeyM" && !event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey && !isTyping(event.target)) this.toggle();
+      if (event.key.toLowerCase() === "m" && !event.repeat && !event.ctrlKey && !event.altKey && !event.metaKey && !isTyping(event.target)) this.toggle();
     });
     document.addEventListener("visibilitychange", () => this.run());
     // Browsers let a page sound only after a press.
-    for (const press of ["pointerdown", "keydown"]) window.addEventListener(press, () => this.context?.state === "suspended" && this.run());
+    for (const press of ["pointerdown", "keydown"]) window.addEventListener(press, () => this.isOn && this.context?.state === "suspended" && this.run());
   }
 
   toggle(): void {
@@ -81,25 +79,20 @@ export class SoundControls {
     const { scene } = this.display;
     const sound = this.audible;
     if (!sound || scene.shownTimeS === undefined) return;
-    const startedMs = performance.now();
     sound.take(layer, scene.frames, scene.shownTimeS);
-    this.costMs += performance.now() - startedMs;
   }
 
   /** Call it after each picture. */
   update(): void {
     const sound = this.audible;
     if (!sound) return;
-    const startedMs = performance.now();
-    this.findTone(startedMs);
+    this.findTone(performance.now());
     sound.clouds = this.clouds;
     sound.tone = this.isToneKnown ? this.tone : undefined;
     sound.update(this.display.scene.camera);
-    this.costMs += performance.now() - startedMs;
-    ++this.pictureCount;
   }
 
-  /** For tests: what sounds now; undefined before sound was asked for. `costMs`: mean per picture. */
+  /** For tests: what sounds now; undefined before sound was asked for. */
   stats() {
     const { context, voices, sound } = this;
     if (!context) return undefined;
@@ -109,7 +102,6 @@ export class SoundControls {
       levelRms: voices?.levelRms() ?? 0,
       voiceCount: sound?.voiceCount ?? 0,
       tone: sound?.heardTone && { ...sound.heardTone, playsHz: voices!.toneHz },
-      costMs: this.costMs / Math.max(this.pictureCount, 1),
     };
   }
 

@@ -122,7 +122,11 @@ export class GamepadTools {
     const pad = standardGamepad();
     const stepS = Math.min(Math.max(nowS - this.atS, 0), kLongestStepS) || 0;
     this.atS = nowS;
-    if (!pad) return this.pointer.release(this.xPx, this.yPx);
+    if (!pad) {
+      this.steer({});
+      this.held.clear();
+      return this.pointer.release(this.xPx, this.yPx);
+    }
     const pressed = new Set(pad.buttons.flatMap((button, k) => (button.pressed ? [k] : [])));
     const isNew = (button: number): boolean => pressed.has(button) && !this.held.has(button);
     const [x = 0, y = 0, turnX = 0, turnY = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));

@@ -22,8 +22,9 @@ export class Boards {
   private readonly race = make("table", { class: "board-race glass", "data-testid": "board-race", hidden: "" });
   private readonly people = make("ul", { class: "board-people glass", "data-testid": "board-people", "aria-label": "People in the room", hidden: "" });
   private readonly side = make("div", { class: "board-side" }, [this.race, this.people]);
-  private clock = make("span");
-  private headlineText = make("span");
+  /** Changes ten times per second, which no screen reader has to say. */
+  private readonly clock = make("span", { "aria-hidden": "true" });
+  private readonly headlineText = make("span");
 
   constructor(private readonly lessons: LessonState) {
     this.headline.append(this.headlineText, this.clock);

@@ -105,7 +105,7 @@ export class OperatorPanel {
     this.freeze.setAttribute("aria-pressed", String(lesson.frozen));
     this.teams.setAttribute("aria-pressed", String(lesson.teams));
     for (const [tool, element] of this.tools) element.setAttribute("aria-pressed", String(lesson.tools.includes(tool)));
-    if (!this.element.contains(document.activeElement) || document.activeElement?.id !== "slider-lesson-force") this.force.show(lesson.forceRatio, "");
+    if (document.activeElement?.id !== "slider-lesson-force") this.force.show(lesson.forceRatio, "");
     const course = this.greeting()?.course;
     this.race.hidden = !course?.marks.length;
     this.ball.hidden = !course?.goals;

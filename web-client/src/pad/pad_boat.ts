@@ -45,6 +45,8 @@ export class PadBoat {
   }
 
   steer(setting: HelmSetting): void {
+    // So that keys do not continue from where they were before the stick.
+    this.keys.centre();
     this.orders.offer(setting);
   }
 

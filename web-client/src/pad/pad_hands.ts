@@ -13,7 +13,7 @@ import { heldRatio, kTapStrokeS, kTools, paddleWave, splashOf, strokeSize, type 
 /** A finger that has moved less is where it came down. */
 const kStillPx = 10;
 /** A press that is shorter is a tap. */
-const kTapMs = 250;
+const kPadTapMs = 250;
 /** An object is taken within this distance of it. */
 const kTakePx = 26;
 /** A pad's tool has this size and strength. */
@@ -105,10 +105,10 @@ export class PadHands {
     return [...this.hands.values()].map(({ at }) => at);
   }
 
-  previews({ greeting }: PadWater): Preview[] {
+  previews(greeting: GreetingInfo): Preview[] {
     return [...this.hands.values()].flatMap(({ tool, from, at, beganMs, isMoved }): Preview[] => {
       if ((tool.name === "paddle" || tool.name === "throw") && isMoved) return [{ kind: "arrow", from, to: at }];
-      if (tool.name === "splash") return [{ kind: "ring", at, radiusM: (effectLimits(greeting)?.splashRadiusM.default ?? 1) * heldRatio((this.world.nowMs() - beganMs) / 1000) }];
+      if (tool.name === "splash") return [{ kind: "ring", at, radiusM: (effectLimits(greeting)?.splashRadiusM.default ?? 1) * heldRatio((this.world.nowMs() - beganMs - kPadTapMs) / 1000) }];
       const size = strokeSize(tool, greeting, kScale);
       return size ? [{ kind: "ring", at, radiusM: size.radiusM }] : [];
     });
@@ -122,7 +122,7 @@ export class PadHands {
       const limits = effectLimits(greeting);
       if (!limits) return;
       const usual = { splashRadiusM: limits.splashRadiusM.default, splashDepthM: limits.splashDepthM.default };
-      this.send(splashOf(at, usual, limits, { ...kScale, sizeRatio: heldRatio((heldMs - kTapMs) / 1000) }), "Splash");
+      this.send(splashOf(at, usual, limits, { ...kScale, sizeRatio: heldRatio((heldMs - kPadTapMs) / 1000) }), "Splash");
     } else if (tool.name === "paddle") {
       const wave = paddleWave(from, at, greeting, kScale);
       if (wave) this.send(wave, "Wave");
@@ -133,7 +133,7 @@ export class PadHands {
       const kind = kDropped[Math.floor(this.random() * kDropped.length)]!;
       const headingDeg = Math.round(360 * this.random() - 180);
       this.send(dropOf(kind, at, heightAtM(at), floaterSizeM("float", greeting, kScale)!, 0, headingDeg, greeting), "Object");
-    } else if (size && stayS !== undefined && heldMs < kTapMs) {
+    } else if (size && stayS !== undefined && heldMs < kPadTapMs) {
       this.strokes.stay(at, size, stayS, 1);
     }
   }

@@ -1,4 +1,5 @@
 // The pad's map over time: frames of the server, the view of the moment, and one picture of both.
+import type { Haptics } from "../app/haptics";
 import type { GreetingInfo } from "../codec/greeting";
 import type { GroundGrid } from "../codec/ground";
 import type { FingerInfo } from "../codec/strokes";
@@ -56,6 +57,11 @@ export class PadMap {
     this.drawing = new MapDrawing(canvas);
   }
 
+  /** Lets the hand feel what happens to a boat. Call it after each picture. */
+  feel(haptics: Haptics, boatId: number): void {
+    if (this.frames) haptics.follow({ frames: this.frames, heightAtM: this.heightAtM }, this.greeting, boatId);
+  }
+
   /** `release` takes back the frames that are not needed any more. */
   enter(greeting: GreetingInfo, release: (frame: Frame) => void): void {
     const isSame = this.greeting?.sideM === greeting.sideM && this.greeting.widthM === greeting.widthM && this.greeting.room === greeting.room;
@@ -92,19 +98,21 @@ export class PadMap {
     return { surfaceCells: frame ? frame.resolutionCount * frame.countZ : 0, boats: this.boatsCount, floaters: this.floatersCount };
   }
 
+  private readonly heightAtM = (xM: number, zM: number): number => {
+    const frame = this.frames?.surfaces.newest();
+    return frame ? elevationAtM(frame, xM, zM) : 0;
+  };
+
   /** What fingers on the map need to know; undefined before the first picture. */
   water(): PadWater | undefined {
-    const { greeting, view, frames } = this;
+    const { greeting, view } = this;
     if (!greeting || !view) return undefined;
     return {
       greeting,
       pxPerM: view.pxPerM,
       placeOf: (xPx, yPx) => ontoWater(toPlace(view, xPx, yPx), greeting),
       floaters: this.floaterPoses.slice(0, this.floatersCount),
-      heightAtM: ({ xM, zM }) => {
-        const frame = frames?.surfaces.newest();
-        return frame ? elevationAtM(frame, xM, zM) : 0;
-      },
+      heightAtM: ({ xM, zM }) => this.heightAtM(xM, zM),
     };
   }
 

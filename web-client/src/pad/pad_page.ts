@@ -2,6 +2,7 @@
 // helm. It asks for coarse frames at a low rate, so that a class of pads costs the server little.
 import "./pad.css";
 import { takeLinkToken } from "../app/address";
+import { Haptics } from "../app/haptics";
 import type { GreetingInfo } from "../codec/greeting";
 import type { LessonTool } from "../codec/lesson";
 import type { FingerInfo } from "../codec/strokes";
@@ -17,7 +18,7 @@ import { LessonState } from "../ui/lesson_state";
 import { kStrokeLabel } from "../ui/stroke_sender";
 import { kHoldLabel } from "../ui/hold_sender";
 import { friendlyName } from "./friendly_name";
-import { gameTouch, kPatterns, KnockSense, type PatternName } from "./haptics";
+import { gameTouch, kPatterns } from "./game_touch";
 import { kPadHelmLabel, PadBoat } from "./pad_boat";
 import { PadHands } from "./pad_hands";
 import { makePadLayout } from "./pad_layout";
@@ -64,7 +65,7 @@ class PadPage {
   private readonly hands = new PadHands((action, label) => this.send(action, label), this.world, Math.random);
   private readonly boat = new PadBoat((action, label) => this.send(action, label), this.world);
   private readonly stick = new Stick((setting) => this.boat.steer(setting));
-  private readonly knocks = new KnockSense();
+  private readonly haptics = new Haptics();
   private readonly labels = new Map<number, string>();
   private state: ConnectionState = { name: "connecting" };
   private greeting: GreetingInfo | undefined;
@@ -112,6 +113,7 @@ class PadPage {
         if (state.name !== "live") {
           this.fingers = [];
           this.hands.liftAll();
+          this.stick.release();
         }
         this.refresh();
       },
@@ -132,7 +134,7 @@ class PadPage {
       lesson: ({ lesson }) => this.lessons.set({ lesson }),
       game: ({ game }) => {
         const touch = gameTouch(this.lessons.game, game, this.lessons.ownId);
-        if (touch) vibrate(touch);
+        if (touch) this.haptics.tell(kPatterns[touch]);
         this.lessons.set({ game });
       },
       strokes: ({ fingers }) => (this.fingers = fingers),
@@ -188,6 +190,7 @@ class PadPage {
     if (mode !== this.mode) {
       this.hands.liftAll();
       this.stick.release();
+      this.boat.rest();
     }
     this.mode = mode;
     keepChoice(kModeKey, mode);
@@ -212,7 +215,6 @@ class PadPage {
     }
     const { me } = lessons;
     this.boat.boatId = me?.boatIds[0] ?? 0;
-    if (this.boat.boatId === 0) this.knocks.forget();
     document.body.style.setProperty("--own", me?.color ?? "#5fd4e6");
     document.body.dataset["team"] = me?.team ?? "";
     elements.me.title = me?.team ? `Team ${kTeamLabels[me.team]}` : "";
@@ -258,7 +260,7 @@ class PadPage {
     window.addEventListener("blur", leave);
     window.addEventListener("pagehide", () => this.identities.leave(this.identity));
     window.addEventListener("pageshow", ({ persisted }) => persisted && this.identities.save(this.identity));
-    window.addEventListener("keydown", (event) => this.mode === "boat" && !elements.dialog.open && this.boat.key(event.code, true) && event.preventDefault());
+    window.addEventListener("keydown", (event) => this.mode === "boat" && !event.ctrlKey && !event.altKey && !event.metaKey && !elements.dialog.open && this.boat.key(event.code, true) && event.preventDefault());
     window.addEventListener("keyup", ({ code }) => this.boat.key(code, false));
   }
 
@@ -302,15 +304,14 @@ class PadPage {
     const nowMs = performance.now();
     this.boat.update(nowMs / 1000);
     const { lessons, boat, fingers, mode } = this;
-    const water = this.map.water();
     const pose = this.map.draw(nowMs / 1000, lessons, {
       followedId: mode === "boat" ? boat.boatId : 0,
       ownBoatId: boat.boatId,
       fingers,
       ownFingers: this.hands.places(),
-      previews: water ? this.hands.previews(water) : [],
+      previews: this.greeting ? this.hands.previews(this.greeting) : [],
     });
-    if (pose && this.knocks.feel(pose.timeS, pose.speedMps)) vibrate("knock");
+    this.map.feel(this.haptics, boat.boatId);
     this.words.update(this.map.simTimeS, pose);
     this.measure(nowMs);
   }
@@ -323,9 +324,4 @@ class PadPage {
     this.picturesCount = 0;
     this.picturesSinceMs = nowMs;
   }
-}
-
-function vibrate(pattern: PatternName): void {
-  // Not on all phones.
-  navigator.vibrate?.([...kPatterns[pattern]]);
 }

@@ -147,6 +147,8 @@ export class WaterSound {
     this.listen(camera);
     if (nowS - this.bedsAtS < kBedsEveryS) return;
     this.bedsAtS = nowS;
+    // Water that stands still, as in a pause, has no note.
+    if (!this.tone || nowS - this.movedAtS >= kStaleS) this.endTone();
     this.voices.setUnder(this.listener.isUnder);
     if (nowS - this.movedAtS < kStaleS) this.offerBeds();
     this.playBeds(nowS);
@@ -224,13 +226,14 @@ export class WaterSound {
     }
   }
 
+  private endTone(): void {
+    if (this.heardTone) this.voices.silenceTone();
+    this.heardTone = undefined;
+  }
+
   private playTone(): void {
     const { tone } = this;
-    if (!tone) {
-      if (this.heardTone) this.voices.silenceTone();
-      this.heardTone = undefined;
-      return;
-    }
+    if (!tone) return;
     const elevationM = this.heights.elevationAtM(tone.xM, tone.zM);
     const hz = pitchHz(elevationM, tone.octaveM);
     this.heardTone ??= { elevationM: 0, hz: kRestHz };

@@ -24,7 +24,7 @@ interface Rules {
 /** Returns why a player may not use a tool now, as a line for people; undefined if nothing is against it. */
 export function whyNot(tool: LessonTool | undefined, { lesson, role, isMuted }: Rules): string | undefined {
   if (role === "operator") return undefined;
-  if (lesson.frozen) return "The teacher has paused the water for everybody.";
+  if (lesson.frozen) return "The teacher has paused the pads.";
   if (isMuted) return "The teacher has muted you for now.";
   if (tool !== undefined && !lesson.tools.includes(tool)) return `${kLessonToolLabels[tool]}: not handed out in this lesson.`;
   return undefined;

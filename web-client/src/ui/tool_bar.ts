@@ -72,7 +72,9 @@ export class ToolBar {
       button.title = reason ?? titleOf(tool);
     }
     const isUseless = (tool: Tool): boolean => isAbsent(tool) || whyNot(tool.name) !== undefined;
-    if (mayDraw && isUseless(this.current)) this.choose((kTools.find((tool) => !isUseless(tool)) ?? kTools[0]!).name, false);
+    // While all are withheld, as in a pause, the choice stays.
+    const useful = kTools.find((tool) => !isUseless(tool));
+    if (mayDraw && useful && isUseless(this.current)) this.choose(useful.name, false);
     this.showRows();
     if (!mayDraw) this.hint.hidden = true;
     else if (!this.isGreeted) this.greet();
@@ -82,7 +84,8 @@ export class ToolBar {
   step(count: number): void {
     const names = kTools.map(({ name }) => name).filter((name) => !this.buttons.get(name)!.hidden && this.whyNot(name) === undefined);
     const at = names.indexOf(this.current.name);
-    if (!this.bar.hidden) this.choose(names[(at + count + names.length) % names.length]!, true);
+    const next = names[(at + count + names.length) % names.length];
+    if (next && !this.bar.hidden) this.choose(next, true);
   }
 
   /** The tool was used: no hint is needed any more. */

@@ -42,7 +42,7 @@ export class ViewButtons {
   step(): void {
     const names = kViewNames.filter((name) => !byId(`view-${name}`).hidden && !(name === "boat" && this.boat.disabled));
     const at = this.views.view === undefined ? -1 : names.indexOf(this.views.view);
-    this.show(names[(at + 1) % names.length]!);
+    byId(`view-${names[(at + 1) % names.length]!}`).click();
   }
 
   private show(name: ViewName): void {

@@ -64,6 +64,9 @@ export class CameraViews {
   private readonly scratchM = new Vector3();
   private travel: { fromM: Vector3; toM: Vector3; fromTargetM: Vector3; toTargetM: Vector3; fromFovDegrees: number; startedS: number } | undefined;
 
+  /** Called when keys or a gamepad turn the view. */
+  turned: () => void = () => {};
+
   constructor(
     private readonly camera: PerspectiveCamera,
     canvas: HTMLElement,
@@ -172,6 +175,7 @@ export class CameraViews {
     camera.position.setFromSpherical(around).add(controls.target);
     this.movedByHand();
     this.hand.update();
+    this.turned();
   }
 
   /** Returns where the camera shows a disc of the water, from the direction of the view from above; one as large as the water is that view. */

@@ -1,8 +1,8 @@
 // The lamps that shine in the dark: positions, colours and sizes of their glow for one picture, as instances of a quad.
 import { BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from "three";
 
-/** More than a room has: 16 boats with 4 lamps, lights of breakwaters with their beams, buoys. The rest is not drawn. */
-const kLampsMax = 160;
+/** More than a room has: 64 boats with 4 lamps, lights of breakwaters with their beams, buoys. The rest is not drawn. */
+const kLampsMax = 352;
 
 export type LampColor = readonly [red: number, green: number, blue: number];
 

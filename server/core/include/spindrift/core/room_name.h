@@ -7,6 +7,8 @@
 
 namespace spindrift::core {
 
+/// The default room of a cluster, and of a server that is started by itself.
+inline constexpr const char* kDefaultRoom = "main";
 inline constexpr std::size_t kRoomNameMaxBytes = 32;
 /// The rule in words, for messages.
 inline constexpr std::string_view kRoomNameRule = "1 to 32 letters, digits, '_' or '-'";

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <spindrift/rooms/command.h>
@@ -73,15 +74,14 @@ class RoomActions {
   /// Returns whether a player means the ball of the game.
   [[nodiscard]] bool isBall(const Command& command, std::uint32_t floater_id) const;
   static wire::CommandRejection notTheBall(const char* field);
-  /// Moves a new boat to the next free place of the grid behind the start, last_place_; leaves it where it is when no
-  /// place is left. A place is free when no boat on the water was launched there.
-  void placeOnGrid(v1::Boat& boat);
+  /// Moves a new boat to the next free place of the grid behind the start and returns that place; leaves the boat where
+  /// it is when no place is left. A place is free when no boat on the water was launched there.
+  std::optional<std::uint32_t> placeOnGrid(v1::Boat& boat);
 
   RoomData& room_;
   v1::Ack new_ids_;
   std::map<std::uint32_t, v1::ControlBoat> levers_;  ///< by boat: as their owners hold them, also before a start
   std::map<std::uint32_t, std::uint32_t> grid_;      ///< places by boat
-  std::optional<std::uint32_t> last_place_;          ///< of the boat that is being launched
 };
 
 }  // namespace spindrift::rooms

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include <spindrift/core/result.h>
+#include <spindrift/core/room_name.h>
 #include <spindrift/gpu/device.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/room_opener.h>
@@ -131,6 +132,8 @@ class SimulationThread {
   std::unique_ptr<water::WaterBuilder> builder_;
   std::unique_ptr<RoomOpener> opener_;         ///< used by the thread only
   std::vector<RoomOpener::Opening> openings_;  ///< likewise
+  /// Never closed: the first of those at the start. In a cluster none begins here, and it may run elsewhere.
+  std::string default_room_{core::kDefaultRoom};
   mutable std::mutex rooms_mutex_;
   std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;  ///< guarded by rooms_mutex_

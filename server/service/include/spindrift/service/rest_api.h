@@ -82,7 +82,7 @@ class RestApi {
   std::atomic<bool> is_draining_{false};
   rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
   ClusterHooks cluster_;                      ///< set before any request arrives
-  std::function<std::vector<std::string>()> pad_urls_;
+  std::function<std::vector<std::string>()> pad_urls_;  ///< set before any request arrives
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
