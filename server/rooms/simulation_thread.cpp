@@ -12,6 +12,7 @@
 namespace spindrift::rooms {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 using core::Error;
 using core::ErrorCode;
 
@@ -285,7 +286,6 @@ void SimulationThread::end(const std::shared_ptr<Room>& room, const std::functio
 }
 
 void SimulationThread::loop() {
-  using Clock = std::chrono::steady_clock;
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [&] { return stopping_ || running_; });
   for (const auto& room : rooms_) room->start(Clock::now());

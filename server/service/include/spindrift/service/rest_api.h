@@ -80,8 +80,8 @@ class RestApi {
   const std::function<void(const rooms::Room&)> dismiss_;
   const std::function<void()> on_drain_;
   std::atomic<bool> is_draining_{false};
-  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any request arrives
-  ClusterHooks cluster_;                      ///< set before any request arrives
+  rooms::SimulationThread* rooms_ = nullptr;            ///< set before any request arrives
+  ClusterHooks cluster_;                                ///< set before any request arrives
   std::function<std::vector<std::string>()> pad_urls_;  ///< set before any request arrives
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
