@@ -24,7 +24,8 @@ inline bool isFinite(const google::protobuf::Message& message) {
   std::vector<const FieldDescriptor*> fields;
   reflection.ListFields(message, &fields);
   return std::ranges::all_of(fields, [&](const FieldDescriptor* field) {
-    if (field->is_repeated()) {  // only of messages
+    if (field->is_repeated()) {  // of messages and of values of an enum, which are integers
+      if (field->cpp_type() != FieldDescriptor::CPPTYPE_MESSAGE) return true;
       for (int k = 0; k < reflection.FieldSize(message, field); ++k)
         if (!isFinite(reflection.GetRepeatedMessage(message, field, k))) return false;
       return true;
