@@ -2,7 +2,7 @@
 import { BufferAttribute, InstancedBufferAttribute, InstancedBufferGeometry } from "three";
 
 /** More than a room has: 64 boats with 4 lamps, lights of breakwaters with their beams, buoys. The rest is not drawn. */
-const kLampsMax = 352;
+export const kLampsMax = 352;
 
 export type LampColor = readonly [red: number, green: number, blue: number];
 
