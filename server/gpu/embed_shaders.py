@@ -6,7 +6,7 @@ entry point, even where several `#if` blocks include it; a cycle is refused. Sha
 puts it and the defines before the text for validation, and the program does so before compiling.
 
 variants.txt in the root lists every entry point, and below it one indented line for each set of defines, `A=1 B=2`. Each
-set is validated as GLSL and as the SPIR-V that glslang generates from it. An entry point without such lines is validated
+set is validated as GLSL and as the SPIR-V that glslc generates from it. An entry point without such lines is validated
 once, without defines. Refused: an entry point that is not listed, and a define that its shader does not use.
 
 Files in shared/ are C++ headers as well: `#pragma once` and includes under `#ifdef __cplusplus` are left out.
@@ -15,6 +15,7 @@ The result is one C++ source with the expanded texts and, for each text, the fil
 
 import argparse
 import concurrent.futures
+import os
 import pathlib
 import re
 import subprocess
@@ -179,34 +180,41 @@ def variants_of(expansion, table):
     return [defines for _, defines in sets] or [[]]
 
 
-def validate(tools, expansion, defines):
-    """Returns what the compiler reports about the GLSL, or the validator about the SPIR-V that the compiler generates: one
-    string per message, with the file and line of the source where known. The list is empty when the shader is valid."""
-    head = [VERSION_LINE] + [f"#define {name} {value}" for name, value in defines] + ["#line 1"]
-    with tempfile.TemporaryDirectory() as folder:
-        module = pathlib.Path(folder) / "shader.spv"
-        # -G: SPIR-V for OpenGL. Plain uniforms have no location in our GLSL, but need one in SPIR-V.
-        run = subprocess.run([tools.glslang, "--stdin", "-S", "comp", "-G", "--auto-map-locations", "-o", module],
-                             input="\n".join(head) + "\n" + expansion.text(), capture_output=True, text=True, check=False)
-        spirv = None
-        if run.returncode == 0:
-            spirv = subprocess.run([tools.spirv_val, "--target-env", "opengl4.5", module], capture_output=True, text=True,
-                                   check=False)
-            if spirv.returncode == 0:
-                return []
+def in_folder(folder, *command):
+    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+
+
+def validate(tools, jobs):
+    """Returns what the compiler reports about the GLSL of each (expansion, defines), or the validator about the SPIR-V that the
+    compiler generates: one string per message, with the file and line of the source where known. The list is empty when all
+    are valid. One process compiles a whole share of the jobs: its start costs more than a shader."""
+    shares = [range(first, len(jobs), os.cpu_count()) for first in range(min(os.cpu_count(), len(jobs)))]
+    with tempfile.TemporaryDirectory() as folder, concurrent.futures.ThreadPoolExecutor() as pool:
+        found = [[] for _ in jobs]
+        for index, (expansion, defines) in enumerate(jobs):
+            head = [VERSION_LINE] + [f"#define {name} {value}" for name, value in defines] + ["#line 1"]
+            pathlib.Path(folder, f"{index}.comp").write_text("\n".join(head) + "\n" + expansion.text(), encoding="utf-8")
+        # Plain uniforms have no location in our GLSL, but need one in SPIR-V.
+        options = ["-c", "--target-env=opengl", "-fauto-map-locations"]
+        for run in pool.map(lambda share: in_folder(folder, tools.glslc, *options, *(f"{index}.comp" for index in share)), shares):
+            for line in (run.stdout + run.stderr).splitlines():
+                match = re.match(r"(\d+)\.comp:(?:(\d+):)? (error|warning): (.*)", line)
+                if match:
+                    index = int(match.group(1))
+                    position = jobs[index][0].position(int(match.group(2) or 0))
+                    found[index].append(f"{position}: {match.group(3)}: {match.group(4)}")
+        compiled = [index for index in range(len(jobs)) if not found[index]]
+        options = ["--target-env", "opengl4.5"]
+        for index, run in zip(compiled, pool.map(
+                lambda index: in_folder(folder, tools.spirv_val, *options, f"{index}.comp.spv"), compiled)):
+            if run.returncode != 0:
+                found[index] = [f"{jobs[index][0].entry}: SPIR-V: {line.strip()}" for line in (run.stdout + run.stderr).splitlines()]
     complaints = []
-    if spirv is not None:
-        said = (spirv.stdout + spirv.stderr).splitlines()
-        complaints = [f"{expansion.entry}: SPIR-V: {line.strip()}" for line in said if line.strip()]
-        run.stdout = run.stderr = ""
-    for line in (run.stdout + run.stderr).splitlines():
-        match = re.match(r"(ERROR|WARNING): [^:]*:(\d+): (.*)", line)
-        if match:
-            complaints.append(f"{expansion.position(int(match.group(2)))}: {match.group(1).lower()}: {match.group(3)}")
-        elif line.strip() and line.strip() != "stdin":
-            complaints.append(f"{expansion.entry}: {line.strip()}")
-    variant = " ".join(f"{name}={value}" for name, value in defines) or "no defines"
-    return complaints + [f"{expansion.entry}: not valid with {variant}"]
+    for (expansion, defines), said in zip(jobs, found):
+        if said:
+            variant = " ".join(f"{name}={value}" for name, value in defines) or "no defines"
+            complaints += said + [f"{expansion.entry}: not valid with {variant}"]
+    return complaints
 
 
 def depfile_path(path):
@@ -237,7 +245,7 @@ def main():
     parser.add_argument("--root", type=pathlib.Path, required=True, help="folder of the shaders")
     parser.add_argument("--output", type=pathlib.Path, required=True, help="C++ source to write")
     parser.add_argument("--depfile", type=pathlib.Path, help="make-style list of the files read")
-    parser.add_argument("--glslang", default="glslangValidator", help="compiler to run")
+    parser.add_argument("--glslc", default="glslc", help="compiler to run")
     parser.add_argument("--spirv-val", default="spirv-val", help="validator of SPIR-V to run")
     arguments = parser.parse_args()
 
@@ -257,11 +265,9 @@ def main():
         except ShaderError as error:
             problems.append(str(error))
     try:
-        with concurrent.futures.ThreadPoolExecutor() as pool:
-            for complaints in pool.map(lambda job: validate(arguments, *job), jobs):
-                problems += complaints
+        problems += validate(arguments, jobs)
     except FileNotFoundError as error:
-        problems.append(f"{error.filename} not found: install glslang-tools and spirv-tools")
+        problems.append(f"{error.filename} not found: install glslc and spirv-tools")
     if problems:
         print("\n".join(problems), file=sys.stderr)
         return 1

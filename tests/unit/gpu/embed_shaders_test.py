@@ -1,4 +1,4 @@
-"""Tests of embed_shaders.py: what it refuses and what it writes. Run by ctest, which sets EMBED_SHADERS, GLSLANG_VALIDATOR and
+"""Tests of embed_shaders.py: what it refuses and what it writes. Run by ctest, which sets EMBED_SHADERS, GLSLC and
 SPIRV_VAL."""
 
 import os
@@ -36,7 +36,7 @@ class EmbedShaders(unittest.TestCase):
     def run_tool(self):
         return subprocess.run(
             [sys.executable, os.environ["EMBED_SHADERS"], "--root", self.root, "--output", self.output, "--depfile",
-             self.depfile, "--glslang", os.environ["GLSLANG_VALIDATOR"], "--spirv-val", self.spirv_val],
+             self.depfile, "--glslc", os.environ["GLSLC"], "--spirv-val", self.spirv_val],
             capture_output=True, text=True, check=False)
 
     def assert_refused(self, *words):
@@ -113,7 +113,7 @@ class EmbedShaders(unittest.TestCase):
     def test_says_what_to_install_when_the_validator_is_missing(self):
         self.spirv_val = str(self.root / "no-such-program")
         self.write_shader("a.comp", MAIN)
-        self.assert_refused("no-such-program not found: install glslang-tools and spirv-tools")
+        self.assert_refused("no-such-program not found: install glslc and spirv-tools")
 
     def test_plain_uniforms_need_no_location(self):
         self.write_shader("a.comp", "uniform uint n;\nlayout(binding = 0) buffer B { uint b; };\nlayout(local_size_x = 8) in;\nvoid main() { b = n; }\n")
