@@ -26,15 +26,21 @@ run_part() {
 # CTest runs tests side by side as far as their weights (PROCESSORS in tests/CMakeLists.txt) fit into three per core. The
 # rasteriser computes on the thread that asks: threads of its own would only take turns with those of the other tests.
 # Tests of its threads set their number themselves.
-readonly ctest_options=(--parallel "$((3 * $(nproc)))" --output-on-failure --timeout 600)
+# The whole output goes into the report, which names the tests of a suite.
+readonly ctest_options=(--parallel "$((3 * $(nproc)))" --output-on-failure --timeout 600
+  --test-output-size-passed 10000000 --test-output-size-failed 10000000)
 readonly rasteriser_environment=(LP_NUM_THREADS=0)
 
 # test_native NAME PRESET [LABEL]
 test_native() {
   local name="$1" filter=()
   [[ -z "${3:-}" ]] || filter=(--label-regex "^$3\$")
-  [[ -z "$test_regex" ]] || filter+=(--tests-regex "$test_regex")
-  run_part "$name" "$ctest_limit_s" env "${rasteriser_environment[@]}" ctest --test-dir "build/$2" "${ctest_options[@]}" \
+  local environment=("${rasteriser_environment[@]}")
+  if [[ -n "$test_regex" ]]; then
+    filter+=(--tests-regex "$test_regex")
+    environment+=(SPINDRIFT_TESTS_APART=1)
+  fi
+  run_part "$name" "$ctest_limit_s" env "${environment[@]}" ctest --test-dir "build/$2" "${ctest_options[@]}" \
     --output-junit "$root/build/reports/$name.xml" "${filter[@]}"
 }
 

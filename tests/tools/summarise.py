@@ -7,17 +7,20 @@ Prints one line per part, the failed tests with the head of their output, the sk
 `N passed, N failed, N skipped`. Exit code 1 when anything failed.
 
 A part that fails without naming a failed test counts as one failure, and so does a part without a report or without a
-single test. CTest calls two things "notrun": a test that skipped itself and a test whose program
-is missing; only the first is a skip.
+single test. A case of CTest whose output is GoogleTest's stands for the tests of a suite: each is counted and named. CTest calls
+a test whose program is missing "notrun": it failed.
 """
 
+import re
 import sys
 import xml.etree.ElementTree as ElementTree
 from dataclasses import dataclass, field
 from pathlib import Path
 
 OUTPUT_LINES_SHOWN = 25
-SKIP_MARKS = ("SKIP_REGULAR_EXPRESSION_MATCHED", "SKIP_RETURN_CODE")
+SUITE = re.compile(r"^\[==========\] Running (\d+) tests?", re.MULTILINE)
+RESULT = re.compile(r"\[ *(OK|FAILED|SKIPPED) *\] (\w[\w/]*\.[\w/]+)(?:,.*)? \(\d+ ms\)")
+STARTED = re.compile(r"\[ RUN      \] (\S+)")
 
 
 @dataclass
@@ -35,14 +38,31 @@ def text_of(case, tag):
     return "\n".join(filter(None, (element.get("message", "").strip(), (element.text or "").strip())))
 
 
-def skip_reason(case):
-    """GoogleTest prints the reason on the line after "...: Skipped"; others put it into the message."""
-    lines = [line.strip() for line in text_of(case, "system-out").splitlines()]
-    for index, line in enumerate(lines[:-1]):
-        if line.endswith(": Skipped"):
-            return lines[index + 1]
-    message = (case.find("skipped").get("message") if case.find("skipped") is not None else "") or ""
-    return "no reason given" if message in ("", "true") or message.startswith(SKIP_MARKS) else message
+def skip_reason(text):
+    """GoogleTest prints the reason on the line after "...: Skipped"."""
+    found = re.search(r": Skipped\n(.*)", text)
+    return found.group(1).strip() if found else "no reason given"
+
+
+def read_suite(part, label, text, has_failed):
+    """Counts the tests of a run of GoogleTest. A test that began and did not end crashed, or was ended."""
+    begins = [*STARTED.finditer(text)]
+    ends = [begin.start() for begin in begins[1:]] + [len(text)]
+    fine = len(part.failures)
+    for begin, end in zip(begins, ends):
+        name, output = label + begin.group(1), text[begin.end():end]
+        result = RESULT.search(output)
+        if result is None or result.group(2) != begin.group(1):
+            part.failures.append((name, "did not end\n" + output))
+        elif result.group(1) == "OK":
+            part.passed += 1
+        elif result.group(1) == "SKIPPED":
+            part.skips.append((name, skip_reason(output)))
+        else:
+            part.failures.append((name, output))
+    missing = int(SUITE.search(text).group(1)) - len(begins)
+    if missing != 0 or (has_failed and len(part.failures) == fine):
+        part.failures.append((label, f"{missing} tests did not run\n" + text[-1000:]))
 
 
 def read_case(part, case):
@@ -51,15 +71,20 @@ def read_case(part, case):
     if group and group not in (name, "test"):
         name = f"{group} > {name}"
     skipped = case.find("skipped")
-    if case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail":
+    text = text_of(case, "system-out")
+    has_failed = case.find("failure") is not None or case.find("error") is not None or case.get("status") == "fail"
+    if SUITE.search(text):
+        read_suite(part, name[: name.index("/") + 1], text, has_failed)
+    elif has_failed:
         output = "\n".join(filter(None, (text_of(case, tag) for tag in ("failure", "error", "system-out", "system-err"))))
         part.failures.append((name, output))
-    elif case.get("status") == "notrun" and not (skipped is not None and skipped.get("message", "").startswith(SKIP_MARKS)):
+    elif case.get("status") == "notrun":
         part.failures.append((name, "did not run: " + (text_of(case, "skipped") or "no reason given")))
     elif case.get("status") == "disabled":
         part.skips.append((name, "disabled"))
     elif skipped is not None:
-        part.skips.append((name, skip_reason(case)))
+        message = skipped.get("message") or ""
+        part.skips.append((name, "no reason given" if message in ("", "true") else message))
     else:
         part.passed += 1
 

@@ -7,15 +7,29 @@ import { afterEach, beforeEach, describe, it } from "node:test";
 
 import { repository } from "./workshop.mjs";
 
-const CTEST = `<testsuite name="(empty)" tests="6">
-  <testcase name="unit/Outbox.Keeps" classname="unit/Outbox.Keeps" status="run"><system-out>fine</system-out></testcase>
-  <testcase name="unit/Outbox.Drops" classname="unit/Outbox.Drops" status="fail"><failure message=""/><system-out>expected 1, got 2</system-out></testcase>
-  <testcase name="gpu/Wave.Travels" classname="gpu/Wave.Travels" status="notrun"><skipped message="SKIP_REGULAR_EXPRESSION_MATCHED"/><system-out>a.cpp:3: Skipped
+const CTEST = `<testsuite name="(empty)" tests="5">
+  <testcase name="unit/Outbox" classname="unit/Outbox" status="fail"><failure message=""/><system-out>[==========] Running 2 tests from 1 test suite.
+[ RUN      ] Outbox.Keeps
+[       OK ] Outbox.Keeps (0 ms)
+[ RUN      ] Outbox.Drops
+expected 1, got 2
+[  FAILED  ] Outbox.Drops (3 ms)
+[==========] 2 tests from 1 test suite ran. (3 ms total)
+[  FAILED  ] 1 test, listed below:
+[  FAILED  ] Outbox.Drops</system-out></testcase>
+  <testcase name="gpu/Waves/Wave.Travels/Long" classname="gpu/Waves/Wave.Travels/Long" status="run"><system-out>[==========] Running 1 test from 1 test suite.
+[ RUN      ] Waves/Wave.Travels/Long
+a.cpp:3: Skipped
 no EGL device
-[  SKIPPED ] Wave.Travels</system-out></testcase>
-  <testcase name="unit_net_NOT_BUILT" classname="unit_net_NOT_BUILT" status="notrun"><skipped message="Unable to find executable"/></testcase>
-  <testcase name="unit/Old.One" classname="unit/Old.One" status="disabled"/>
+[  SKIPPED ] Waves/Wave.Travels/Long (0 ms)</system-out></testcase>
+  <testcase name="net_test_NOT_BUILT" classname="net_test_NOT_BUILT" status="notrun"><skipped message="Unable to find executable"/></testcase>
+  <testcase name="unit/Old" classname="unit/Old" status="disabled"/>
 </testsuite>`;
+const CRASH = `<testsuite><testcase name="unit/Ring" status="fail"><failure message="SEGFAULT"/><system-out>[==========] Running 3 tests from 1 test suite.
+[ RUN      ] Ring.Turns
+[       OK ] Ring.Turns (0 ms)
+[ RUN      ] Ring.Breaks
+</system-out></testcase></testsuite>`;
 const NODE = `<testsuites><testsuite name="page"><testcase name="opens" classname="test"/><testcase name="clicks" classname="test"><skipped type="skipped" message="Chromium is missing"/></testcase></testsuite></testsuites>`;
 
 describe("the total of ./dev test", () => {
@@ -40,13 +54,20 @@ describe("the total of ./dev test", () => {
     const sum = summarise(["native", 8, CTEST], ["browser", 0, NODE]);
     assert.equal(sum.last, "2 passed, 2 failed, 3 skipped");
     assert.equal(sum.code, 1);
-    assert.match(sum.text, /FAILED native: unit\/Outbox\.Drops\n {4}expected 1, got 2/);
+    assert.match(sum.text, /FAILED native: unit\/Outbox\.Drops\n(.*\n)? {4}expected 1, got 2/);
+  });
+
+  it("names the test of a suite that crashed, and says how many did not run", () => {
+    const sum = summarise(["native", 8, CRASH]);
+    assert.equal(sum.last, "1 passed, 2 failed, 0 skipped");
+    assert.match(sum.text, /FAILED native: unit\/Ring\.Breaks\n {4}did not end/);
+    assert.match(sum.text, /FAILED native: unit\/\n {4}1 tests did not run/);
   });
 
   it("counts self-skipped tests as skipped and missing programs as failed", () => {
     const { text } = summarise(["native", 8, CTEST]);
-    assert.match(text, /skipped native: gpu\/Wave\.Travels \(no EGL device\)/);
-    assert.match(text, /FAILED native: unit_net_NOT_BUILT\n {4}did not run: Unable to find executable/);
+    assert.match(text, /skipped native: gpu\/Waves\/Wave\.Travels\/Long \(no EGL device\)/);
+    assert.match(text, /FAILED native: net_test_NOT_BUILT\n {4}did not run: Unable to find executable/);
   });
 
   it("succeeds when nothing failed", () => {

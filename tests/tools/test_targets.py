@@ -13,7 +13,7 @@ import sys
 
 PROGRAM = re.compile(r"spindrift_test\(([^)]*)\)")
 TEST = re.compile(r"^\s*TEST(?:_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\)", re.MULTILINE)
-KEYWORDS = {"NAME", "LABEL", "TIMEOUT", "SOURCES", "LIBRARIES", "THREADS", "MEMORY"}
+KEYWORDS = {"NAME", "LABEL", "TIMEOUT", "SOURCES", "LIBRARIES", "THREADS", "MEMORY", "APART", "EACH"}
 
 
 def programs(folder):

@@ -1,0 +1,36 @@
+# Read by ctest when it starts: asks the GoogleTest programs for their tests.
+
+# Adds a test per suite: a process and its OpenGL context cost more than most tests of units and shaders. Where `each` is true, or
+# the environment has SPINDRIFT_TESTS_APART, a test per TEST. `labels` are separated by commas, `weight` as PROCESSORS.
+function(list_tests program label labels timeout_s weight each)
+  string(REPLACE "," ";" labels "${labels}")
+  set(suites "")
+  set(tests "")
+  if(EXISTS "${program}")
+    execute_process(COMMAND "${program}" --gtest_list_tests OUTPUT_VARIABLE output COMMAND_ERROR_IS_FATAL ANY)
+    string(REGEX REPLACE "[ \t]*#[^\n]*" "" output "${output}")  # values of parameters
+    string(REGEX MATCHALL "[^\n]+" lines "${output}")
+    foreach(line IN LISTS lines)
+      if(line MATCHES "^([^ ]+)[.]$")
+        set(suite "${CMAKE_MATCH_1}")
+        list(APPEND suites "${suite}")
+      elseif(line MATCHES "^  ([^ ]+)$")
+        list(APPEND tests "${suite}.${CMAKE_MATCH_1}")
+      endif()
+    endforeach()
+    if(NOT each AND NOT DEFINED ENV{SPINDRIFT_TESTS_APART})
+      set(tests "${suites}")
+    endif()
+  else()
+    get_filename_component(name "${program}" NAME)
+    add_test("${name}_NOT_BUILT" "${program}")  # without labels: parts of ./dev test do not build all
+  endif()
+  foreach(test IN LISTS tests)
+    set(filter "${test}")
+    if(NOT test MATCHES "[.]")
+      set(filter "${test}.*")
+    endif()
+    add_test("${label}/${test}" "${program}" "--gtest_filter=${filter}")
+    set_tests_properties("${label}/${test}" PROPERTIES LABELS "${labels}" TIMEOUT ${timeout_s} PROCESSORS ${weight})
+  endforeach()
+endfunction()
