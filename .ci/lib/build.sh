@@ -48,7 +48,7 @@ need_web() {
 build_web() {
   local digest
   npm_install web-client web
-  digest="$(files_digest web-client proto server/codec/decode server/codec/format server/codec/wasm server/core/crc32c_tables.cpp) $(project_version) $(node --version)"
+  digest="$(files_digest web-client proto server/bitstream server/core/crc32c_tables.cpp) $(project_version) $(node --version)"
   if [[ -f "$web_dist/index.html" ]] && stamp_is web-dist "$digest"; then return; fi
   step web-build "building the web client ($web_dist)" npm run --prefix web-client build
   write_stamp web-dist "$digest"

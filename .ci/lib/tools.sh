@@ -172,8 +172,8 @@ lint_tidy() {
   python3 tests/tools/tidy.py build/tidy build/reports/lint-tidy.xml "${files[@]}"
 }
 
-# Every .cpp file that a build compiles. server/codec/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
-list_tidy_sources() { git ls-files -- 'server/*.cpp' 'tests/*.cpp' ':!server/codec/wasm'; }
+# Every .cpp file that a build compiles. server/bitstream/wasm is compiled for another machine, by web-client/scripts/wasm.mjs.
+list_tidy_sources() { git ls-files -- 'server/*.cpp' 'tests/*.cpp' ':!server/bitstream/wasm'; }
 
 # What a change is compared with: where the branch left its upstream, the last commit without an upstream.
 tidy_base() { git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEAD; }
@@ -182,7 +182,7 @@ tidy_base() { git merge-base HEAD '@{upstream}' 2>/dev/null || git rev-parse HEA
 included_by() {
   local name="${1##*/}" folder="${1%/*}"
   git grep --files-with-matches --fixed-strings -e "${folder##*/}/$name>" -e "${folder##*/}/$name\"" -e "\"$name\"" \
-    -- 'server/*.cpp' 'tests/*.cpp' ':!server/codec/wasm' | head -n 1 || true
+    -- 'server/*.cpp' 'tests/*.cpp' ':!server/bitstream/wasm' | head -n 1 || true
 }
 
 # The .cpp files that differ from the base, committed or not, and for a changed header one file that includes it.
@@ -191,7 +191,7 @@ list_changed_sources() {
   { git diff --name-only --diff-filter=d "$(tidy_base)" && git ls-files --others --exclude-standard; } |
     while IFS= read -r path; do
       case "$path" in
-        server/codec/wasm/*) ;;
+        server/bitstream/wasm/*) ;;
         server/*.cpp | tests/*.cpp) printf '%s\n' "$path" ;;
         server/*.h | tests/*.h) included_by "$path" ;;
       esac

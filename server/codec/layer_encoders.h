@@ -5,14 +5,14 @@
 #include <cstdint>
 #include <optional>
 
+#include <spindrift/bitstream/encode/floater_chain.h>
+#include <spindrift/bitstream/encode/particle_cells.h>
+#include <spindrift/bitstream/encode/plane_chain.h>
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/bytes.h>
 #include <spindrift/core/frame_view.h>
 #include <spindrift/v1/wire.pb.h>
 
-#include "encode/floater_chain.h"
-#include "encode/particle_cells.h"
-#include "encode/plane_chain.h"
 #include "frame_checks.h"
 
 namespace spindrift::codec {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <vector>
 
+#include <spindrift/bitstream/decode/bit_source.h>
+#include <spindrift/bitstream/decode/plane_reader.h>
 #include <spindrift/core/bytes.h>
-
-#include "decode/bit_source.h"
-#include "decode/plane_reader.h"
 
 namespace spindrift::codec {
 

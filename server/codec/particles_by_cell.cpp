@@ -4,9 +4,9 @@
 #include <cmath>
 #include <cstring>
 
+#include <spindrift/bitstream/decode/particle_reader.h>
 #include <spindrift/codec/frame_decoder.h>
 
-#include "decode/particle_reader.h"
 #include "layer_encoders.h"
 #include "packed_payload.h"
 

@@ -5,10 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include <spindrift/bitstream/decode/floater_reader.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/core/text.h>
 
-#include "decode/floater_reader.h"
 #include "layer_encoders.h"
 #include "packed_payload.h"
 

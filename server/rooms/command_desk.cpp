@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
+#include <spindrift/classroom/lesson.h>
 #include <spindrift/rooms/command_desk.h>
-#include <spindrift/rooms/lesson.h>
 #include <spindrift/wire/client_message.h>
 
 namespace spindrift::rooms {

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/rooms/lesson.h>
+#include <spindrift/classroom/lesson.h>
 #include <spindrift/rooms/room_actions.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/scene/scene_rules.h>

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/rooms/lesson.h>
+#include <spindrift/classroom/lesson.h>
 #include <spindrift/rooms/roster.h>
 #include <spindrift/wire/client_message.h>
 

@@ -1,4 +1,4 @@
-// Compiles the frame reader (server/codec/decode, with the checksum of server/core) to WebAssembly and writes it to src/gen as
+// Compiles the frame reader (server/bitstream/decode, with the checksum of server/core) to WebAssembly and writes it to src/gen as
 // base64 text: the worker needs no second request, and tests and benchmarks use the same module. Needs Debian's clang, lld and
 // libc++ for wasm32; CLANG names another clang.
 import { spawnSync } from "node:child_process";
@@ -8,7 +8,7 @@ import path from "node:path";
 import { fileURLToPath } from "node:url";
 
 const clientRoot = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
-const codecRoot = path.join(clientRoot, "..", "server", "codec");
+const bitstreamRoot = path.join(clientRoot, "..", "server", "bitstream");
 const coreRoot = path.join(clientRoot, "..", "server", "core");
 const outFile = path.join(clientRoot, "src", "gen", "frame_reader_wasm.ts");
 const clang = process.env.CLANG ?? "clang";
@@ -18,7 +18,7 @@ const kMemoryMaxBytes = 1024 * 1024 * 1024;
 const sources = [
   path.join(coreRoot, "crc32c_tables.cpp"),
   ...["decode", "wasm"].flatMap((folder) =>
-    readdirSync(path.join(codecRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(codecRoot, folder, name)),
+    readdirSync(path.join(bitstreamRoot, folder)).filter((name) => name.endsWith(".cpp")).map((name) => path.join(bitstreamRoot, folder, name)),
   ),
 ];
 const options = [
@@ -30,7 +30,7 @@ const options = [
 const folder = mkdtempSync(path.join(tmpdir(), "spindrift-wasm-"));
 try {
   const module = path.join(folder, "frame_reader.wasm");
-  const run = spawnSync(clang, [...options, `-I${codecRoot}`, `-I${path.join(coreRoot, "include")}`, ...sources, "-o", module], { stdio: "inherit" });
+  const run = spawnSync(clang, [...options, `-I${bitstreamRoot}`, `-I${path.join(bitstreamRoot, "include")}`, `-I${path.join(coreRoot, "include")}`, ...sources, "-o", module], { stdio: "inherit" });
   if (run.error || run.status !== 0) {
     const why = run.error ? run.error.message : `exit code ${run.status}`;
     console.error(`wasm: "${clang}" made no WebAssembly (${why}); it takes Debian's clang, lld and libc++-dev-wasm32`);

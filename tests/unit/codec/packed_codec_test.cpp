@@ -5,15 +5,15 @@
 
 #include <gtest/gtest.h>
 
+#include <spindrift/bitstream/decode/plane_reader.h>
+#include <spindrift/bitstream/decode/residual_reader.h>
+#include <spindrift/bitstream/encode/particle_order.h>
+#include <spindrift/bitstream/encode/surface_predictor.h>
 #include <spindrift/codec/frame_encoder.h>
 
-#include "decode/plane_reader.h"
 #include "decode/prefix_slots.h"
-#include "decode/residual_reader.h"
 #include "encode/group_writer.h"
-#include "encode/particle_order.h"
 #include "encode/prefix_code.h"
-#include "encode/surface_predictor.h"
 #include "packed_payload.h"
 
 namespace spindrift::codec {

@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "format/particle_format.h"
-#include "format/residual_format.h"
+#include <spindrift/bitstream/format/particle_format.h>
+#include <spindrift/bitstream/format/residual_format.h>
 
 namespace spindrift::codec {
 namespace {

@@ -1,11 +1,11 @@
-// The readers of packed frames: server/codec/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance per layer.
+// The readers of packed frames: server/bitstream/decode, compiled to WebAssembly (scripts/wasm.mjs). One instance per layer.
 import { kFrameReaderBase64 } from "../gen/frame_reader_wasm";
 import { kFloaterBytes, type PackedFloaters, type PlaneExtents } from "./frame_types";
 
 /** Weights of one packed plane. */
 export const kWeightCount = 10;
 
-/** server/codec/wasm/frame_reader.cpp. All numbers are addresses in `memory`, counts, or booleans as 0 and 1. */
+/** server/bitstream/wasm/frame_reader.cpp. All numbers are addresses in `memory`, counts, or booleans as 0 and 1. */
 interface Exports {
   memory: WebAssembly.Memory;
   prepareParticles(count: number, payloadBytes: number): number;

@@ -5,10 +5,10 @@
 #include <memory>
 #include <string>
 
+#include <spindrift/classroom/referee.h>
 #include <spindrift/core/demand_table.h>
 #include <spindrift/history/diary.h>
 #include <spindrift/rooms/frame_schedule.h>
-#include <spindrift/rooms/referee.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_rules.h>
 #include <spindrift/rooms/room_time.h>
