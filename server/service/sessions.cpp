@@ -57,13 +57,9 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   const auto view = venue.view();
   if (!view) return;
   const rooms::RoomSnapshot& room = *view->room;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto known = sessions_.find(session);
-    if (known == sessions_.end()) return;
-    const auto before = std::exchange(known->second.greeted, view);
-    if (before && before->room == view->room) return;
-  }
+  std::shared_ptr<const VenueView> before;
+  if (!with(session, [&](State& state) { before = std::exchange(state.greeted, view); })) return;
+  if (before && before->room == view->room) return;
   v1::Greeting greeting;
   greeting.set_server(std::string(core::nameAndVersion()));
   greeting.set_device(view->device);
@@ -159,18 +155,15 @@ void Sessions::refuse(net::SessionId session, net::CloseCode code, const std::st
 
 void Sessions::message(net::SessionId session, core::ByteView message) {
   std::optional<State> known;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = sessions_.find(session);
-    if (it == sessions_.end()) return;
-    State& state = it->second;
-    if (state.stage != Stage::kArriving) {
-      known = state;
-    } else if (state.waiting.size() < kWaitingMaxCount) {
+  bool is_kept = false;
+  const bool is_open = with(session, [&](State& state) {
+    is_kept = state.stage == Stage::kArriving && state.waiting.size() < kWaitingMaxCount;
+    if (is_kept)
       state.waiting.emplace_back(message.begin(), message.end());
-      return;
-    }
-  }
+    else if (state.stage != Stage::kArriving)
+      known = state;
+  });
+  if (!is_open || is_kept) return;
   if (!known) {
     return refuse(session, net::CloseCode::kTryAgainLater,
                   fmt::format("more than {} messages before the answer to hello: wait for it", kWaitingMaxCount));
@@ -182,11 +175,7 @@ void Sessions::handleWaiting(net::SessionId session) {
   while (true) {
     core::Bytes message;
     std::optional<State> known;
-    {
-      const std::lock_guard lock(mutex_);
-      const auto it = sessions_.find(session);
-      if (it == sessions_.end()) return;
-      State& state = it->second;
+    with(session, [&](State& state) {
       if (state.waiting.empty()) {
         state.stage = Stage::kIn;  // from here on messages are handled where they come in
         return;
@@ -196,7 +185,8 @@ void Sessions::handleWaiting(net::SessionId session) {
       known = state;
       known->waiting.clear();
       known->stage = Stage::kIn;
-    }
+    });
+    if (!known) return;
     handle(session, *known, message);
   }
 }
@@ -248,14 +238,12 @@ void Sessions::hello(net::SessionId session, const State& state, const v1::Hello
     end = std::chrono::steady_clock::now() + left;
   }
   hub().closeAt(session, end, net::CloseCode::kUnauthorized, "the token has expired: ask for a new one");
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = sessions_.find(session);
-    if (it == sessions_.end()) return;
-    it->second.stage = Stage::kArriving;
-    it->second.details = details;
-    if (grant->is_person) it->second.person = grant->subject;
-  }
+  const bool is_open = with(session, [&](State& kept) {
+    kept.stage = Stage::kArriving;
+    kept.details = details;
+    if (grant->is_person) kept.person = grant->subject;
+  });
+  if (!is_open) return;
   state.venue->arrive({.session = session,
                        .role = grant->role,
                        .name = details->name,
@@ -271,15 +259,12 @@ void Sessions::arrived(net::SessionId session, const v1::Hello& hello, core::Rol
   if (!admission) return refuse(session, net::CloseCode::kTryAgainLater, admission.error().message);
   if (admission->displaced) displace(*admission->displaced);
   std::shared_ptr<Venue> venue;
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = sessions_.find(session);
-    if (it == sessions_.end()) return;  // it ended meanwhile; closed() has told the room
-    State& kept = it->second;
+  const bool is_open = with(session, [&](State& kept) {
     venue = kept.venue;
     kept.wire_minor = hello.version().minor();
     kept.role = role;
-  }
+  });
+  if (!is_open) return;  // it ended meanwhile; closed() has told the room
   spdlog::info("session {} is person {} ({}), {} {}", session, admission->person_id, core::roleName(role),
                hello.client(), admission->resumed ? "resumed" : "");
   welcome(session, *admission, role, *venue);
@@ -298,13 +283,11 @@ void Sessions::arrived(net::SessionId session, const v1::Hello& hello, core::Rol
 }
 
 void Sessions::welcome(net::SessionId session, const rooms::Admission& admission, core::Role role, const Venue& venue) {
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = sessions_.find(session);
-    if (it == sessions_.end()) return;
-    it->second.person_id = admission.person_id;
-    it->second.resume_key = admission.resume_key;
-  }
+  const bool is_open = with(session, [&](State& kept) {
+    kept.person_id = admission.person_id;
+    kept.resume_key = admission.resume_key;
+  });
+  if (!is_open) return;
   v1::Welcome message;
   message.set_role(wire::toWire(role));
   message.set_person_id(admission.person_id);
@@ -317,15 +300,12 @@ void Sessions::welcome(net::SessionId session, const rooms::Admission& admission
 void Sessions::readmitted(net::SessionId session, const rooms::Admission& admission) {
   std::shared_ptr<Venue> venue;
   core::Role role{};
-  {
-    const std::lock_guard lock(mutex_);
-    const auto it = sessions_.find(session);
-    if (it == sessions_.end()) return;
-    const State& state = it->second;
+  with(session, [&](const State& state) {
     if (state.person_id == admission.person_id && state.resume_key == admission.resume_key) return;
     venue = state.venue;
     role = state.role;
-  }
+  });
+  if (!venue) return;
   spdlog::info("session {} is now person {}", session, admission.person_id);
   welcome(session, admission, role, *venue);
 }
@@ -351,12 +331,13 @@ void Sessions::subscribe(net::SessionId session, const State& state, const wire:
 }
 
 bool Sessions::noteWatched(net::SessionId session, v1::Layer layer) {
-  const std::lock_guard lock(mutex_);
-  const auto known = sessions_.find(session);
-  if (known == sessions_.end()) return false;
-  const std::uint32_t before = known->second.watched_layers;
-  known->second.watched_layers = before | 1u << static_cast<unsigned>(layer);
-  return known->second.watched_layers != before;
+  bool is_new = false;
+  with(session, [&](State& state) {
+    const std::uint32_t before =
+        std::exchange(state.watched_layers, state.watched_layers | 1u << static_cast<unsigned>(layer));
+    is_new = state.watched_layers != before;
+  });
+  return is_new;
 }
 
 void Sessions::levelChanged(net::SessionId session, core::Level level) {
@@ -383,9 +364,9 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
 }
 
 bool Sessions::takeCommand(net::SessionId session) {
-  const std::lock_guard lock(mutex_);
-  const auto known = sessions_.find(session);
-  return known != sessions_.end() && known->second.commands.take(std::chrono::steady_clock::now());
+  bool is_taken = false;
+  with(session, [&](State& state) { is_taken = state.commands.take(std::chrono::steady_clock::now()); });
+  return is_taken;
 }
 
 void Sessions::commandApplied(const rooms::Command& command, const v1::Ack& ack) {

@@ -109,6 +109,16 @@ class Sessions {
   const SessionRules rules_;
   AccessControl& access_;
   CommandCounters& counters_;
+  /// Calls `use` with the session's state, under the lock; returns false, without a call, if the session has ended.
+  template <typename Use>
+  bool with(net::SessionId session, Use&& use) {
+    const std::lock_guard lock(mutex_);
+    const auto known = sessions_.find(session);
+    if (known == sessions_.end()) return false;
+    use(known->second);
+    return true;
+  }
+
   net::Hub* hub_ = nullptr;  ///< set before any session exists
   /// Held from reading a room's state until the greeting is sent, so that no older greeting follows a newer one. Lock
   /// it before mutex_.
