@@ -5,7 +5,8 @@
 // A hit is an inelastic collision without friction. Of n at once each meets an n-th of the floater's mass M (mass splitting; Tonge,
 // Benevolenski & Voroshilov 2012): the impulse j = -u / (1/m + n y/M), u being the normal relative velocity and y/M the floater's inverse
 // mass at the point. So the floater gets at most the largest u, however light it is, and both sides get the same j.
-// Only what is above the surface pushes a floater: what is below in one-way scenes is water of the wave, which carries it already.
+// Only what is more than a spacing above the surface pushes a floater: what is below in one-way scenes is water of the wave, which
+// carries it already.
 #include "shared/groups.h"
 #include "bodies/floater_shape.glsl"
 #include "bodies/floater_texels.glsl"
@@ -118,7 +119,7 @@ void main() {
 #if POOL_PARTICLES
       const bool pushes = true;
 #else
-      const bool pushes = x.y > floorHeight(loadFloor(), x.xz) + sim.band_m;
+      const bool pushes = x.y > floorHeight(loadFloor(), x.xz) + sim.band_m + sim.spacing_m;
 #endif
 #if HITS
       collide(slot, b, hit, pushes ? max(floater_push[8u * slot + 7u], 1) : 0, v);

@@ -143,9 +143,8 @@ TEST_F(FloaterHits, AJetPushesAndTurnsACrateAndTheirMomentumStays) {
   EXPECT_GT(crate.spin_radps, 0.1);
 }
 
-TEST_F(FloaterHits, ALightBallIsNotFasterThanTheManyDropsThatHitItAtOnce) {
-  WaterSim& sim = make(
-      dropScene({core::Floater{.kind = core::FloaterKind::kBall, .y_m = 2.3, .size_m = 0.6, .density_ratio = 0.05}}));
+TEST_F(FloaterHits, ALightCrateIsNotFasterThanTheManyDropsThatHitItAtOnce) {
+  WaterSim& sim = make(dropScene({core::Floater{.y_m = 2.3, .size_m = 0.6, .density_ratio = 0.02}}));
   const StateCopy start = withDrops(sim, lattice({-0.9, 2.06, -0.24}, {1, 5, 5}, 0.12), {6.0, 0.0, 0.0});
   sim.setState(start);
   double fastest_mps = 0.0;
@@ -153,8 +152,8 @@ TEST_F(FloaterHits, ALightBallIsNotFasterThanTheManyDropsThatHitItAtOnce) {
     sim.step();
     fastest_mps = std::max(fastest_mps, study::floaterPoses(sim.copyState()).at(0).velocity_x_mps);
   }
-  EXPECT_GT(fastest_mps, 3.0) << "25 drops, each of 1.7 kg, hit a ball of 5.7 kg";
-  EXPECT_LT(fastest_mps, 6.0);
+  EXPECT_GT(fastest_mps, 3.0) << "25 drops, each of 1.7 kg, hit a crate of 4.3 kg";
+  EXPECT_LT(fastest_mps, 6.0) << "pushed one by one, it would be at the limit of 25 m/s";
 }
 
 TEST_F(FloaterHits, NoDropPassesThroughAPlankThatIsThinnerThanItsStep) {
@@ -231,7 +230,7 @@ TEST_F(FloaterHits, RunsRepeatBitForBit) {
 
 TEST_F(FloaterHits, ACrateAmongParticlesCarriedByTheWaveFloatsAsDeepAndAsCalmAsWithout) {
   const auto rest = [&](bool with_particles) {
-    core::Scene scene = smallScene(1200);
+    core::Scene scene = smallScene(6000);
     scene.wave->depth_m = 2.0;
     scene.wave->damping_per_s = 0.5;
     if (!with_particles) {
