@@ -107,6 +107,11 @@ Floaters::Floaters(Creation& create, const core::Scene& scene)
       move_(create.pass("bodies/floater_move.comp")),
       water_(create.pass("bodies/floater_water.comp")),
       press_(create.pass("bodies/floater_press.comp")) {
+  if (scene.particles) {
+    count_hits_ = create.pass("bodies/floater_hits.comp", {{"HITS", "0"}});
+    hits_ = create.pass("bodies/floater_hits.comp", {{"HITS", "1"}});
+    recoil_ = create.pass("bodies/floater_recoil.comp");
+  }
   if (scene.floaters->floaters.size() > places_.size()) {
     create.fail(core::invalid(
         fmt::format("floaters.floaters: {} objects are more than floaters.capacity_count = {}: remove some or raise it",
@@ -244,6 +249,22 @@ void Floaters::move(double tick_s, const Wave& wave, Boats* boats) {
       pass->run(slot_count_);
     }
   }
+}
+
+void Floaters::meetParticles(double moved_s, const ParticleBuffers& particles, const Population& population) {
+  if (slot_count_ == 0) return;
+  bind();
+  reach_.bindTexel(FLOATER_PLACES);
+  tiles_.bindStorage(FLOATER_TILES);
+  push_.bindStorage(FLOATER_PUSH);
+  particles.position.bindStorage(POSITION);
+  particles.velocity.bindStorage(VELOCITY);
+  for (Pass* pass : {&count_hits_, &hits_}) {
+    pass->setUniform("moved_s", static_cast<float>(moved_s));
+    population.forParticles(*pass);
+  }
+  state_.bindStorage(FLOATERS);
+  recoil_.run(slot_count_);
 }
 
 void Floaters::feel(double tick_s, Wave& wave) {

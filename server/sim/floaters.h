@@ -11,6 +11,8 @@
 
 #include "boats.h"
 #include "creation.h"
+#include "particle_buffers.h"
+#include "particle_pool.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -40,6 +42,10 @@ class Floaters {
   /// Moves the floaters by a tick with their contacts: to the time of the surface. What they give to boats
   /// acts in Boats::move(), which comes next.
   void move(double tick_s, const Wave& wave, Boats* boats);
+  /// Moves particles that have entered floaters in this substep out, and gives the floaters the momentum that these
+  /// lose. Call it after move() of the same tick, with the surface bound. `moved_s`: what move() has moved them since
+  /// the last substep, a tick in the first and 0 in others. Only in scenes with particles.
+  void meetParticles(double moved_s, const ParticleBuffers& particles, const Population& population);
   /// Sets their accelerations for the next tick. Call it after Wave::sampleSurface() and before Wave::clearPressure().
   void feel(double tick_s, Wave& wave);
   /// Adds their pressure to the pressure head.
@@ -61,6 +67,7 @@ class Floaters {
   gpu::TexelBuffer state_, reach_;
   gpu::Buffer tiles_, near_, push_;
   Pass mark_tiles_, find_near_, contacts_, move_, water_, press_;
+  Pass count_hits_, hits_, recoil_;  ///< only in scenes with particles
 };
 
 }  // namespace spindrift::sim

@@ -27,6 +27,7 @@ void WaterSim::step() {
     predictParticles();
     buildGrid();
     advanceParticles();
+    hitFloaters(substep);
   }
   mixLandedWater();
   fadeFoam();
@@ -141,6 +142,14 @@ void WaterSim::advanceParticles() {
   parts_->sph->density(*parts_->particles, population);
   parts_->sph->forces(*parts_->particles, population);
   parts_->sph->integrate(*parts_->particles, population);
+}
+
+void WaterSim::hitFloaters(std::uint32_t substep) {
+  if (!parts_->floaters || !parts_->particles) return;
+  const auto timer = timers_.scope("bodies");
+  bindSurroundings();
+  parts_->floaters->meetParticles(substep == 0 ? derived_.tick_s : 0.0, *parts_->particles,
+                                  parts_->population(derived_));
 }
 
 void WaterSim::bindSurroundings() {

@@ -93,8 +93,13 @@ void meetFloater(inout Push push, Floater b, uint own, uint other, float share) 
   const float mass_ratio = b.density_ratio * volumeOf(b) / (o.density_ratio * volumeOf(o));
   const float radius_m = pointRadius(b);
   const int count = pointCount(b);
-  for (int k = 0; k < count; ++k) {
-    const vec3 point = pointOf(b, k);
+  // First which points touch, then the impulses of these: a loop ends when no lane of a vector has one left, a condition skips nothing.
+  uint touching = 0u;
+  for (int k = 0; k < count; ++k)
+    touching |= surfaceOf(o, pointOf(b, k) - apart_m).w < radius_m ? 1u << k : 0u;
+  while (touching != 0u) {
+    const vec3 point = pointOf(b, findLSB(touching));
+    touching &= touching - 1u;
     const vec4 there = surfaceOf(o, point - apart_m);
     const vec3 r = point - radius_m * there.xyz;
     const vec3 ro = r - apart_m;

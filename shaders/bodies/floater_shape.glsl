@@ -8,7 +8,7 @@
 vec3 rectangle(vec2 p, vec2 half_m) {
   const vec2 q = abs(p) - half_m;
   const vec2 way = vec2(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0);
-  if (max(q.x, q.y) < 0.0) return q.x > q.y ? vec3(way.x, 0.0, q.x) : vec3(0.0, way.y, q.y);
+  if (max(q.x, q.y) <= 0.0) return q.x > q.y ? vec3(way.x, 0.0, q.x) : vec3(0.0, way.y, q.y);
   const vec2 beyond = max(q, 0.0);
   const float distance_m = length(beyond);
   return vec3(way * beyond / max(distance_m, 1e-9), distance_m);
@@ -19,7 +19,7 @@ vec4 boxDistance(vec3 p, vec3 half_m) {
   const vec3 q = abs(p) - half_m;
   const vec3 way = vec3(p.x < 0.0 ? -1.0 : 1.0, p.y < 0.0 ? -1.0 : 1.0, p.z < 0.0 ? -1.0 : 1.0);
   const float deepest = max(q.x, max(q.y, q.z));
-  if (deepest < 0.0) {
+  if (deepest <= 0.0) {
     const vec3 face = q.x == deepest ? vec3(1.0, 0.0, 0.0) : (q.y == deepest ? vec3(0.0, 1.0, 0.0) : vec3(0.0, 0.0, 1.0));
     return vec4(way * face, deepest);
   }

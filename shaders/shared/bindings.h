@@ -100,13 +100,14 @@
 // Boats; shared/boats.h. Their controls are a uniform block.
 #define BOATS 27
 #define BOAT_CONTROLS 2
-// Floaters; shared/floaters.h. What contacts change in a step; what each can touch in a tick; floaters in each tile; centre and
-// reach of each [m]; push of floaters on boats. The numbers are those of particles and grid; only passes over floaters use these buffers.
-#define FLOATERS 0
-#define FLOATER_PUSH 1
-#define FLOATER_NEAR 2
-#define FLOATER_TILES 3
-#define FLOATER_PLACES 4
+// Floaters; shared/floaters.h. What contacts and particles change in a step; what each can touch in a tick; floaters in each tile;
+// centre and reach of each [m]. The numbers are those of the grid; only passes over floaters, and those of particles after the grid, use
+// these buffers. Push of floaters on boats; the number is that of particles, no pass has both.
+#define FLOATERS 7
+#define FLOATER_PUSH 8
+#define FLOATER_NEAR 9
+#define FLOATER_TILES 10
+#define FLOATER_PLACES 11
 #define BOAT_PUSH 5
 // Foam on the surface, (n/2)^2 cells: share of white water by source (breaking, wakes, landings); the same one tick
 // ago; number of particles that landed since the last tick.

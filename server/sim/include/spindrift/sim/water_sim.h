@@ -232,6 +232,7 @@ class WaterSim {
   void predictParticles();
   void buildGrid();
   void advanceParticles();
+  void hitFloaters(std::uint32_t substep);
   void measure();
   void watchHealth();
   void saveCheckpoint();
