@@ -11,7 +11,7 @@ import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { CommandAction, ConnectionState, PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { setText } from "../ui/dom";
-import { kTeamLabels } from "../ui/game_texts";
+import { kTeamColors, kTeamLabels } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import { keepChoice, keptChoice } from "../ui/kept";
 import { LessonState } from "../ui/lesson_state";
@@ -216,7 +216,8 @@ class PadPage {
     const { me } = lessons;
     this.boat.boatId = me?.boatIds[0] ?? 0;
     document.body.style.setProperty("--own", me?.color ?? "#5fd4e6");
-    document.body.dataset["team"] = me?.team ?? "";
+    if (me?.team) document.body.style.setProperty("--team", kTeamColors[me.team]);
+    else document.body.style.removeProperty("--team");
     elements.me.title = me?.team ? `Team ${kTeamLabels[me.team]}` : "";
     elements.helm.hidden = this.mode !== "boat";
     elements.launch.hidden = this.boat.boatId !== 0;
