@@ -6,7 +6,7 @@ import jsQR from "jsqr";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
-import { startServer } from "./server.mjs";
+import { startClass } from "./server.mjs";
 import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
 describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
@@ -26,12 +26,8 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   const press = (testId) => projector.getByTestId(testId).dispatchEvent("click");
 
   before(async () => {
-    server = await startServer(0, ["--class", "--address", "127.0.0.1", "--public-url", "http://192.168.1.20:8080/pad"]);
-    const projectorLine = () => server.lines.find((line) => line.startsWith("Projector: "));
-    const deadlineMs = Date.now() + WAIT_MS;
-    while (!projectorLine() && Date.now() < deadlineMs) await new Promise((done) => setTimeout(done, 50));
-    const token = /#token=(\S+)/.exec(projectorLine() ?? "")?.[1];
-    assert.ok(token, `the server prints the projector's address with a token:\n${server.lines.join("\n")}`);
+    let token;
+    ({ server, token } = await startClass());
     browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
     projector = await open({ viewport: { width: 1280, height: 720 } }, `?class&quality=minimal#token=${token}`);
   });

@@ -35,7 +35,7 @@ describe("the words of a game", () => {
     expect(gameHeadline(race({ phase: "over" }), people)).toBe("The race has ended");
     expect(gameHeadline(race({ phase: "over", winnerPersonId: 77 }), people)).toBe("The winner has left");
     expect(gameHeadline(race({ kind: "ball", phase: "over", redGoalsCount: 1, blueGoalsCount: 3, winnerTeam: "blue" }), people)).toBe("Blue wins 3 : 1");
-    expect(gameHeadline(race({ kind: "ball" }), people)).toBe("Ball into the other team's goal: first to 3");
+    expect(gameHeadline(race({ kind: "ball" }), people)).toBe("Ball into the other goal: first to 3");
     expect(gameHeadline(race({ lapsCount: 1 }), people)).toBe("Race: 1 lap");
   });
 

@@ -20,6 +20,8 @@ const kRockEdge = "#5d564b";
 /** What one has to reach next: a mark, or the ball. */
 export const kNextColor = "#ffe14d";
 const kMarkColor = "#ff8a2a";
+/** Room of a name. */
+const kNamePx = { width: 60, height: 14 };
 /** Half the length of an arrow at the edge. */
 const kArrowPx = 17;
 /** Things are drawn at least so large. */
@@ -59,6 +61,8 @@ export class MapDrawing {
   private image: ImageData | undefined;
   private isLand = new Uint8Array(0);
   private greeting: GreetingInfo | undefined;
+  /** Where names are in this picture. */
+  private readonly named: [x: number, y: number][] = [];
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.context = canvas.getContext("2d", { alpha: false })!;
@@ -81,6 +85,7 @@ export class MapDrawing {
     this.drawObstacles(view, greeting);
     this.drawCourse(view, greeting, things);
     for (const floater of things.floaters) this.drawFloater(view, floater, floater.floaterId === things.game?.ballFloaterId);
+    this.named.length = 0;
     for (const boat of things.boats) this.drawBoat(view, boat, things);
     this.drawHands(view, things);
     for (const target of things.targets) this.drawTarget(view, target);
@@ -224,7 +229,14 @@ export class MapDrawing {
     context.stroke();
     context.restore();
     if (isOwn && owner?.team) this.ring(x, y, 0.75 * lengthM * scale, kTeamColors[owner.team], 2);
-    if (isNamed && owner && !isOwn) this.text(owner.name, x, y - 0.6 * lengthM * scale - 8, "#ffffff", "600 12px system-ui, sans-serif", true);
+    if (isNamed && owner && !isOwn) this.name(owner.name, x, y - 0.6 * lengthM * scale - 8);
+  }
+
+  /** Leaves a name out that would lie over another. */
+  private name(name: string, x: number, y: number): void {
+    if (this.named.some(([otherX, otherY]) => Math.abs(x - otherX) < kNamePx.width && Math.abs(y - otherY) < kNamePx.height)) return;
+    this.named.push([x, y]);
+    this.text(name, x, y, "#ffffff", "600 12px system-ui, sans-serif", true);
   }
 
   private drawHands(view: MapView, { fingers, people, ownId, ownFingers, previews }: MapThings): void {

@@ -102,7 +102,7 @@ class PadPage {
   /** Measured values for tests and the browser's console. */
   stats() {
     const { lessons, state, boat, mode, picturesPerS } = this;
-    return { connectionState: describeState(state), role: lessons.role, personId: lessons.ownId, myBoat: boat.boatId, mode, displayFps: picturesPerS, whyNot: lessons.whyNot(mode) ?? null, water: this.map.counts() };
+    return { connectionState: describeState(state), role: lessons.role, personId: lessons.ownId, myBoat: boat.boatId, mode, displayFps: picturesPerS, whyNot: lessons.whyNot(mode) ?? null, water: this.map.counts(), simTime: this.map.simTimeS };
   }
 
   private handlers(): PageEventHandlers {

@@ -70,7 +70,7 @@ export function gameHeadline(game: GameInfo, people: readonly Person[]): string 
   const { kind, phase, lapsCount, goalsCount, winnerTeam } = game;
   if (phase === "over") return resultText(game, people);
   if (kind === "race") return `Race: ${lapsCount} ${lapsCount === 1 ? "lap" : "laps"}`;
-  return winnerTeam === undefined ? `Ball into the other team's goal: first to ${goalsCount}` : resultText(game, people);
+  return winnerTeam === undefined ? `Ball into the other goal: first to ${goalsCount}` : resultText(game, people);
 }
 
 const kOtherTeam: Record<TeamName, TeamName> = { red: "blue", blue: "red" };
