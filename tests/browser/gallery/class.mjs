@@ -68,7 +68,8 @@ export async function* shootClass(context) {
     // In the window's full size, where the controls stay where they are scrolled to.
     await page.picture();
     await page.evaluate(() => {
-      window.dispatchEvent(new Event("pointermove"));
+      // Controls hide a few seconds after the mouse has moved, and a picture takes longer.
+      setInterval(() => window.dispatchEvent(new Event("pointermove")), 500);
       document.getElementById("panel-toggle").click();
       const box = document.getElementById("class-box");
       box.open = true;
