@@ -6,7 +6,7 @@ import jsQR from "jsqr";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
-import { startServer } from "./server.mjs";
+import { startClass } from "./server.mjs";
 import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
 describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
@@ -26,12 +26,8 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   const press = (testId) => projector.getByTestId(testId).dispatchEvent("click");
 
   before(async () => {
-    server = await startServer(0, ["--class", "--address", "127.0.0.1", "--public-url", "http://192.168.1.20:8080/pad"]);
-    const projectorLine = () => server.lines.find((line) => line.startsWith("Projector: "));
-    const deadlineMs = Date.now() + WAIT_MS;
-    while (!projectorLine() && Date.now() < deadlineMs) await new Promise((done) => setTimeout(done, 50));
-    const token = /#token=(\S+)/.exec(projectorLine() ?? "")?.[1];
-    assert.ok(token, `the server prints the projector's address with a token:\n${server.lines.join("\n")}`);
+    let token;
+    ({ server, token } = await startClass());
     browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
     projector = await open({ viewport: { width: 1280, height: 720 } }, `?class&quality=minimal#token=${token}`);
   });
@@ -64,6 +60,38 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
     assert.ok(!(await projector.getByTestId("join-card").evaluate((card) => card.classList.contains("large"))), "the code is in a corner");
   });
 
+  it("is used by a gamepad: B launches a boat, the stick steers it, LB and A throw a stone", async () => {
+    const { myBoat: before } = await pad.evaluate(() => window.spindrift.stats());
+    await pad.getByTestId("pad-remove").tap();
+    await waitFor(pad, "no boat", ({ myBoat }) => myBoat === 0);
+    await pad.evaluate(() => {
+      window.pad = { mapping: "standard", axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false })) };
+      navigator.getGamepads = () => [window.pad];
+    });
+    // Pictures of the pad, which looks at the gamepad in each.
+    const press = (button) =>
+      pad.evaluate(async (k) => {
+        const picture = () => new Promise((done) => requestAnimationFrame(done));
+        for (const pressed of [true, false]) {
+          window.pad.buttons[k].pressed = pressed;
+          await picture();
+          await picture();
+        }
+      }, button);
+    await press(1);
+    const { myBoat } = await waitFor(pad, "a boat", (stats) => stats.myBoat > 0);
+    assert.notEqual(myBoat, before);
+    await pad.evaluate(() => (window.pad.axes[1] = -1));
+    await waitFor(projector, "the boat under way", ({ boats }) => boats.some(({ boatId, throttle }) => boatId === myBoat && throttle > 0.9));
+    await pad.evaluate(() => (window.pad.axes[1] = 0));
+    await press(4);
+    await waitFor(pad, "the tool before", ({ mode }) => mode === "throw");
+    await press(0);
+    await waitFor(pad, "the stone", ({ water }) => water.floaters > 0);
+    await pad.evaluate(() => (navigator.getGamepads = () => []));
+    await pad.getByTestId("pad-tool-boat").tap();
+  });
+
   it("has only targets that a thumb hits", async () => {
     const sizes = await pad.evaluate(() => [...document.querySelectorAll("button")].filter((each) => each.checkVisibility()).map((each) => [each.textContent, each.getBoundingClientRect().width, each.getBoundingClientRect().height]));
     assert.deepEqual(sizes.filter(([, width, height]) => width < 44 || height < 44), []);
@@ -83,7 +111,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   it("starts a race with the pad's boat in it", async () => {
     await press("game-race");
     await projector.getByTestId("board-race").waitFor({ timeout: WAIT_MS });
-    await pad.getByTestId("pad-headline").filter({ hasText: /^Race/ }).waitFor({ timeout: WAIT_MS });
+    await pad.getByTestId("pad-headline").filter({ hasText: "Steer to buoy 1" }).waitFor({ timeout: WAIT_MS });
     await press("game-end");
     await pad.getByTestId("pad-headline").waitFor({ state: "hidden", timeout: WAIT_MS });
   });

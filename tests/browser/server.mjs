@@ -54,6 +54,26 @@ export function startServer(port = 0, scenes = kTestScenes, command = "serve") {
   });
 }
 
+/**
+ * Starts `spindrift serve --class` with phones at http://192.168.1.20:8080/pad.
+ * @param {string[]} more options
+ * @returns {Promise<{server: Awaited<ReturnType<typeof startServer>>, token: string}>} `token`: of the operator
+ */
+export async function startClass(more = []) {
+  const server = await startServer(0, ["--class", "--address", "127.0.0.1", "--public-url", "http://192.168.1.20:8080", ...more]);
+  const deadline_ms = Date.now() + START_LIMIT_MS;
+  for (;;) {
+    // It comes just after the line that the server is ready.
+    const token = /^Projector: .*#token=(\S+)/m.exec(server.lines.join("\n"))?.[1];
+    if (token) return { server, token };
+    if (Date.now() < deadline_ms) await new Promise((done) => setTimeout(done, 50));
+    else {
+      await server.stop("SIGTERM");
+      throw new Error(`the server did not print the projector's address with a token:\n${server.lines.join("\n")}`);
+    }
+  }
+}
+
 async function stop(child, ended, signal) {
   const timer = setTimeout(() => child.kill("SIGKILL"), STOP_LIMIT_MS);
   child.kill(signal);

@@ -57,6 +57,27 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     assert.ok(await desk.getByTestId("hint").isHidden());
   });
 
+  it("draws one's own ripple at most two pictures after the finger has moved", async () => {
+    await waitForStill(desk);
+    await desk.evaluate(() => {
+      const ripple = (window.ripple = {});
+      let picture = 0;
+      const count = () => {
+        requestAnimationFrame(count);
+        ++picture;
+        if (ripple.moved !== undefined && ripple.drawn === undefined && window.spindrift.stats().dents > 0) ripple.drawn = picture;
+      };
+      requestAnimationFrame(count);
+      window.addEventListener("pointermove", ({ buttons }) => buttons === 1 && (ripple.moved ??= picture), { capture: true });
+    });
+    await drag(desk, [[-0.8, 0.4], [0.8, 0.4]]);
+    const { moved, drawn } = await desk.waitForFunction(() => window.ripple.drawn !== undefined && window.ripple, undefined, { timeout: WAIT_MS }).then((found) => found.jsonValue());
+    await desk.mouse.up();
+    // One picture more than the page needs: this count may run before the page's own callback of a picture.
+    assert.ok(drawn - moved <= 2, `${drawn - moved} pictures`);
+    await waitFor(desk, "the local ripple to go", ({ dents }) => dents === 0);
+  });
+
   it("turns the view with the right button, and with the left one where the water ends", async () => {
     await waitForStill(desk);
     await desk.getByTestId("view-above").click();

@@ -6,7 +6,7 @@ import { spokenAddress, withRoom } from "../src/class/join_card";
 import type { GameInfo } from "../src/codec/game";
 import { floatPlaces } from "../src/scene/boats/course_marks";
 
-const calm: Sight = { nowS: 0, sideM: 64, widthM: 48, boats: [], racerBoatIds: [], fingers: [], movedFloaters: [], splash: undefined, game: undefined, ball: undefined, marks: [] };
+const calm: Sight = { nowS: 0, sideM: 64, widthM: 48, boats: [], racerBoatIds: [], fingers: [], movedFloaters: [], splash: undefined, game: undefined, ball: undefined, marks: [], goals: [] };
 const game = (change: Partial<GameInfo>): GameInfo => ({ kind: "race", phase: "running", beginsS: 0, endsS: 0, lapsCount: 2, goalsCount: 3, racers: [], redGoalsCount: 0, blueGoalsCount: 0, winnerPersonId: 0, winnerTeam: undefined, ballFloaterId: 0, ...change });
 const boat = (boatId: number, xM: number, zM: number, speedMps = 0) => ({ boatId, xM, zM, speedMps });
 const racer = (personId: number, finishedS = 0) => ({ personId, lapsCount: 0, nextMark: 0, lapBestS: 0, finishedS });
@@ -80,8 +80,12 @@ describe("the projector's camera", () => {
     expect(after(begun, 1, () => over).shot).toBe("winner");
   });
 
-  it("follows the ball with the boats near it, and stays wide without one", () => {
-    const ball: Sight = { ...calm, game: game({ kind: "ball" }), ball: { xM: 10, zM: -5 }, boats: [boat(1, 13, -5, 1), boat(2, -30, 0, 1)] };
+  it("shows both goals with the ball and the boats near it, and stays wide without a ball", () => {
+    const goals = [{ xM: -25, zM: 4 }, { xM: 27, zM: 4 }];
+    const far: Sight = { ...calm, game: game({ kind: "ball" }), ball: { xM: 10, zM: -5 }, goals };
+    const { now } = after(beginDirecting(calm), 12, () => far);
+    for (const place of [...goals, far.ball!]) expect(Math.hypot(place.xM - now.xM, place.zM - now.zM)).toBeLessThan(now.radiusM);
+    const ball: Sight = { ...far, goals: [], boats: [boat(1, 13, -5, 1), boat(2, -30, 0, 1)] };
     const state = after(beginDirecting(calm), 12, () => ball);
     expect(state.shot).toBe("ball");
     expect(Math.abs(state.now.xM - 11.5)).toBeLessThan(1);

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import type { GameInfo } from "../src/codec/game";
-import { clockText, countdownText, gameHeadline, nextMarkOf, ordinal, raceRows, raceTime, standingText } from "../src/ui/game_texts";
+import { clockText, countdownText, gameHeadline, GoalNews, goalTeamOf, nextMarkOf, ordinal, raceRows, raceTime, standingText, taskText } from "../src/ui/game_texts";
 
 const racer = (personId: number, change: object = {}) => ({ personId, lapsCount: 0, nextMark: 1, lapBestS: 0, finishedS: 0, ...change });
 const race = (change: Partial<GameInfo>): GameInfo => ({
@@ -35,7 +35,7 @@ describe("the words of a game", () => {
     expect(gameHeadline(race({ phase: "over" }), people)).toBe("The race has ended");
     expect(gameHeadline(race({ phase: "over", winnerPersonId: 77 }), people)).toBe("The winner has left");
     expect(gameHeadline(race({ kind: "ball", phase: "over", redGoalsCount: 1, blueGoalsCount: 3, winnerTeam: "blue" }), people)).toBe("Blue wins 3 : 1");
-    expect(gameHeadline(race({ kind: "ball" }), people)).toBe("Ball: first to 3");
+    expect(gameHeadline(race({ kind: "ball" }), people)).toBe("Ball into the other goal: first to 3");
     expect(gameHeadline(race({ lapsCount: 1 }), people)).toBe("Race: 1 lap");
   });
 
@@ -53,5 +53,27 @@ describe("the words of a game", () => {
     const done = race({ racers: [racer(1, { finishedS: 20, lapsCount: 2 })] });
     expect(standingText(done, 1)).toBe("Finished 1st of 1, 0:20.0");
     expect(nextMarkOf(done, 1)).toBeUndefined();
+  });
+
+  it("tell each team which goal is its own to score in, and a racer which buoy is next", () => {
+    const ball = race({ kind: "ball" });
+    expect([taskText(ball, 1, "red"), taskText(ball, 1, undefined)]).toEqual(["Team red: push the ball into the blue goal", undefined]);
+    expect([goalTeamOf(ball, "blue"), goalTeamOf(race({}), "blue"), goalTeamOf(race({ kind: "ball", phase: "over" }), "blue")]).toEqual(["red", undefined, undefined]);
+    expect(taskText(race({ racers: [racer(1)] }), 1, "red")).toBe("Steer to buoy 2, the yellow one");
+    expect(taskText(race({ racers: [racer(1, { finishedS: 40 })] }), 1, "red")).toBeUndefined();
+    expect(taskText(race({ kind: "ball", phase: "over" }), 1, "red")).toBeUndefined();
+  });
+
+  it("tell a goal for a while, but not those of a game that one has just joined, nor the deciding one", () => {
+    const news = new GoalNews();
+    news.take(race({ kind: "ball", redGoalsCount: 2 }), 20);
+    expect(news.teamAt(20)).toBeUndefined();
+    news.take(race({ kind: "ball", redGoalsCount: 2, blueGoalsCount: 1 }), 21);
+    expect([21, 24.9, 25.1].map((atS) => news.teamAt(atS))).toEqual(["blue", "blue", undefined]);
+    news.take(race({ kind: "ball", phase: "over", redGoalsCount: 3, blueGoalsCount: 1 }), 30);
+    expect(news.teamAt(30)).toBeUndefined();
+    news.take(race({ kind: "ball", beginsS: 60 }), 55);
+    news.take(race({ kind: "ball", beginsS: 60, redGoalsCount: 1 }), 70);
+    expect(news.teamAt(70)).toBe("red");
   });
 });

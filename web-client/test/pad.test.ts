@@ -6,7 +6,7 @@ import type { CommandAction } from "../src/net/messages";
 import { isPadAddress } from "../src/app/address";
 import { friendlyName } from "../src/pad/friendly_name";
 import { gameTouch } from "../src/pad/game_touch";
-import { boatView, ontoWater, toPlace, toPx, turnFor, wholeView } from "../src/pad/map_view";
+import { boatView, edgeOf, ontoWater, toPlace, toPx, turnFor, wholeView } from "../src/pad/map_view";
 import { PadHands, type PadWater } from "../src/pad/pad_hands";
 import { compassText } from "../src/pad/pad_words";
 import { stickSetting } from "../src/pad/stick";
@@ -28,6 +28,18 @@ describe("the pad's map", () => {
       expect(toPx(view, { xM: 1, zM: 0 })[0]).toBeGreaterThan(toPx(view, { xM: 0, zM: 0 })[0]);
       expect(toPx(view, { xM: 0, zM: 1 })[1]).toBeGreaterThan(toPx(view, { xM: 0, zM: 0 })[1]);
     }
+  });
+
+  it("points to what it does not show, from the boat through the edge", () => {
+    const size = { widthPx: 390, heightPx: 700 };
+    const view = boatView({ xM: 0, zM: 0, lengthM: 2 }, turnFor(-Math.PI / 2), 64, size);
+    expect(edgeOf(view, toPx(view, { xM: 1, zM: -2 }), size)).toBeUndefined();
+    const right = edgeOf(view, toPx(view, { xM: 60, zM: 0 }), size)!;
+    expect([right.xPx, right.yPx, right.angleRad]).toEqual([expect.closeTo(364, 6), expect.closeTo(420, 6), expect.closeTo(0, 6)]);
+    const ahead = edgeOf(view, toPx(view, { xM: 0, zM: -60 }), size)!;
+    expect([ahead.xPx, ahead.yPx, ahead.angleRad]).toEqual([expect.closeTo(195, 6), expect.closeTo(62, 6), expect.closeTo(-Math.PI / 2, 6)]);
+    const behind = edgeOf(view, toPx(view, { xM: 0, zM: 60 }), size)!;
+    expect(behind.yPx).toBeCloseTo(504, 6);
   });
 
   it("turns so that one's boat looks up", () => {

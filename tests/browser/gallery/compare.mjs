@@ -63,6 +63,20 @@ export async function compare(page, kept, made) {
   return { ...shares, isLike: Object.entries(kLimits).every(([kind, { share }]) => shares[kind] <= share), mask };
 }
 
+/** Returns a picture's file as one of another type. @param {{type: string, quality: number}} as */
+export async function encodedAs(page, file, { type, quality }) {
+  const base64 = await page.evaluate(
+    async ([encoded, wanted, share]) => {
+      const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(encoded), (letter) => letter.charCodeAt(0))]));
+      const canvas = Object.assign(document.createElement("canvas"), { width: bitmap.width, height: bitmap.height });
+      canvas.getContext("2d").drawImage(bitmap, 0, 0);
+      return canvas.toDataURL(wanted, share).split(",")[1];
+    },
+    [file.toString("base64"), type, quality],
+  );
+  return Buffer.from(base64, "base64");
+}
+
 const percent = (share) => `${(100 * share).toFixed(2)} %`;
 
 /** Returns the measured shares as text, with their limits. */

@@ -2,7 +2,7 @@
 // picture depends on the tick alone, not on the speed of the machine.
 import assert from "node:assert/strict";
 
-import { startServer } from "../server.mjs";
+import { startClass, startServer } from "../server.mjs";
 
 /** Of every shipped scene. */
 export const kTickRateHz = 60;
@@ -29,6 +29,8 @@ async function within(promise, what) {
 
 export class DrivenPage {
   #server;
+  /** Of the operator of a class. */
+  #token;
   #page;
   #size;
   /** Frames up to this tick are in the page; the picture shows `shownTick`. */
@@ -41,11 +43,13 @@ export class DrivenPage {
   /**
    * Starts the scene at tick 0.
    * @param {import("playwright-core").BrowserContext} context
-   * @param {{scene: string, quality: string, light?: string, size: {width: number, height: number}, query?: string}} what
+   * @param {{scene?: string, quality: string, light?: string, size: {width: number, height: number}, query?: string}} what without a
+   *   scene a class, whose projector shows everything that it shows
    */
   static async open(context, { scene, quality, light = "noon", size, query = "" }) {
     const driven = new DrivenPage();
-    driven.#server = await startServer(0, ["--device", "software", "--scene", scene]);
+    if (scene) driven.#server = await startServer(0, ["--device", "software", "--scene", scene]);
+    else ({ server: driven.#server, token: driven.#token } = await startClass(["--device", "software"]));
     try {
       await driven.#start(context, `quality=${quality}&light=${light.replaceAll(" ", "-")}${query && `&${query}`}`, size);
     } catch (error) {
@@ -62,23 +66,32 @@ export class DrivenPage {
       if (message.type() === "error" || /GL_INVALID/.test(message.text())) this.complaints.push(`console: ${message.text()}`);
     });
     await page.setViewportSize({ width: kSmallWidthPx, height: Math.round((kSmallWidthPx * size.height) / size.width) });
-    await page.goto(`${this.#server.url}?pictures=stepped&${query}`, { timeout: kWaitMs });
-    await page.addStyleTag({ content: kBare });
+    await page.goto(`${this.#server.url}?pictures=stepped&${query}${this.#token ? `&class#token=${this.#token}` : ""}`, { timeout: kWaitMs });
+    if (!this.#token) await page.addStyleTag({ content: kBare });
     await page.waitForFunction(() => window.spindrift?.stats().connectionState === "live", undefined, { timeout: kWaitMs, polling: 20 });
-    await page.evaluate(() => {
+    await page.evaluate((access) => {
       window.command = async (action) => {
-        const answer = await fetch("/api/v1/rooms/main/commands", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(action) });
+        const answer = await fetch("/api/v1/rooms/main/commands", { method: "POST", headers: { "Content-Type": "application/json", ...access }, body: JSON.stringify(action) });
         if (!answer.ok) throw new Error(`${JSON.stringify(action)}: ${await answer.text()}`);
       };
       const detail = document.querySelector('[data-testid="detail"]');
       detail.value = "full";
       detail.dispatchEvent(new Event("change"));
-    });
+    }, this.#token ? { Authorization: `Bearer ${this.#token}` } : {});
     await this.command({ set_paused: { paused: true } });
     await this.command({ reset: {} });
     await within(page.evaluate(() => window.spindrift.stepped.take(0)), "the first frames");
     this.#size = size;
     await this.#resize(true);
+  }
+
+  get port() {
+    return this.#server.port;
+  }
+
+  /** The last tick that was simulated. */
+  get tick() {
+    return this.#tick;
   }
 
   stats() {
@@ -110,6 +123,12 @@ export class DrivenPage {
     assert.ok(Number.isInteger(count), `tick ${tick} is not a multiple of ${stride} after ${this.#tick}`);
     await this.#resize(true);
     for (let i = 0; i < count; ++i) await this.#advance(stride, stride, true);
+  }
+
+  /** Draws the shown tick in a small picture. */
+  async showShown() {
+    await this.#resize(true);
+    await this.#page.evaluate((timeS) => window.spindrift.stepped.draw(timeS), this.#shownTick / kTickRateHz);
   }
 
   /** Continues by `stride` ticks without drawing; picture() draws. */
@@ -191,6 +210,12 @@ export class DrivenPage {
       "a picture",
     );
     return Buffer.from(url.slice(url.indexOf(",") + 1), "base64");
+  }
+
+  /** Draws the shown tick and returns the window, with what lies over the canvas, as a PNG file. */
+  async windowPicture() {
+    await this.picture();
+    return this.#page.screenshot({ timeout: kWaitMs });
   }
 
   async close() {

@@ -5,6 +5,7 @@ import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "../chromium.mjs";
+import { shootClass } from "./class.mjs";
 import { described } from "./compare.mjs";
 import { shootAnimation, shootTour } from "./films.mjs";
 import { check, keptPath, kMade, differencePath, madePath, makePictures, write } from "./pictures.mjs";
@@ -12,7 +13,7 @@ import { shootReadme } from "./readme.mjs";
 import { writeSheet } from "./sheet.mjs";
 import { lightsOf, shippedScenes } from "./shots.mjs";
 
-const kUsage = "usage: main.mjs [pictures|readme|animation|tour|all] [--scenes A,B] [--lights NOON,DUSK] [--qualities low,high] [--update]";
+const kUsage = "usage: main.mjs [pictures|readme|class|animation|tour|all] [--scenes A,B] [--lights NOON,DUSK] [--qualities low,high] [--update]";
 
 function readOptions() {
   const { values, positionals } = parseArgs({
@@ -23,7 +24,7 @@ function readOptions() {
   const [part = "pictures", ...rest] = positionals;
   const qualities = list(values.qualities) ?? ["low", "high"];
   const scenes = list(values.scenes) ?? shippedScenes();
-  if (rest.length > 0 || !["pictures", "readme", "animation", "tour", "all"].includes(part)) throw new Error(kUsage);
+  if (rest.length > 0 || !["pictures", "readme", "class", "animation", "tour", "all"].includes(part)) throw new Error(kUsage);
   for (const quality of qualities) if (!["low", "high"].includes(quality)) throw new Error(`there is no quality "${quality}": low, high`);
   for (const scene of scenes) if (!shippedScenes().includes(scene)) throw new Error(`there is no scene "${scene}": ${shippedScenes().join(", ")}`);
   return { part, scenes, lights: list(values.lights), qualities, isUpdate: values.update };
@@ -69,6 +70,7 @@ try {
     for (const path of await writeSheet(context)) console.log(path);
   }
   if (does("readme")) for await (const path of shootReadme(context)) console.log(path);
+  if (does("class")) for await (const path of shootClass(context)) console.log(path);
   if (does("animation")) console.log(await shootAnimation(context, options.qualities));
   if (does("tour")) console.log(await shootTour(context, options.qualities));
 } finally {

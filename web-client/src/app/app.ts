@@ -147,8 +147,10 @@ export class App {
     addDetailRow((detail) => this.client.call("setDetail", detail));
     this.answerListeners = [this.parameters, this.room, this.boats];
     this.lessons.watch(() => {
-      this.display.scene.setNextMark(this.nextMark);
-      this.tags.setPlaces(this.lessons.game);
+      const { game } = this.lessons;
+      this.display.scene.setGame(game?.kind, this.nextMark);
+      this.marks.setGame(game?.kind);
+      this.tags.setPlaces(game);
       this.showRole();
     });
   }
@@ -272,7 +274,7 @@ export class App {
     this.room.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
-    this.marks.enter(greeting.course?.marks ?? []);
+    this.marks.enter(greeting.course);
     this.fingers.clear();
     this.looks.enter(greeting);
     this.sound.enter(greeting);

@@ -2,7 +2,7 @@
 import { byId, isTyping } from "../ui/dom";
 import type { App } from "./app";
 import { PointerHands } from "./pointer";
-import { connectKeyboardTools, GamepadTools } from "./virtual_pointer";
+import { connectKeyboardTools, GamepadTools, type GamepadTarget } from "./virtual_pointer";
 
 export function connectInput(app: App): void {
   const hands = new PointerHands(app);
@@ -13,9 +13,26 @@ export function connectInput(app: App): void {
   connectButtons(app);
   connectHelmKeys(app);
   connectKeyboardTools(app);
-  const gamepad = new GamepadTools(app);
+  const gamepad = new GamepadTools(gamepadTarget(app));
   app.poll = (atS) => gamepad.update(atS);
   connectWindow(app, hands);
+}
+
+function gamepadTarget(app: App): GamepadTarget {
+  const { display, boats, tools, floaterRows, viewButtons, sound } = app;
+  return {
+    canvas: display.canvas,
+    isHelm: () => display.views.view === "boat",
+    helm: (code, isDown) => void boats.key(code, isDown),
+    launch: () => byId("spawn").click(),
+    stepTool: (by) => tools.step(by),
+    turnHeld: (angleRad) => app.turnHeld(angleRad),
+    removePointed: () => app.removePointed(),
+    nextKind: () => floaterRows.step(1),
+    nextView: () => viewButtons.step(),
+    toggleSound: () => sound.toggle(),
+    orbit: (turnRad, liftRad, zoom) => display.views.orbit(turnRad, liftRad, zoom),
+  };
 }
 
 function connectButtons({ client, commands, effects }: App): void {

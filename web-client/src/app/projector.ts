@@ -120,6 +120,7 @@ class DirectedCamera {
       game,
       ball: floaters.find(({ floaterId }) => floaterId === game?.ballFloaterId),
       marks: entered!.course?.marks ?? [],
+      goals: Object.values(entered!.course?.goals ?? {}),
     };
   }
 

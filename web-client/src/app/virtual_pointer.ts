@@ -3,10 +3,11 @@
 // Keys: while Enter is held the arrows move the pointer, so that it draws, throws, or moves what it holds; Q and E turn that. Delete takes out
 // what is held or under the mouse; comma and full stop choose what the tool Float drops; plus and minus bring the camera nearer and farther.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
-// would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind. The right stick turns the
+// would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind, B launches a boat. The right stick turns the
 // view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. In the boat's view the left stick and the cross
 // are the helm. docs/controls.md lists all.
 import { isTyping } from "../ui/dom";
+import type { HelmCode } from "../ui/helm";
 import type { App } from "./app";
 import { standardGamepad } from "./gamepad";
 import { kGamepadId } from "./haptics";
@@ -31,8 +32,7 @@ const kKeyZoom = 1.15;
 const kOrbitRadps = 1.8;
 const kZoomPerS = 2.5;
 
-const kButtons = { use: 0, takeOut: 2, nextKind: 3, previousTool: 4, nextTool: 5, nearer: 7, farther: 6, nextView: 8, sound: 9, up: 12, down: 13, left: 14, right: 15 };
-/** Keys of the helm (ui/helm.ts). */
+const kButtons = { use: 0, launch: 1, takeOut: 2, nextKind: 3, previousTool: 4, nextTool: 5, nearer: 7, farther: 6, nextView: 8, sound: 9, up: 12, down: 13, left: 14, right: 15 };
 const kHelm = { up: "ArrowUp", down: "ArrowDown", left: "ArrowLeft", right: "ArrowRight" } as const;
 
 /** Sends the events of a pointer at a position of the window. */
@@ -105,16 +105,42 @@ export function connectKeyboardTools(app: App): void {
   canvas.addEventListener("blur", release);
 }
 
+/** What a gamepad acts on: the page of the water, or a pad, which has neither views nor sound. */
+export interface GamepadTarget {
+  /** Takes the events of the gamepad's pointer. */
+  canvas: HTMLCanvasElement;
+  /** The sticks steer the boat. */
+  isHelm(): boolean;
+  /** Presses or releases a key of the helm. */
+  helm(code: HelmCode, isDown: boolean): void;
+  launch(): void;
+  /** The next tool, or the one before. */
+  stepTool(by: 1 | -1): void;
+  /** False if nothing is held. */
+  turnHeld(angleRad: number): boolean;
+  removePointed(): void;
+  nextKind(): void;
+  nextView(): void;
+  toggleSound(): void;
+  orbit(turnRad: number, liftRad: number, zoom: number): void;
+}
+
 export class GamepadTools {
   private readonly pointer: VirtualPointer;
   private xPx = window.innerWidth / 2;
   private yPx = window.innerHeight / 2;
+  private isThere = false;
   private held = new Set<number>();
-  private helm = new Set<keyof typeof kHelm>();
+  private readonly helm = new Set<keyof typeof kHelm>();
   private atS = NaN;
 
-  constructor(private readonly app: App) {
-    this.pointer = new VirtualPointer(app.display.canvas, kGamepadId);
+  constructor(private readonly target: GamepadTarget) {
+    this.pointer = new VirtualPointer(target.canvas, kGamepadId);
+  }
+
+  /** Where the tool would be used, in pixels of the window; undefined without a gamepad, and while it steers. */
+  get cursorPx(): [x: number, y: number] | undefined {
+    return this.isThere && !this.target.isHelm() ? [this.xPx, this.yPx] : undefined;
   }
 
   /** Called for each picture. */
@@ -122,6 +148,7 @@ export class GamepadTools {
     const pad = standardGamepad();
     const stepS = Math.min(Math.max(nowS - this.atS, 0), kLongestStepS) || 0;
     this.atS = nowS;
+    this.isThere = pad !== undefined;
     if (!pad) {
       this.steer({});
       this.held.clear();
@@ -130,19 +157,20 @@ export class GamepadTools {
     const pressed = new Set(pad.buttons.flatMap((button, k) => (button.pressed ? [k] : [])));
     const isNew = (button: number): boolean => pressed.has(button) && !this.held.has(button);
     const [x = 0, y = 0, turnX = 0, turnY = 0] = pad.axes.map((value) => (Math.abs(value) > kDeadZone ? value : 0));
-    const { app } = this;
+    const { target } = this;
     const turn = Number(pressed.has(kButtons.nextTool)) - Number(pressed.has(kButtons.previousTool));
-    if (!app.turnHeld(turn * kTurnRadps * stepS)) {
-      if (isNew(kButtons.previousTool)) app.tools.step(-1);
-      if (isNew(kButtons.nextTool)) app.tools.step(1);
+    if (!target.turnHeld(turn * kTurnRadps * stepS)) {
+      if (isNew(kButtons.previousTool)) target.stepTool(-1);
+      if (isNew(kButtons.nextTool)) target.stepTool(1);
     }
-    if (isNew(kButtons.takeOut)) app.removePointed();
-    if (isNew(kButtons.nextKind)) app.floaterRows.step(1);
-    if (isNew(kButtons.nextView)) app.viewButtons.step();
-    if (isNew(kButtons.sound)) app.sound.toggle();
+    if (isNew(kButtons.launch)) target.launch();
+    if (isNew(kButtons.takeOut)) target.removePointed();
+    if (isNew(kButtons.nextKind)) target.nextKind();
+    if (isNew(kButtons.nextView)) target.nextView();
+    if (isNew(kButtons.sound)) target.toggleSound();
     const zoom = Number(pressed.has(kButtons.farther)) - Number(pressed.has(kButtons.nearer));
-    if (turnX !== 0 || turnY !== 0 || zoom !== 0) app.display.views.orbit(turnX * kOrbitRadps * stepS, turnY * kOrbitRadps * stepS, kZoomPerS ** (zoom * stepS));
-    const isHelm = app.display.views.view === "boat";
+    if (turnX !== 0 || turnY !== 0 || zoom !== 0) target.orbit(turnX * kOrbitRadps * stepS, turnY * kOrbitRadps * stepS, kZoomPerS ** (zoom * stepS));
+    const isHelm = target.isHelm();
     this.steer(isHelm ? { up: y < 0 || pressed.has(kButtons.up), down: y > 0 || pressed.has(kButtons.down), left: x < 0 || pressed.has(kButtons.left), right: x > 0 || pressed.has(kButtons.right) } : {});
     if (!isHelm && (x !== 0 || y !== 0)) {
       const stepPx = kCursorPerS * stepS * window.innerHeight;
@@ -158,7 +186,7 @@ export class GamepadTools {
   private steer(wanted: Partial<Record<keyof typeof kHelm, boolean>>): void {
     for (const key of Object.keys(kHelm) as (keyof typeof kHelm)[]) {
       if (wanted[key] === true === this.helm.has(key)) continue;
-      this.app.boats.key(kHelm[key], wanted[key] === true);
+      this.target.helm(kHelm[key], wanted[key] === true);
       if (wanted[key]) this.helm.add(key);
       else this.helm.delete(key);
     }

@@ -1,7 +1,7 @@
 // What the projector shows of people and games: who is in, the order of a race, the score, a countdown, the result.
 import type { PersonInfo } from "../codec/people";
 import { make, setText } from "../ui/dom";
-import { clockText, countdownText, gameHeadline, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
+import { clockText, countdownText, gameHeadline, goalText, GoalNews, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
 import type { LessonState } from "../ui/lesson_state";
 
 /** More people, and rows of a race, are only counted. */
@@ -25,6 +25,7 @@ export class Boards {
   /** Changes ten times per second, which no screen reader has to say. */
   private readonly clock = make("span", { "aria-hidden": "true" });
   private readonly headlineText = make("span");
+  private readonly news = new GoalNews();
 
   constructor(private readonly lessons: LessonState) {
     this.headline.append(this.headlineText, this.clock);
@@ -34,7 +35,12 @@ export class Boards {
 
   /** Called for each picture. */
   update(simTimeS: number): void {
-    const { game } = this.lessons;
+    const { game, people } = this.lessons;
+    this.news.take(game, simTimeS);
+    const team = this.news.teamAt(simTimeS);
+    if (game) setText(this.headlineText, team ? goalText(team) : gameHeadline(game, people));
+    this.headline.classList.toggle("over", game?.phase === "over" || team !== undefined);
+    this.headline.style.borderColor = team ? kTeamColors[team] : "";
     setText(this.count, game ? countdownText(game, simTimeS) : "");
     setText(this.clock, game ? clockText(game, simTimeS) : "");
   }
@@ -43,8 +49,6 @@ export class Boards {
     const { game, people, lesson } = this.lessons;
     this.frozen.hidden = !lesson.frozen;
     this.headline.hidden = !game;
-    this.headline.classList.toggle("over", game?.phase === "over");
-    if (game) setText(this.headlineText, gameHeadline(game, people));
     this.score.hidden = game?.kind !== "ball";
     if (game?.kind === "ball") {
       const [red, blue] = [make("b", {}, [String(game.redGoalsCount)]), make("b", {}, [String(game.blueGoalsCount)])];

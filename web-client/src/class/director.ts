@@ -43,6 +43,8 @@ export interface Sight {
   ball: Place | undefined;
   /** Marks of the course. */
   marks: readonly Place[];
+  /** Goals of the course. */
+  goals: readonly Place[];
 }
 
 type ShotName = "wide" | "start" | "leaders" | "winner" | "ball" | "action";
@@ -125,10 +127,9 @@ function framingOf(shot: ShotName, sight: Sight): Framing | undefined {
     }
     case "winner":
       return around(present([boatOf(sight.racerBoatIds[0])]), sight);
-    case "ball": {
-      const { ball } = sight;
-      return ball && around([ball, ...near(ball, sight.boats, sight)], sight);
-    }
+    // With both goals: who sees the ball alone does not know where it has to go.
+    case "ball":
+      return sight.ball && around([sight.ball, ...near(sight.ball, sight.boats, sight), ...sight.goals], sight);
     case "action": {
       const busy = busiest(sight);
       return busy && around(busy, sight);

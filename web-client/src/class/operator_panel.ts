@@ -82,7 +82,7 @@ export class OperatorPanel {
     const lapsRow = new SliderRow("game-laps", laps, laps.default, "Laps of a race.", (count) => (this.lapsCount = count));
     const goalsRow = new SliderRow("game-goals", goals, goals.default, "Goals that win.", (count) => (this.goalsCount = count));
     this.race = make("div", {}, [lapsRow.element, button("game-race", "Start a race", () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, "Race"))]);
-    this.ball = make("div", {}, [goalsRow.element, button("game-ball", "Start a ball game", () => this.send({ case: "startGame", value: { kind: GameKind.BALL, goalsCount: this.goalsCount } }, "Ball game"))]);
+    this.ball = make("div", {}, [goalsRow.element, button("game-ball", "Start a ball game", () => this.startBall())]);
     const reset = confirmed("lesson-reset", "Start the scene again", "Really? Press again", () => this.send({ case: "reset", value: {} }, "Reset"));
     const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h3", {}, [name]), ...children]);
     this.element = make("details", { id: "class-box", "data-testid": "class-box" }, [
@@ -143,6 +143,12 @@ export class OperatorPanel {
     const team = button(`team-${personId}`, "", () => this.send({ case: "setTeam", value: { personId, team: wireTeam(kNextTeam[person()?.team ?? "none"]) } }, "Team"));
     const mute = button(`mute-${personId}`, "", () => this.send({ case: "mutePerson", value: { personId, muted: !person()?.muted } }, "Mute"));
     return make("li", { "data-person": String(personId) }, [make("i", { "aria-hidden": "true" }), make("span"), team, mute]);
+  }
+
+  /** A ball game is one of teams: they are dealt before it. */
+  private startBall(): void {
+    if (!this.lessons.lesson.teams) this.change({ teams: true });
+    this.send({ case: "startGame", value: { kind: GameKind.BALL, goalsCount: this.goalsCount } }, "Ball game");
   }
 
   private toggle(tool: LessonTool): void {

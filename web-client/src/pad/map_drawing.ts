@@ -1,4 +1,5 @@
 // Draws the pad's map on a canvas: water, land, course, objects, boats and fingers, from above.
+import type { GameInfo } from "../codec/game";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { PersonInfo } from "../codec/people";
 import type { FingerInfo } from "../codec/strokes";
@@ -6,9 +7,9 @@ import type { BodyPose } from "../scene/frames/bodies";
 import type { FloaterKindName, FloaterPose } from "../scene/frames/floaters";
 import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, groundHeightM } from "../scene/landscape/terrain";
-import { kTeamColors } from "../ui/game_texts";
+import { kTeamColors, kTeamLabels } from "../ui/game_texts";
 import type { WaterPlace } from "../ui/tools";
-import { toPx, type MapView } from "./map_view";
+import { edgeOf, toPx, type MapView } from "./map_view";
 import type { Preview } from "./pad_hands";
 import { WaterShade, type MixedSurface } from "./water_shade";
 
@@ -16,13 +17,22 @@ const kBackground = "#06202f";
 const kFlatWater = "#166c92";
 const kRockColor = "#9c9384";
 const kRockEdge = "#5d564b";
-const kNextColor = "#ffe14d";
+/** What one has to reach next: a mark, or the ball. */
+export const kNextColor = "#ffe14d";
 const kMarkColor = "#ff8a2a";
+/** Room of a name. */
+const kNamePx = { width: 60, height: 14 };
+/** Half the length of an arrow at the edge. */
+const kArrowPx = 17;
 /** Things are drawn at least so large. */
 const kLeastPx = { boat: 16, floater: 9, mark: 9 };
 const kKindColors: Record<FloaterKindName, string> = { crate: "#b3834a", ball: "#f4f4f0", barrel: "#8a4b2f", plank: "#c9a066", duck: "#ffd23f", buoy: "#ff5d3a", raft: "#d8b878", stone: "#8d9499" };
 /** Corners of a boat seen from above, bow at x = 0.5: along and across, in lengths and beams. */
 const kHull: readonly (readonly [number, number])[] = [[0.5, 0], [0.24, 0.42], [-0.1, 0.5], [-0.5, 0.4], [-0.5, -0.4], [-0.1, -0.5], [0.24, -0.42]];
+
+export interface MapTarget extends WaterPlace {
+  color: string;
+}
 
 export interface MapThings {
   surface: MixedSurface | undefined;
@@ -35,9 +45,11 @@ export interface MapThings {
   previews: readonly Preview[];
   ownId: number;
   ownBoatId: number;
+  game: GameInfo | undefined;
   /** Index of the mark that the own boat has to round. */
   nextMark: number | undefined;
-  ballFloaterId: number;
+  /** What arrows at the edge of the map point to where the map does not show it. */
+  targets: readonly MapTarget[];
   isNamed: boolean;
 }
 
@@ -49,6 +61,8 @@ export class MapDrawing {
   private image: ImageData | undefined;
   private isLand = new Uint8Array(0);
   private greeting: GreetingInfo | undefined;
+  /** Where names are in this picture. */
+  private readonly named: [x: number, y: number][] = [];
 
   constructor(private readonly canvas: HTMLCanvasElement) {
     this.context = canvas.getContext("2d", { alpha: false })!;
@@ -69,10 +83,12 @@ export class MapDrawing {
     context.setTransform(pixelRatio, 0, 0, pixelRatio, 0, 0);
     this.drawWater(view, greeting, things.surface);
     this.drawObstacles(view, greeting);
-    this.drawCourse(view, greeting, things.nextMark);
-    for (const floater of things.floaters) this.drawFloater(view, floater, floater.floaterId === things.ballFloaterId);
+    this.drawCourse(view, greeting, things);
+    for (const floater of things.floaters) this.drawFloater(view, floater, floater.floaterId === things.game?.ballFloaterId);
+    this.named.length = 0;
     for (const boat of things.boats) this.drawBoat(view, boat, things);
     this.drawHands(view, things);
+    for (const target of things.targets) this.drawTarget(view, target);
   }
 
   private drawWater(view: MapView, greeting: GreetingInfo, surface: MixedSurface | undefined): void {
@@ -133,12 +149,13 @@ export class MapDrawing {
     }
   }
 
-  private drawCourse(view: MapView, { course }: GreetingInfo, nextMark: number | undefined): void {
+  /** Marks and goals; of a game only those that it needs. */
+  private drawCourse(view: MapView, { course }: GreetingInfo, { game, nextMark }: MapThings): void {
     const { context } = this;
     if (!course) return;
     for (const team of ["red", "blue"] as const) {
       const goal = course.goals?.[team];
-      if (!goal) continue;
+      if (!goal || game?.kind === "race") continue;
       const corners = [[-1, -1], [1, -1], [1, 1], [-1, 1]].map(([x, z]) => toPx(view, { xM: goal.xM + (x! * goal.lengthM) / 2, zM: goal.zM + (z! * goal.widthM) / 2 }));
       this.shape(corners);
       context.fillStyle = `${kTeamColors[team]}55`;
@@ -146,7 +163,9 @@ export class MapDrawing {
       context.lineWidth = 3;
       context.fill();
       context.stroke();
+      this.text(`${kTeamLabels[team]} goal`, ...toPx(view, goal), "#ffffff", "700 12px system-ui, sans-serif", true);
     }
+    if (game?.kind === "ball") return;
     course.marks.forEach((mark, n) => {
       const [x, y] = toPx(view, mark);
       const isNext = n === nextMark;
@@ -158,6 +177,23 @@ export class MapDrawing {
       this.disc(x, y, isNext ? kLeastPx.mark + 3 : kLeastPx.mark, isNext ? kNextColor : kMarkColor, "#20130a");
       this.text(String(n + 1), x, y, "#20130a", "700 12px system-ui, sans-serif");
     });
+  }
+
+  /** An arrow from the middle of the view to the edge, if the target is beyond it. */
+  private drawTarget(view: MapView, target: MapTarget): void {
+    const { context, canvas } = this;
+    const edge = edgeOf(view, toPx(view, target), { widthPx: canvas.clientWidth, heightPx: canvas.clientHeight });
+    if (!edge) return;
+    context.save();
+    context.translate(edge.xPx, edge.yPx);
+    context.rotate(edge.angleRad);
+    this.shape([[kArrowPx, 0], [-0.7 * kArrowPx, 0.8 * kArrowPx], [-0.3 * kArrowPx, 0], [-0.7 * kArrowPx, -0.8 * kArrowPx]]);
+    context.fillStyle = target.color;
+    context.strokeStyle = "#04202f";
+    context.lineWidth = 3;
+    context.stroke();
+    context.fill();
+    context.restore();
   }
 
   private drawFloater(view: MapView, { kind, xM, zM, sizeM, isHeld }: FloaterPose, isBall: boolean): void {
@@ -193,7 +229,14 @@ export class MapDrawing {
     context.stroke();
     context.restore();
     if (isOwn && owner?.team) this.ring(x, y, 0.75 * lengthM * scale, kTeamColors[owner.team], 2);
-    if (isNamed && owner && !isOwn) this.text(owner.name, x, y - 0.6 * lengthM * scale - 8, "#ffffff", "600 12px system-ui, sans-serif", true);
+    if (isNamed && owner && !isOwn) this.name(owner.name, x, y - 0.6 * lengthM * scale - 8);
+  }
+
+  /** Leaves a name out that would lie over another. */
+  private name(name: string, x: number, y: number): void {
+    if (this.named.some(([otherX, otherY]) => Math.abs(x - otherX) < kNamePx.width && Math.abs(y - otherY) < kNamePx.height)) return;
+    this.named.push([x, y]);
+    this.text(name, x, y, "#ffffff", "600 12px system-ui, sans-serif", true);
   }
 
   private drawHands(view: MapView, { fingers, people, ownId, ownFingers, previews }: MapThings): void {

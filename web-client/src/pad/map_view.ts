@@ -53,6 +53,21 @@ export function toPlace({ centre, middlePx: [x, y], pxPerM, turnRad }: MapView, 
   return { xM: centre.xM + dx * c + dy * s, zM: centre.zM - dx * s + dy * c };
 }
 
+/** Room that arrows at the edge leave: the headline is above, the stick below, which takes a share of the height. */
+const kEdgePx = { side: 26, top: 62 };
+const kEdgeBottomShare = 0.28;
+
+/**
+ * Returns where the way from the view's middle to a point leaves the map, and its direction there, clockwise from the right; undefined if
+ * the map shows the point.
+ */
+export function edgeOf({ middlePx: [x, y] }: MapView, [toX, toY]: readonly [number, number], { widthPx, heightPx }: SizePx): { xPx: number; yPx: number; angleRad: number } | undefined {
+  const [dx, dy] = [toX - x, toY - y];
+  const along = (d: number, from: number, low: number, high: number): number => (d > 0 ? (high - from) / d : d < 0 ? (low - from) / d : Infinity);
+  const share = Math.min(along(dx, x, kEdgePx.side, widthPx - kEdgePx.side), along(dy, y, kEdgePx.top, (1 - kEdgeBottomShare) * heightPx));
+  return share >= 1 ? undefined : { xPx: x + share * dx, yPx: y + share * dy, angleRad: Math.atan2(dy, dx) };
+}
+
 /** Returns the nearest position on the water. */
 export function ontoWater({ xM, zM }: WaterPlace, { sideM, widthM }: { sideM: number; widthM: number }): WaterPlace {
   const within = (at: number, lengthM: number): number => Math.min(Math.max(at, -0.499 * lengthM), 0.499 * lengthM);

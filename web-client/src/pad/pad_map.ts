@@ -9,10 +9,10 @@ import { mixFloaters, type FloaterPose } from "../scene/frames/floaters";
 import { elevationAtM } from "../scene/frames/height_field";
 import { StreamedFrames } from "../scene/frames/streamed_frames";
 import { mixAngle } from "../scene/maths/interpolate";
-import { nextMarkOf } from "../ui/game_texts";
+import { goalTeamOf, kTeamColors, nextMarkOf } from "../ui/game_texts";
 import type { LessonState } from "../ui/lesson_state";
 import type { WaterPlace } from "../ui/tools";
-import { MapDrawing } from "./map_drawing";
+import { kNextColor, MapDrawing, type MapTarget } from "./map_drawing";
 import { boatView, ontoWater, toPlace, turnFor, wholeView, type MapView } from "./map_view";
 import type { PadWater, Preview } from "./pad_hands";
 import type { MixedSurface } from "./water_shade";
@@ -140,12 +140,22 @@ export class PadMap {
       people: lessons.people,
       floaters: this.floaterPoses.slice(0, this.floatersCount),
       ownId: lessons.ownId,
+      game: lessons.game,
       nextMark: nextMarkOf(lessons.game, lessons.ownId),
-      ballFloaterId: lessons.game?.kind === "ball" ? lessons.game.ballFloaterId : 0,
+      targets: followed ? this.targets(greeting, lessons) : [],
       isNamed: followed !== undefined,
     }, pixelRatio);
     const own = boats.find(({ boatId }) => boatId === moment.ownBoatId);
     return own && { timeS: shownS ?? 0, speedMps: own.speedMps, headingRad: own.headingRad };
+  }
+
+  /** The next mark, or the ball and the goal that it has to go into. */
+  private targets({ course }: GreetingInfo, { game, ownId, me }: LessonState): MapTarget[] {
+    const mark = course?.marks[nextMarkOf(game, ownId) ?? -1];
+    const ball = game?.kind === "ball" && game.phase !== "over" ? this.floaterPoses.slice(0, this.floatersCount).find(({ floaterId }) => floaterId === game.ballFloaterId) : undefined;
+    const team = goalTeamOf(game, me?.team);
+    const goal = team && course?.goals?.[team];
+    return [...(goal ? [{ ...goal, color: kTeamColors[team] }] : []), ...[mark, ball].flatMap((at) => (at ? [{ xM: at.xM, zM: at.zM, color: kNextColor }] : []))];
   }
 
   private place(shownS: number | undefined, greeting: GreetingInfo): void {

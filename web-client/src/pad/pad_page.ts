@@ -2,7 +2,9 @@
 // helm. It asks for coarse frames at a low rate, so that a class of pads costs the server little.
 import "./pad.css";
 import { takeLinkToken } from "../app/address";
+import { CommandSender } from "../app/command_sender";
 import { Haptics } from "../app/haptics";
+import { GamepadTools } from "../app/virtual_pointer";
 import type { GreetingInfo } from "../codec/greeting";
 import type { LessonTool } from "../codec/lesson";
 import type { FingerInfo } from "../codec/strokes";
@@ -11,7 +13,7 @@ import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { CommandAction, ConnectionState, PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { setText } from "../ui/dom";
-import { kTeamLabels } from "../ui/game_texts";
+import { kTeamColors, kTeamLabels } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import { keepChoice, keptChoice } from "../ui/kept";
 import { LessonState } from "../ui/lesson_state";
@@ -20,7 +22,7 @@ import { kHoldLabel } from "../ui/hold_sender";
 import { friendlyName } from "./friendly_name";
 import { gameTouch, kPatterns } from "./game_touch";
 import { kPadHelmLabel, PadBoat } from "./pad_boat";
-import { PadHands } from "./pad_hands";
+import { PadHands, type Preview } from "./pad_hands";
 import { makePadLayout } from "./pad_layout";
 import { PadMap } from "./pad_map";
 import { PadWords } from "./pad_words";
@@ -62,11 +64,24 @@ class PadPage {
     setTimer: (callback: () => void, ms: number) => window.setTimeout(callback, ms),
     clearTimer: (timer: number) => window.clearTimeout(timer),
   };
+  private readonly commands = new CommandSender(this.client);
   private readonly hands = new PadHands((action, label) => this.send(action, label), this.world, Math.random);
   private readonly boat = new PadBoat((action, label) => this.send(action, label), this.world);
   private readonly stick = new Stick((setting) => this.boat.steer(setting));
   private readonly haptics = new Haptics();
-  private readonly labels = new Map<number, string>();
+  private readonly gamepad = new GamepadTools({
+    canvas: this.elements.canvas,
+    isHelm: () => this.mode === "boat",
+    helm: (code, isDown) => void this.boat.key(code, isDown),
+    launch: () => this.elements.launch.click(),
+    stepTool: (by) => this.stepTool(by),
+    turnHeld: () => false,
+    removePointed: () => {},
+    nextKind: () => {},
+    nextView: () => {},
+    toggleSound: () => {},
+    orbit: () => {},
+  });
   private state: ConnectionState = { name: "connecting" };
   private greeting: GreetingInfo | undefined;
   private fingers: FingerInfo[] = [];
@@ -102,7 +117,7 @@ class PadPage {
   /** Measured values for tests and the browser's console. */
   stats() {
     const { lessons, state, boat, mode, picturesPerS } = this;
-    return { connectionState: describeState(state), role: lessons.role, personId: lessons.ownId, myBoat: boat.boatId, mode, displayFps: picturesPerS, whyNot: lessons.whyNot(mode) ?? null, water: this.map.counts() };
+    return { connectionState: describeState(state), role: lessons.role, personId: lessons.ownId, myBoat: boat.boatId, mode, displayFps: picturesPerS, whyNot: lessons.whyNot(mode) ?? null, water: this.map.counts(), simTime: this.map.simTimeS };
   }
 
   private handlers(): PageEventHandlers {
@@ -126,7 +141,7 @@ class PadPage {
         if (!this.map.take(frame)) this.client.release(frame);
       },
       ack: ({ commandId }) => {
-        this.labels.delete(Number(commandId));
+        this.commands.takeLabel(Number(commandId));
         this.hands.answered(Number(commandId), false);
       },
       reject: ({ commandId, reason, message }) => this.rejected(Number(commandId), reason, message),
@@ -166,17 +181,13 @@ class PadPage {
 
   private rejected(commandId: number, reason: string, message: string): void {
     this.hands.answered(commandId, true);
-    const label = this.labels.get(commandId) ?? "";
-    this.labels.delete(commandId);
+    const label = this.commands.takeLabel(commandId);
     if (reason === "NOT_NOW") this.hint(message || "The lesson does not allow this at present.");
     else if (!kQuietLabels.includes(label)) this.hint(`${label}: ${message}`);
   }
 
   private send(action: CommandAction, label: string): number {
-    if (this.state.name !== "live") return 0;
-    const commandId = this.client.command(action);
-    this.labels.set(commandId, label);
-    return commandId;
+    return this.state.name === "live" ? this.commands.send(action, label) : 0;
   }
 
   /** Tools that the room has and the lesson hands out. */
@@ -198,6 +209,12 @@ class PadPage {
     this.refresh();
   }
 
+  private stepTool(by: 1 | -1): void {
+    const tools = this.tools();
+    const next = tools[(tools.indexOf(this.mode) + by + tools.length) % tools.length];
+    if (next) this.elements.buttons.get(next)?.click();
+  }
+
   /** Shows what the lesson, the game and the people say. */
   private refresh(): void {
     const { elements, lessons } = this;
@@ -216,7 +233,8 @@ class PadPage {
     const { me } = lessons;
     this.boat.boatId = me?.boatIds[0] ?? 0;
     document.body.style.setProperty("--own", me?.color ?? "#5fd4e6");
-    document.body.dataset["team"] = me?.team ?? "";
+    if (me?.team) document.body.style.setProperty("--team", kTeamColors[me.team]);
+    else document.body.style.removeProperty("--team");
     elements.me.title = me?.team ? `Team ${kTeamLabels[me.team]}` : "";
     elements.helm.hidden = this.mode !== "boat";
     elements.launch.hidden = this.boat.boatId !== 0;
@@ -302,6 +320,7 @@ class PadPage {
 
   private draw(): void {
     const nowMs = performance.now();
+    this.gamepad.update(nowMs / 1000);
     this.boat.update(nowMs / 1000);
     const { lessons, boat, fingers, mode } = this;
     const pose = this.map.draw(nowMs / 1000, lessons, {
@@ -309,11 +328,20 @@ class PadPage {
       ownBoatId: boat.boatId,
       fingers,
       ownFingers: this.hands.places(),
-      previews: this.greeting ? this.hands.previews(this.greeting) : [],
+      previews: [...(this.greeting ? this.hands.previews(this.greeting) : []), ...this.cursor()],
     });
     this.map.feel(this.haptics, boat.boatId);
     this.words.update(this.map.simTimeS, pose);
     this.measure(nowMs);
+  }
+
+  /** Where a gamepad would use the tool. */
+  private cursor(): Preview[] {
+    const { cursorPx } = this.gamepad;
+    const water = this.map.water();
+    if (!cursorPx || !water) return [];
+    const { left, top } = this.elements.canvas.getBoundingClientRect();
+    return [{ kind: "ring", at: water.placeOf(cursorPx[0] - left, cursorPx[1] - top), radiusM: 0 }];
   }
 
   private measure(nowMs: number): void {

@@ -1,7 +1,7 @@
 // The pad's lines: connection, place in a race, score, countdown, result, and why nothing can be done.
 import type { ConnectionState } from "../net/messages";
 import { setText } from "../ui/dom";
-import { countdownText, gameHeadline, kTeamLabels, standingText } from "../ui/game_texts";
+import { countdownText, gameHeadline, goalText, GoalNews, kTeamLabels, standingText, taskText } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import type { LessonState } from "../ui/lesson_state";
 import type { PadElements } from "./pad_layout";
@@ -14,6 +14,8 @@ export function compassText(headingRad: number): string {
 }
 
 export class PadWords {
+  private readonly news = new GoalNews();
+
   constructor(
     private readonly elements: PadElements,
     private readonly lessons: LessonState,
@@ -22,7 +24,7 @@ export class PadWords {
   /** `reason`: why nobody, or this visitor, may do anything now. */
   refresh(state: ConnectionState, reason: string | undefined): void {
     const { elements, lessons } = this;
-    const { game, people, ownId } = lessons;
+    const { game, ownId } = lessons;
     const isLive = state.name === "live";
     setText(elements.state, isLive ? "" : describeState(state));
     elements.retry.hidden = state.name !== "retrying" && state.name !== "refused";
@@ -32,14 +34,16 @@ export class PadWords {
     elements.veil.hidden = veil === undefined;
     const team = lessons.me?.team;
     setText(elements.standing, (game && standingText(game, ownId)) ?? (game?.kind === "ball" ? `Red ${game.redGoalsCount} : ${game.blueGoalsCount} Blue` : team ? `Team ${kTeamLabels[team].toLowerCase()}` : ""));
-    setText(elements.headline, game ? gameHeadline(game, people) : "");
     elements.headline.hidden = !game;
-    elements.headline.classList.toggle("over", game?.phase === "over");
   }
 
   /** Called for each picture. */
   update(simTimeS: number, pose: OwnPose | undefined): void {
-    const { elements, lessons: { game } } = this;
+    const { elements, lessons: { game, people, ownId, me } } = this;
+    this.news.take(game, simTimeS);
+    const team = this.news.teamAt(simTimeS);
+    if (game) setText(elements.headline, team ? goalText(team) : (taskText(game, ownId, me?.team) ?? gameHeadline(game, people)));
+    elements.headline.classList.toggle("over", game?.phase === "over" || team !== undefined);
     setText(elements.count, game ? countdownText(game, simTimeS) : "");
     setText(elements.speed, pose ? `${Math.abs(pose.speedMps).toFixed(1)} m/s` : "–");
     setText(elements.heading, pose ? compassText(pose.headingRad) : "–");

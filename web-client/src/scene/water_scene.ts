@@ -1,6 +1,7 @@
 // Everything of one room as one picture: draws the passes that room_passes.ts lists, and what the page asks of them.
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
+import type { GameInfo } from "../codec/game";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { GroundGrid } from "../codec/ground";
 import type { PersonInfo } from "../codec/people";
@@ -60,7 +61,7 @@ export class WaterScene {
   private passes: readonly Pass[] = [];
   private darknessShare = 0;
   private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
-  private nextMark: number | undefined;
+  private game: { kind: GameInfo["kind"] | undefined; nextMark: number | undefined } = { kind: undefined, nextMark: undefined };
   private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
   /** Range of the elevations of the frame that was picked last. */
@@ -100,7 +101,7 @@ export class WaterScene {
     this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
     this.base = makeBase(greeting, this.tools);
     this.base.solids.setOwnerColors(this.ownerColors);
-    this.base.solids.setNextMark(this.nextMark);
+    this.base.solids.setGame(this.game.kind, this.game.nextMark);
     this.base.solids.darkness.value = this.darknessShare;
     this.makeWater();
     this.findFloor();
@@ -180,10 +181,10 @@ export class WaterScene {
     this.base?.solids.setBoats(boats);
   }
 
-  /** Highlights the mark of the course that one's own boat has to round; undefined: none. */
-  setNextMark(next: number | undefined): void {
-    this.nextMark = next;
-    this.base?.solids.setNextMark(next);
+  /** Shows what belongs to a game, without one everything, and highlights the mark of the course that one's own boat has to round. */
+  setGame(kind: GameInfo["kind"] | undefined, nextMark: number | undefined): void {
+    this.game = { kind, nextMark };
+    this.base?.solids.setGame(kind, nextMark);
   }
 
   /** Paints boats in the colours of their owners and teams. */

@@ -70,7 +70,52 @@ export function gameHeadline(game: GameInfo, people: readonly Person[]): string 
   const { kind, phase, lapsCount, goalsCount, winnerTeam } = game;
   if (phase === "over") return resultText(game, people);
   if (kind === "race") return `Race: ${lapsCount} ${lapsCount === 1 ? "lap" : "laps"}`;
-  return winnerTeam === undefined ? `Ball: first to ${goalsCount}` : resultText(game, people);
+  return winnerTeam === undefined ? `Ball into the other goal: first to ${goalsCount}` : resultText(game, people);
+}
+
+const kOtherTeam: Record<TeamName, TeamName> = { red: "blue", blue: "red" };
+
+/** What a person of a team has to do in a game now; undefined: there is nothing to do. */
+export function taskText(game: GameInfo, ownId: number, team: TeamName | undefined): string | undefined {
+  if (game.phase === "over" || game.winnerTeam !== undefined) return undefined;
+  if (game.kind === "ball") return team && `Team ${team}: push the ball into the ${kOtherTeam[team]} goal`;
+  const mark = nextMarkOf(game, ownId);
+  return mark === undefined ? undefined : `Steer to buoy ${mark + 1}, the yellow one`;
+}
+
+/** Returns the goal that a team has to push the ball into; undefined outside of a ball game. */
+export function goalTeamOf(game: GameInfo | undefined, team: TeamName | undefined): TeamName | undefined {
+  return game?.kind === "ball" && game.phase !== "over" && team ? kOtherTeam[team] : undefined;
+}
+
+/** A goal is told for so long [s]. */
+const kGoalS = 4;
+
+/** Remembers who has scored last, for a line that is shown for a while. */
+export class GoalNews {
+  private before: GameInfo | undefined;
+  private team: TeamName | undefined;
+  private untilS = 0;
+
+  /** Call it with every state of the game. */
+  take(game: GameInfo | undefined, nowS: number): void {
+    const { before } = this;
+    this.before = game;
+    if (game?.kind !== "ball" || before?.kind !== "ball" || before.beginsS !== game.beginsS) return void (this.team = undefined);
+    const team = game.redGoalsCount > before.redGoalsCount ? "red" : game.blueGoalsCount > before.blueGoalsCount ? "blue" : undefined;
+    if (!team) return;
+    this.team = team;
+    this.untilS = nowS + kGoalS;
+  }
+
+  /** Returns the team whose goal is told now; undefined: none, or the game is decided, which the result tells. */
+  teamAt(nowS: number): TeamName | undefined {
+    return nowS < this.untilS && this.before?.phase !== "over" ? this.team : undefined;
+  }
+}
+
+export function goalText(team: TeamName): string {
+  return `Goal for ${kTeamLabels[team].toLowerCase()}!`;
 }
 
 function resultText({ kind, winnerPersonId, winnerTeam, racers, redGoalsCount, blueGoalsCount }: GameInfo, people: readonly Person[]): string {

@@ -3,12 +3,13 @@
 
 export type HelmKey = "ahead" | "astern" | "port" | "starboard";
 
-const kKeys: Record<string, HelmKey> = {
+const kKeys = {
   ArrowUp: "ahead", KeyW: "ahead",
   ArrowDown: "astern", KeyS: "astern",
   ArrowLeft: "port", KeyA: "port",
   ArrowRight: "starboard", KeyD: "starboard",
-};
+} as const satisfies Record<string, HelmKey>;
+export type HelmCode = keyof typeof kKeys;
 /** Change of the ratio per second while a key is held, and of the rudder after its keys are released. */
 const kThrottlePerS = 1.4;
 const kRudderPerS = 4;
@@ -16,7 +17,7 @@ const kRudderBackPerS = 6;
 
 /** By KeyboardEvent.code: the same physical keys on every keyboard layout. */
 export function helmKey(code: string): HelmKey | undefined {
-  return kKeys[code];
+  return (kKeys as Record<string, HelmKey>)[code];
 }
 
 function toward(value: number, goal: number, step: number): number {

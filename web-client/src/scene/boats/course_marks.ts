@@ -3,6 +3,7 @@
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { CourseGoal, CourseInfo, CourseMark } from "../../codec/course";
+import type { GameInfo } from "../../codec/game";
 import { clamp } from "../maths/interpolate";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
@@ -60,6 +61,7 @@ function makeFloat(radiusM: number, paint: Paint, plain: boolean): BufferGeometr
 export class CourseMarks {
   readonly group = new Group();
   private readonly marks: Mesh[];
+  private readonly goals: Mesh[] = [];
   private readonly geometries: BufferGeometry[] = [];
   private next: number | undefined;
 
@@ -76,12 +78,14 @@ export class CourseMarks {
       const radiusM = clamp(kFloatShare * Math.max(goal.lengthM, goal.widthM), ...kFloatLimitsM);
       const [own, white] = [kTeams[team], kBand].map((paint) => makeFloat(radiusM, paint, plain)) as [BufferGeometry, BufferGeometry];
       this.geometries.push(own, white);
-      floatPlaces(goal).forEach((place, n) => this.add(n % 4 === 3 ? white : own, place));
+      this.goals.push(...floatPlaces(goal).map((place, n) => this.add(n % 4 === 3 ? white : own, place)));
     }
   }
 
-  /** Highlights a mark of the course; undefined: none. */
-  setNext(next: number | undefined): void {
+  /** Shows what belongs to a game, without one everything, and highlights a mark of the course. */
+  setGame(kind: GameInfo["kind"] | undefined, next: number | undefined): void {
+    for (const mark of this.marks) mark.visible = kind !== "ball";
+    for (const float of this.goals) float.visible = kind !== "race";
     if (next === this.next) return;
     const before = this.next;
     this.next = next;

@@ -3,6 +3,7 @@
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
+import type { GameInfo } from "../../codec/game";
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
 import { Boats } from "../boats/boats";
 import { buoyPlaces, Buoys } from "../boats/buoys";
@@ -111,9 +112,9 @@ export class SolidsPass implements Pass {
     this.boats?.setBoats(boats);
   }
 
-  /** Highlights the mark of the course that one's own boat has to round; undefined: none. */
-  setNextMark(next: number | undefined): void {
-    this.course?.setNext(next);
+  /** Shows what belongs to a game, and highlights the mark of the course that one's own boat has to round. */
+  setGame(kind: GameInfo["kind"] | undefined, nextMark: number | undefined): void {
+    this.course?.setGame(kind, nextMark);
   }
 
   /** `colors`: of the owners and their teams, by boat. */
