@@ -36,7 +36,7 @@ const kSeenFrom: readonly SideName[] = ["+z", "-x", "-z", "+x"];
 
 /** A tank that is shallower than this share of its side is a tray: one looks at the waves from above, not through the glass. */
 const kTrayDepth = 0.2;
-const kTrayView = { ...kSettingViews.glassTank, raised: { wide: 3, tall: 5 } };
+const kTrayView = { ...kSettingViews.glassTank, raised: { wide: 1.8, tall: 2.6 } };
 
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
 export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom"> {
