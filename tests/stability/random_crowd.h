@@ -16,6 +16,8 @@
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/wire/client_message.h>
 
+#include "stability_scene.h"
+
 namespace spindrift {
 
 /// Random values in a range, the same in every run.
@@ -140,6 +142,7 @@ class Crowd {
   v1::Command any(const sim::WaterSim& water) {
     const core::WaveCells cells = scene::waveCellsOf(scene_.wave());
     const double half_m = cells.length_m / 2, half_z_m = cells.width_m / 2;
+    const double ratio = basinRatio(cells.length_m);
     const auto boats = water.boats();
     const auto anyBoat = [&] {
       return boats[static_cast<std::size_t>(dice_.upTo(static_cast<int>(boats.size())))].boat_id;
@@ -150,7 +153,7 @@ class Crowd {
       out.mutable_reset();
     } else if (kind < 100) {
       v1::Stroke& stroke = *out.mutable_stroke();
-      stroke.set_radius_m(dice_.between(0.1, 4.0));
+      stroke.set_radius_m(ratio * dice_.between(0.1, 4.0));
       stroke.set_depth_m(stroke.radius_m() * dice_.between(0.05, 0.5));
       stroke.set_ends(true);
       const int count = 1 + dice_.upTo(6);
@@ -167,14 +170,14 @@ class Crowd {
       v1::Splash& splash = *out.mutable_splash();
       splash.set_x_m(dice_.between(-half_m, half_m));
       splash.set_z_m(dice_.between(-half_z_m, half_z_m));
-      splash.set_radius_m(dice_.between(0.2, 3.0));
-      splash.set_depth_m(dice_.between(0.05, 1.0));
+      splash.set_radius_m(ratio * dice_.between(0.2, 3.0));
+      splash.set_depth_m(ratio * dice_.between(0.05, 1.0));
       splash.set_duration_s(dice_.between(0.05, 0.6));
     } else if (kind < 400) {
       v1::BreakingWave& wave = *out.mutable_breaking_wave();
       wave.set_side(static_cast<v1::Side>(1 + dice_.upTo(5)));
-      wave.set_amplitude_m(dice_.between(0.05, 1.0));
-      wave.set_length_m(dice_.between(0.5, 8.0));
+      wave.set_amplitude_m(ratio * dice_.between(0.05, 1.0));
+      wave.set_length_m(ratio * dice_.between(0.5, 8.0));
       wave.set_duration_s(dice_.between(0.1, 1.0));
       wave.set_shape(static_cast<v1::WaveShape>(1 + dice_.upTo(2)));
       wave.set_direction_deg(dice_.between(-180, 180));

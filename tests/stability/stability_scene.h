@@ -1,6 +1,7 @@
 // A shipped scene on the software device, for long runs.
 #pragma once
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
@@ -14,6 +15,11 @@
 #include <spindrift/sim/water_sim.h>
 
 namespace spindrift {
+
+/// What is thrown into a basin and the waves that come of it, over those of a basin of at least 6 m: 1 there.
+inline double basinRatio(double length_m) {
+  return std::min(1.0, length_m / 6.0);
+}
 
 class Endurance : public ::testing::Test {
  public:

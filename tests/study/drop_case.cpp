@@ -130,6 +130,70 @@ Moments momentsOf(sim::WaterSim& water) {
   return out;
 }
 
+struct Pressure {
+  double whole_pa = 0.0;   ///< of all forces between particles
+  double solver_pa = 0.0;  ///< of the equation of state alone
+};
+
+/// Mean pressure inside a drop at rest, in the weakly compressible solver, by the virial of the forces that
+/// shaders/sph/force.comp adds up: sum of r F / 6 over the pairs of the particles farther than two supports from the
+/// surface, over their volume. The pressure of the equation of state is not that of the water: it also carries the
+/// attraction of the particles.
+Pressure pressureInside(const sim::WaterSim& water, const sim::StateCopy& state) {
+  const sim::ParticleLayout& l = *water.derived().particles;
+  const shared::SimUniforms& u = water.derived().uniforms;
+  const double H = l.support_radius_m;
+  const double slope_pm4 = 210 / (std::numbers::pi * std::pow(H, 4));  // -(dW/dr) / (q (1 - q)^3)
+  const std::size_t count = water.particleCount();
+  const auto between = [&](std::size_t i, std::size_t j) {
+    return Point{static_cast<double>(state.position[4 * i]) - state.position[4 * j],
+                 static_cast<double>(state.position[4 * i + 1]) - state.position[4 * j + 1],
+                 static_cast<double>(state.position[4 * i + 2]) - state.position[4 * j + 2]};
+  };
+  Point middle_m{};
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      middle_m[axis] += state.position[4 * i + axis] / static_cast<double>(count);
+  }
+  std::vector<Point> emptiness_m(count);  // SURFACE_GRADIENT
+  std::vector<double> push(count);        // p / rho^2
+  std::vector<std::size_t> inner;
+  double inner_m3 = 0.0;
+  double pressure_pa = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double rho = state.density_kgpm3[i];
+    const double p_pa = std::max(u.stiffness_m2ps2 * (rho - u.rest_density_kgpm3), 0.0);
+    push[i] = p_pa / (rho * rho);
+    const double out_m = std::hypot(state.position[4 * i] - middle_m[0], state.position[4 * i + 1] - middle_m[1],
+                                    state.position[4 * i + 2] - middle_m[2]);
+    if (out_m < radiusOf(water) - 2 * H) {
+      inner.push_back(i);
+      inner_m3 += u.mass_kg / rho;
+      pressure_pa += p_pa;
+    }
+    for (std::size_t j = 0; j < count; ++j) {
+      const Point r = between(i, j);
+      const double rest = std::max(1 - std::hypot(r[0], r[1], r[2]) / H, 0.0);
+      for (std::size_t axis = 0; axis < 3; ++axis) emptiness_m[i][axis] += rest * rest * rest * r[axis];
+    }
+  }
+  double virial_j = 0.0;
+  for (const std::size_t i : inner) {
+    for (std::size_t j = 0; j < count; ++j) {
+      const Point r = between(i, j);
+      const double r2 = r[0] * r[0] + r[1] * r[1] + r[2] * r[2];
+      const double q = std::sqrt(r2) / H;
+      if (i == j || q >= 1) continue;
+      const double rest = 1 - q;
+      double along = 0.0;  // r times the difference of the gradients
+      for (std::size_t axis = 0; axis < 3; ++axis) along += r[axis] * (emptiness_m[i][axis] - emptiness_m[j][axis]);
+      virial_j += u.mass_kg * (u.mass_kg * (push[i] + push[j]) * slope_pm4 * q * rest * rest * rest * q * H -
+                               rest * rest * (u.tension_area_ps2 * along * (rest - 3 * q) + u.tension_pull_ps2 * r2));
+    }
+  }
+  return {virial_j / (6 * inner_m3), pressure_pa / static_cast<double>(inner.size())};
+}
+
 /// a cos(w t) exp(-d t) + b sin(w t) exp(-d t) + c, fitted by least squares over w and d on a grid.
 struct Oscillation {
   double omega_radps = 0.0;
@@ -179,6 +243,27 @@ Oscillation fitOscillation(const std::vector<double>& series, double interval_s,
   return best;
 }
 
+/// Adds the mean of the pressure inside over half a period. The position-based solver has multipliers instead of a
+/// pressure.
+core::Result<void> addPressure(sim::WaterSim& water, double period_s, const std::string& name, std::vector<Row>& rows) {
+  if (water.scene().particles->solver != core::PressureSolver::kWeaklyCompressible) return {};
+  Pressure mean;
+  int count = 0;
+  const auto look = [&] {
+    const Pressure seen = pressureInside(water, water.copyState());
+    ++count;
+    mean.whole_pa += (seen.whole_pa - mean.whole_pa) / count;
+    mean.solver_pa += (seen.solver_pa - mean.solver_pa) / count;
+  };
+  if (auto done = runTo(water, water.time_s() + 0.5 * period_s, look); !done) return done.error();
+  const double laplace_pa = 2 * kTension_npm / radiusOf(water);
+  rows.push_back({name, "Pa", mean.whole_pa, laplace_pa, Tolerance::kNone, 0.0,
+                  "2 sigma / R (Laplace); decision 133 says why it is only reported"});
+  rows.push_back({name + ": of the equation of state", "Pa", mean.solver_pa, laplace_pa, Tolerance::kNone, 0.0,
+                  "2 sigma / R; it carries the attraction, too"});
+  return {};
+}
+
 }  // namespace
 
 Outcome drops(gpu::Context& ctx, bool quick) {
@@ -206,8 +291,12 @@ Outcome drops(gpu::Context& ctx, bool quick) {
       const Moments round = momentsOf(water);
       rows.push_back({name + "elongation of what was a block, over that of the block", "",
                       std::abs(round.elongation()) / block, 0.2, Tolerance::kAtMost, 0.0, "a sphere"});
+      if (auto done = addPressure(water, period_s, name + "pressure inside, what was a block", rows); !done)
+        return done.error();
       shape(water, [](const Point& p) { return std::hypot(p[0], p[1], p[2]); });
       if (auto done = runTo(water, water.time_s() + period_s); !done) return done.error();
+      if (auto done = addPressure(water, period_s, name + "pressure inside, at rest from the start", rows); !done)
+        return done.error();
       stretch(water, 1.15);
       std::vector<double> series{momentsOf(water).elongation()};
       const double start_s = water.time_s();

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 
 import { parse } from "../src/codec/parse";
 import { kDebounceMs, SliderModel } from "../src/ui/slider_model";
-import { clampTo, effectLimits } from "../src/ui/effect_limits";
+import { clampTo, effectLimits, keptValue } from "../src/ui/effect_limits";
 import { parameter, type ParameterOptions } from "../src/gen/spindrift/v1/options_pb";
 import { BreakingWaveSchema, SplashSchema } from "../src/gen/spindrift/v1/scene_pb";
 import { FakeTime } from "./fakes";
@@ -100,25 +100,44 @@ describe("the effect sliders' ranges", () => {
 
   it("come from the options in the proto, narrowed to the water", () => {
     const limits = enter({ wave: { resolutionCount: 256, sideM: 16, depthM: 1.5 } })!;
-    const optionsOf = ({ label, unit, min, step, default: fallback }: ParameterOptions) => ({ label, unit, min, step, default: fallback });
+    // The steps of the options are for the smallest water.
+    const optionsOf = ({ label, unit, default: fallback }: ParameterOptions, step: number) => ({ label, unit, min: step, step, default: fallback });
     const { field: splash } = SplashSchema;
     const { field: wave } = BreakingWaveSchema;
     expect(limits).toEqual({
-      splashRadiusM: { ...optionsOf(getOption(splash.radiusM, parameter)), max: 8 },
-      splashDepthM: { ...optionsOf(getOption(splash.depthM, parameter)), max: 1.35 },
-      waveAmplitudeM: { ...optionsOf(getOption(wave.amplitudeM, parameter)), max: 1.35 },
-      waveLengthM: { ...optionsOf(getOption(wave.lengthM, parameter)), max: 16 },
-      waveDirectionDeg: { ...optionsOf(getOption(wave.directionDeg, parameter)), max: 180 },
+      splashRadiusM: { ...optionsOf(getOption(splash.radiusM, parameter), 0.05), max: 8 },
+      splashDepthM: { ...optionsOf(getOption(splash.depthM, parameter), 0.01), max: 1.35 },
+      waveAmplitudeM: { ...optionsOf(getOption(wave.amplitudeM, parameter), 0.01), max: 1.35 },
+      waveLengthM: { ...optionsOf(getOption(wave.lengthM, parameter), 0.05), max: 16 },
+      waveDirectionDeg: { ...optionsOf(getOption(wave.directionDeg, parameter), 1), min: -180, max: 180 },
     });
     expect(limits.splashRadiusM.label).toBe("Splash radius");
   });
 
   it("limit the default in shallow and small water, and keep the proto's bound in wide water", () => {
     const small = enter({ wave: { resolutionCount: 64, sideM: 1, depthM: 0.2 } })!;
-    expect(small.splashRadiusM).toMatchObject({ max: 0.5, default: 0.5 });
-    expect(small.splashDepthM).toMatchObject({ max: 0.18, default: 0.18 });
+    expect(small.splashRadiusM).toMatchObject({ max: 0.5, default: 0.1 });
+    expect(small.splashDepthM).toMatchObject({ max: 0.18, default: 0.055 });
+    expect(small.waveLengthM).toMatchObject({ max: 1, default: 0.2 });
+    expect(small.waveAmplitudeM).toMatchObject({ max: 0.18, default: 0.04 });
     expect(enter({ wave: { resolutionCount: 64, sideM: 1000, depthM: 100 } })!.splashRadiusM.max).toBe(100);
     expect(clampTo(3, small.splashRadiusM)).toBe(0.5);
+  });
+
+  it("are of the size of ripples where the water has surface tension, and a chosen size stays in proportion", () => {
+    const wave = { resolutionCount: 160, sideM: 0.45, depthM: 0.05 };
+    const tank = enter({ gravityMps2: 9.81, wave: { ...wave, surfaceTensionNpm: 0.0728 } })!;
+    // The slowest ripples of water have 1.71 cm.
+    expect(tank.splashRadiusM).toMatchObject({ min: 0.005, step: 0.005, max: 0.225, default: 0.01 });
+    expect(tank.splashDepthM).toMatchObject({ min: 0.0001, max: 0.045, default: 0.0055 });
+    expect(tank.waveLengthM).toMatchObject({ min: 0.01, max: 0.45, default: 0.015 });
+    expect(tank.waveAmplitudeM.default).toBeCloseTo(0.003, 9);
+    expect(enter({ gravityMps2: 9.81, wave })!.splashRadiusM.default).toBe(0.045);
+    const pool = enter({ wave: { resolutionCount: 64, sideM: 20, depthM: 2 } })!;
+    expect(keptValue(3, pool.splashRadiusM, tank.splashRadiusM)).toBeCloseTo(0.02, 9);
+    expect(keptValue(0.02, tank.splashRadiusM, pool.splashRadiusM)).toBeCloseTo(3, 9);
+    expect(keptValue(9, pool.splashDepthM, tank.splashDepthM)).toBe(0.045);
+    expect(keptValue(90, pool.waveDirectionDeg, tank.waveDirectionDeg)).toBe(90);
   });
 
   it("follow from the narrower side and the resting depth of a box of particles, as in the server", () => {

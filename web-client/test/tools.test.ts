@@ -42,6 +42,9 @@ describe("tools", () => {
     expect(wave(1, 4).amplitudeM).toBeLessThan(wave(1, 7).amplitudeM!);
     expect(wave(1, 8.5).amplitudeM).toBeCloseTo(0.5, 9);
     expect(wave(1, 9, 0.5).amplitudeM).toBeCloseTo(0.25, 9);
+    // Where there are ripples, one of them; 1.71 cm in water.
+    const tank = { waterExtents: { sideM: 0.45, longM: 0.45, depthM: 0.05, rippleM: 0.0171 } };
+    expect(paddleWave({ xM: 0, zM: 0 }, { xM: 0.2, zM: 0 }, tank, kPlain)?.value).toMatchObject({ lengthM: 0.0171, amplitudeM: 0.25 * 0.0171, widthM: 0.3 * 0.45 });
   });
 
   it("are outlined on the water: a closed circle; a paddle across the drag, with an arrow", () => {

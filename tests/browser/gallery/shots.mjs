@@ -32,6 +32,7 @@ const kShots = {
   pool: { tick: 102 },
   regatta: { tick: 300, camera: { view: "overview" } },
   river_mouth: { tick: 780, historyTicks: 300, camera: { eyeM: [-6, 6, 14], targetM: [3, 0, 0] } },
+  ripple_tank: { tick: 540 },
   rain_rings: { tick: 420, camera: { eyeM: [0.4, 2.2, 4.6], targetM: [0, 0, 0] } },
   splash: { tick: 84 },
   splash_particles: { tick: 84 },

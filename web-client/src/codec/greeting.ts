@@ -51,6 +51,8 @@ interface WaterExtents {
   sideM: number;
   longM: number;
   depthM: number;
+  /** Length of the slowest ripples; only in water with surface tension. */
+  rippleM?: number;
 }
 
 export interface GreetingInfo {
@@ -134,6 +136,14 @@ function boxExtents(particles: ParticleScene | undefined): WaterExtents {
   return { sideM: Math.min(boxSideM, widthM), longM: Math.max(boxSideM, widthM), depthM: layersCount * Math.sqrt((areaM2 * layersCount) / Math.max(count, 1)) };
 }
 
+const kWaterKgpm3 = 1000;
+
+/** As in the server: 2 pi sqrt(sigma / (rho g)). */
+function rippleOf(scene: Scene | undefined): Pick<WaterExtents, "rippleM"> {
+  const [tensionNpm, gravityMps2] = [finiteAbove0(scene?.wave?.surfaceTensionNpm), finiteAbove0(scene?.gravityMps2)];
+  return tensionNpm > 0 && gravityMps2 > 0 ? { rippleM: 2 * Math.PI * Math.sqrt(tensionNpm / (kWaterKgpm3 * gravityMps2)) } : {};
+}
+
 function finiteAbove0(value: number | undefined): number {
   return value !== undefined && value > 0 && Number.isFinite(value) ? value : 0;
 }
@@ -184,7 +194,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       wind: scene && readWind(scene),
       sideM,
       widthM: wave?.widthM ?? (scene?.particles?.boxWidthM || sideM),
-      waterExtents: wave ? { sideM: Math.min(sideM, wave.widthM), longM: Math.max(sideM, wave.widthM), depthM: wave.depthM } : boxExtents(scene?.particles),
+      waterExtents: wave ? { sideM: Math.min(sideM, wave.widthM), longM: Math.max(sideM, wave.widthM), depthM: wave.depthM, ...rippleOf(scene) } : boxExtents(scene?.particles),
       hasParticles: scene?.particles !== undefined,
       bandM: bandOf(scene),
       hasBreakers: breaks(scene),

@@ -24,23 +24,39 @@ const kWidestRadiusSides = 0.5;
 const kLongestWaveSides = 1;
 const kDeepestDepths = 0.9;
 
-function range(field: DescField, largest: number): EffectRange {
-  const { label, unit, min, max, step, default: fallback } = getOption(field, parameter);
-  // Rounded down to a step, so that the server accepts the slider's maximum.
-  const top = Math.max(Math.floor(Math.min(max, largest) / step + 1e-9) * step, min);
-  const rounded = Number(top.toFixed(6));
-  return { label, unit, min, max: rounded, step, default: Math.min(fallback, rounded) };
+/** Sizes at first: a splash and a crest in sides of the water, the depth of a splash in radii and the height of a crest in lengths. In
+    water with ripples a splash is half as wide, and a crest as long, as the slowest of them. */
+const kUsual = { radiusSides: 0.1, lengthSides: 0.2, depthRadii: 0.55, heightLengths: 0.2 };
+const kRadiusRipples = 0.6;
+/** A slider has no more steps than this: the step of a field is for the smallest water, and is multiplied by 10 in larger ones. */
+const kMostSteps = 1000;
+
+/** `usual`: the default at most. */
+function range(field: DescField, largest: number, usual = Infinity): EffectRange {
+  const { label, unit, min, max, step: finest, default: fallback } = getOption(field, parameter);
+  const most = Math.min(max, largest);
+  let step = finest;
+  while (most - min > kMostSteps * step * (1 + 1e-9)) step *= 10;
+  const rounded = (value: number): number => Number(value.toFixed(6));
+  step = rounded(step);
+  // On a step: the maximum below the bound, so that the server accepts it.
+  const low = step > finest ? rounded(Math.ceil(min / step - 1e-9) * step) : min;
+  const high = Math.max(rounded(Math.floor(most / step + 1e-9) * step), low);
+  const first = Math.min(fallback, high, Math.max(usual, low));
+  return { label, unit, min: low, max: high, step, default: first === fallback ? fallback : rounded(Math.max(Math.floor(first / step + 1e-9) * step, low)) };
 }
 
 /** Undefined if the water has no depth: no effect is possible. */
 export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
-  const { sideM, depthM } = greeting.waterExtents;
+  const { sideM, depthM, rippleM = Infinity } = greeting.waterExtents;
   if (!(depthM > 0 && Number.isFinite(depthM))) return undefined;
+  const splashRadiusM = range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM, Math.min(kUsual.radiusSides * sideM, kRadiusRipples * rippleM));
+  const waveLengthM = range(BreakingWaveSchema.field.lengthM, kLongestWaveSides * sideM, Math.min(kUsual.lengthSides * sideM, rippleM));
   return {
-    splashRadiusM: range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM),
-    splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM),
-    waveAmplitudeM: range(BreakingWaveSchema.field.amplitudeM, kDeepestDepths * depthM),
-    waveLengthM: range(BreakingWaveSchema.field.lengthM, kLongestWaveSides * sideM),
+    splashRadiusM,
+    splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM, kUsual.depthRadii * splashRadiusM.default),
+    waveAmplitudeM: range(BreakingWaveSchema.field.amplitudeM, kDeepestDepths * depthM, kUsual.heightLengths * waveLengthM.default),
+    waveLengthM,
     waveDirectionDeg: range(BreakingWaveSchema.field.directionDeg, Infinity),
   };
 }
@@ -91,6 +107,11 @@ export function fieldRange(field: DescField): EffectRange {
 
 export function speedRange(): EffectRange {
   return range(SetSpeedSchema.field.speed, Infinity);
+}
+
+/** Returns what a slider's value becomes in other water: what was twice the usual size is so there, too. */
+export function keptValue(value: number, before: EffectRange, now: EffectRange): number {
+  return clampTo(before.default > 0 ? (value * now.default) / before.default : value, now);
 }
 
 /** Clamps a value to a range, such as that of a new room's slider. */

@@ -3,7 +3,7 @@ import type { GreetingInfo } from "../codec/greeting";
 import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { byId } from "./dom";
-import { clampTo, effectLimits, type EffectLimits } from "./effect_limits";
+import { effectLimits, keptValue, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";
 import { SliderRow } from "./slider_row";
 import { splashOf, type ToolScale, type WaterPlace } from "./tools";
@@ -44,8 +44,9 @@ export class EffectsPanel {
     this.shape.setChoices(kShapes, kShapes[0]!.value);
   }
 
-  /** Keeps the values that the new room allows. */
+  /** Keeps the values in proportion to what suits the water, within what the new room allows. */
   enter(greeting: GreetingInfo): void {
+    const limitsBefore = this.limits;
     const limits = (this.limits = effectLimits(greeting));
     this.root.hidden = !limits;
     if (!limits) {
@@ -56,7 +57,7 @@ export class EffectsPanel {
     this.values = { splashRadiusM: 0, splashDepthM: 0, waveAmplitudeM: 0, waveLengthM: 0, waveDirectionDeg: 0 };
     for (const key of kKeys) {
       const range = limits[key];
-      const value = clampTo(before?.[key] ?? range.default, range);
+      const value = before && limitsBefore ? keptValue(before[key], limitsBefore[key], range) : range.default;
       this.values[key] = value;
       const row = this.rows.get(key);
       if (row) {

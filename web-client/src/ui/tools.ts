@@ -46,8 +46,8 @@ export const kTapStrokeS: Partial<Record<ToolName, number>> = { rain: 8, calm: 4
 /** A splash that is held grows to this many times its size, in this time after the tap. */
 const kHeldLargest = 2.5;
 const kHeldS = 1.5;
-/** Shares of the shorter side: radius of a finger, of a cloud or a calmed disc; a paddle's width, the length of its wave, and the drag that
-    makes it highest. */
+/** Shares of the shorter side: radius of a finger, of a cloud or a calmed disc; a paddle's width, the length of its wave (no
+    longer than the slowest ripples where there are any), and the drag that makes it highest. */
 const kSides = { finger: 0.025, disc: 0.1, paddleWidth: 0.3, paddleLength: 0.1, paddleDrag: 0.35 };
 /** Depth of a finger in radii, height of a paddle's wave over its length; both at most a share of the water's depth. */
 const kFingerDepth = { radii: 0.45, depths: 0.2 };
@@ -90,11 +90,11 @@ export function splashOf(place: WaterPlace, size: { splashRadiusM: number; splas
 }
 
 /** The wave of a paddle that was dragged from one place to another; undefined for a drag that is too short. */
-export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { sideM, depthM } }: Water, { sizeRatio, strengthRatio }: ToolScale): CommandAction | undefined {
+export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { sideM, depthM, rippleM = Infinity } }: Water, { sizeRatio, strengthRatio }: ToolScale): CommandAction | undefined {
   const dragM = Math.hypot(to.xM - from.xM, to.zM - from.zM);
   if (dragM < kShortestDrag * sideM) return undefined;
   const { amplitudeM: amplitude, lengthM: length, widthM: width } = BreakingWaveSchema.field;
-  const lengthM = within(length, kSides.paddleLength * sideM);
+  const lengthM = within(length, Math.min(kSides.paddleLength * sideM, rippleM));
   const highestM = Math.min(kPaddleHeight.lengths * lengthM, kPaddleHeight.depths * depthM);
   return {
     case: "breakingWave",

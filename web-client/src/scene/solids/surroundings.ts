@@ -34,9 +34,13 @@ const kLeanFromLand = { x: 0.04, z: 0.16 };
 /** The view from the side looks from the first of these sides without land. */
 const kSeenFrom: readonly SideName[] = ["+z", "-x", "-z", "+x"];
 
+/** A tank that is shallower than this share of its side is a tray: one looks at the waves from above, not through the glass. */
+const kTrayDepth = 0.2;
+const kTrayView = { ...kSettingViews.glassTank, raised: { wide: 1.8, tall: 2.6 } };
+
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
 export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom"> {
-  const view = kSettingViews[setting];
+  const view = setting === "glassTank" && wave && wave.depthM < kTrayDepth * Math.min(wave.sideM, wave.widthM) ? kTrayView : kSettingViews[setting];
   if (setting !== "openSea" || !wave) return view;
   const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
   const seenFrom = kSeenFrom.find((side) => closed(side) === 0) ?? "+z";
