@@ -215,7 +215,8 @@ export class DrivenPage {
   /** Draws the shown tick and returns the window, with what lies over the canvas, as a PNG file. */
   async windowPicture() {
     await this.picture();
-    return this.#page.screenshot({ timeout: kWaitMs });
+    // Panels that fade in or out have done so.
+    return this.#page.screenshot({ timeout: kWaitMs, animations: "disabled" });
   }
 
   async close() {
