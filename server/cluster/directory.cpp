@@ -198,7 +198,7 @@ Directory::Decision Directory::decide(Entries& entries) {
     }
     const std::string& owner = entry.record.server();
     if (owner != self_ && servers.isAlive(owner, now)) {
-      if (servers.serverOf(room) != owner) ++placed[owner];  // it has claimed the room and is opening it
+      if (!servers.runs(owner, room, now)) ++placed[owner];  // it has claimed the room and is opening it
       continue;
     }
     // A living server that says that it runs the room will enter it. One that released it is about to end.
@@ -224,10 +224,8 @@ Directory::Decision Directory::decide(Entries& entries) {
 bool Directory::settle(const std::string& room, const Entry& entry) {
   const auto running = simulation_->find(room);
   if (!running) return true;  // closed meanwhile
-  const Servers servers = hooks_.servers();
   const std::string& other = entry.record.server();
-  const bool runs_elsewhere = servers.isAlive(other, Clock::now()) && servers.serverOf(room) == other;
-  if (runs_elsewhere && !simulation_->rules().states) {
+  if (hooks_.servers().runs(other, room, Clock::now()) && !simulation_->rules().states) {
     // Without a shared state there is no lock: this server was cut off, and the other one took the room.
     spdlog::error("room {} runs on server {} as well, which took it while this one was cut off: closing it here", room,
                   other);

@@ -41,6 +41,10 @@ bool Servers::isAlive(const std::string& server, Clock::time_point now) const {
   return found != servers_.end() && now - found->second.heard <= kServerPatience;
 }
 
+bool Servers::runs(const std::string& server, const std::string& room, Clock::time_point now) const {
+  return isAlive(server, now) && std::ranges::count(servers_.at(server).pulse.rooms(), room) > 0;
+}
+
 std::vector<std::string> Servers::alive(Clock::time_point now) const {
   std::vector<std::string> out;
   for (const auto& [name, server] : servers_) {

@@ -118,7 +118,8 @@ void applyFidelity(v1::Scene& scene) {
   scaleNumber(scene, "tick_rate_hz", level.tick_scale);
   if (scene.has_wave()) {
     v1::WaveScene& wave = *scene.mutable_wave();
-    scaleCells(wave, level.wave_scale);
+    // Ripples need their cells; fewer would be an error (sim_setup/surface_tension.cpp).
+    scaleCells(wave, wave.surface_tension_npm() > 0.0 ? std::max(1.0, level.wave_scale) : level.wave_scale);
     // At every level: rings of the 9-point stencil are 1.3 to 1.5 times as far off at the same step, as far off at each
     // stencil's own largest step, and carry twice the faces (`spindrift-study --suite accuracy --case round-hump`).
     if (wave.stencil() == v1::STENCIL_UNSPECIFIED) wave.set_stencil(v1::STENCIL_FIVE_POINT);

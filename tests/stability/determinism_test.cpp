@@ -67,7 +67,8 @@ TEST_P(Determinism, IsIndependentOfWorkGroupOrderAndScratch) {
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Determinism,
                          testing::Values(Run{"pool", 40}, Run{"splash", 90}, Run{"harbor", 90}, Run{"dam_break", 30},
-                                         Run{"open_water", 60}, Run{"splash_particles", 30}, Run{"flume", 90}, Run{"flotsam", 30}),
+                                         Run{"open_water", 60}, Run{"splash_particles", 30}, Run{"flume", 90},
+                                         Run{"flotsam", 30}),
                          [](const auto& run) { return std::string(run.param.scene); });
 
 }  // namespace

@@ -121,6 +121,10 @@ TEST(RoomOfTwoServers, IsThatOfTheNewerPulse) {
   servers.note(pulse("a", 0, {"main"}), kStart);
   servers.note(pulse("b", 0, {"main"}), kStart + milliseconds(1));
   EXPECT_EQ(servers.serverOf("main"), "b") << "both are alive, and each speaks for itself";
+  const auto now = kStart + milliseconds(2);
+  EXPECT_TRUE(servers.runs("a", "main", now) && servers.runs("b", "main", now)) << "whoever was heard last";
+  EXPECT_FALSE(servers.runs("b", "pool", now) || servers.runs("c", "main", now) ||
+               servers.runs("b", "main", now + seconds(2)));
   EXPECT_THAT(servers.rooms(), ElementsAre("main"));
 }
 

@@ -51,6 +51,12 @@ TEST(Fidelity, TakesTheStencilThatIsMoreAccurateAtEveryLevel) {
       << "a scene may choose";
 }
 
+TEST(Fidelity, KeepsTheCellsThatRipplesNeed) {
+  const std::string tray = "wave { resolution_count: 160 side_m: 0.45 surface_tension_npm: 0.0728 }";
+  EXPECT_EQ(parsed(tray, v1::FIDELITY_DRAFT).wave().resolution_count(), 160u);
+  EXPECT_EQ(parsed(tray, v1::FIDELITY_FINE).wave().resolution_count(), 240u);
+}
+
 TEST(Fidelity, KeepsWhatTheSceneChose) {
   const v1::Scene scene = parsed(
       "fidelity: FIDELITY_REFERENCE wave { stencil: STENCIL_FIVE_POINT } particles { iterations_count: 3 }\n"
