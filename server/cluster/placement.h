@@ -27,7 +27,7 @@ class Servers {
   void review(Clock::time_point now);
 
   [[nodiscard]] bool isAlive(const std::string& server, Clock::time_point now) const;
-  /// Whether this server is alive and says that it runs the room; after a cut, another one may say so as well.
+  /// Returns whether this server is alive and says that it runs the room; after a cut, another one may say so as well.
   [[nodiscard]] bool runs(const std::string& server, const std::string& room, Clock::time_point now) const;
   /// Returns the names of those alive, in order.
   [[nodiscard]] std::vector<std::string> alive(Clock::time_point now) const;
