@@ -195,7 +195,8 @@ describe("a server that ends", () => {
     const took_ms = Date.now() - begin;
     console.log(`ended ${took_ms} ms after SIGTERM`);
     expect(took_ms).toBeLessThan(kEndLimitMs);
-    const waits = pages.map((page) => page.newest("draining")?.draining.reconnectAfterMaxS);
+    await until("a hundred notices", () => pages.every((page) => page.newest("draining")));
+    const waits = pages.map((page) => page.newest("draining").draining.reconnectAfterMaxS);
     expect(waits.every((wait) => wait >= 2.5)).toBe(true);
     server = undefined;
   });
