@@ -32,7 +32,8 @@
 #define FLOATER_NEAR_WORDS 32
 #define FLOATER_GROUNDED 256u
 // FLOATER_PUSH, 8 words per slot, zero between steps: change of velocity, of spin, number of contacts, number of particles that hit.
-// BOAT_PUSH, 2 words per slot: change of velocity along x and z. In units of 2^-20 m/s and rad/s, because sums of integers do not depend on their order.
+// BOAT_PUSH, 2 words per slot: change of velocity along x and z. In units of 2^-20 m/s and rad/s, because sums of integers do not depend
+// on their order.
 #define PUSH_UNITS 1048576.0f
 // Squares of the water that list which floaters are there, per axis; one bit per slot in each.
 #define FLOATER_TILES_PER_AXIS 16

@@ -6,6 +6,7 @@ import jsQR from "jsqr";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
+import { plugGamepad } from "./gamepad.mjs";
 import { startClass } from "./server.mjs";
 import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
@@ -64,20 +65,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
     const { myBoat: before } = await pad.evaluate(() => window.spindrift.stats());
     await pad.getByTestId("pad-remove").tap();
     await waitFor(pad, "no boat", ({ myBoat }) => myBoat === 0);
-    await pad.evaluate(() => {
-      window.pad = { mapping: "standard", axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false })) };
-      navigator.getGamepads = () => [window.pad];
-    });
-    // Pictures of the pad, which looks at the gamepad in each.
-    const press = (button) =>
-      pad.evaluate(async (k) => {
-        const picture = () => new Promise((done) => requestAnimationFrame(done));
-        for (const pressed of [true, false]) {
-          window.pad.buttons[k].pressed = pressed;
-          await picture();
-          await picture();
-        }
-      }, button);
+    const press = await plugGamepad(pad);
     await press(1);
     const { myBoat } = await waitFor(pad, "a boat", (stats) => stats.myBoat > 0);
     assert.notEqual(myBoat, before);

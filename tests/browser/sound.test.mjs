@@ -3,6 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import { plugGamepad } from "./gamepad.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 
@@ -156,21 +157,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
   });
 
   it("has gamepads turn and change the view, choose the sound, and shake with their own splash", async () => {
-    await desk.evaluate(() => {
-      window.effects = [];
-      const vibrationActuator = { playEffect: async (kind, effect) => window.effects.push(effect) };
-      window.pad = { mapping: "standard", axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false })), vibrationActuator };
-      navigator.getGamepads = () => [window.pad];
-    });
-    const press = (button) =>
-      desk.evaluate(async (k) => {
-        const picture = () => new Promise((done) => requestAnimationFrame(done));
-        for (const pressed of [true, false]) {
-          window.pad.buttons[k].pressed = pressed;
-          await picture();
-          await picture();
-        }
-      }, button);
+    const press = await plugGamepad(desk);
     const { view } = await waitFor(desk, "a view", (stats) => stats.view !== null);
     await press(8);
     await waitFor(desk, "the next view", (stats) => stats.view !== null && stats.view !== view);

@@ -4,6 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import { plugGamepad } from "./gamepad.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 
@@ -174,21 +175,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     await desk.keyboard.press("3");
     assert.match(await acked("the paddle of a key", () => desk.keyboard.press("Enter")), /Paddle: applied/);
 
-    await desk.evaluate(() => {
-      const pad = { mapping: "standard", axes: [0, 0, 0, 0], buttons: Array.from({ length: 17 }, () => ({ pressed: false })) };
-      navigator.getGamepads = () => [pad];
-      window.pad = pad;
-    });
-    // For as many pictures as the page needs to see it: a press of a fixed time is a long one where pictures are slow.
-    const press = (button) =>
-      desk.evaluate(async (k) => {
-        const picture = () => new Promise((done) => requestAnimationFrame(done));
-        for (const pressed of [true, false]) {
-          window.pad.buttons[k].pressed = pressed;
-          await picture();
-          await picture();
-        }
-      }, button);
+    const press = await plugGamepad(desk);
     await press(4);
     await press(4);
     assert.equal(await desk.getByTestId("tool-finger").getAttribute("aria-pressed"), "true");
