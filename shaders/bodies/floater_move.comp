@@ -14,6 +14,13 @@ const float kRestKept = 0.9;
 
 vec3 pushed(uint at) { return vec3(floater_push[at], floater_push[at + 1u], floater_push[at + 2u]) / PUSH_UNITS; }
 
+/// Sides end the way of a centre of mass: their contacts, which are springs, let a small fast floater pass by half a metre.
+void holdBetween(inout float at_m, inout float velocity_mps, float half_m) {
+  if (abs(at_m) <= half_m) return;
+  at_m = sign(at_m) * half_m;
+  velocity_mps = sign(at_m) * min(sign(at_m) * velocity_mps, 0.0);
+}
+
 void main() {
   const uint own = gl_GlobalInvocationID.x;
   if (own >= uint(near.length()) / FLOATER_NEAR_WORDS || near[own * FLOATER_NEAR_WORDS] == 0u) return;
@@ -30,6 +37,12 @@ void main() {
   b.velocity_mps *= kept;
   b.spin_radps *= kept;
   b = drifted(b, step_s);
+#if !WAVE_PERIODIC_X
+  holdBetween(b.centre_m.x, b.velocity_mps.x, waveHalf_m().x);
+#endif
+#if !WAVE_PERIODIC_Z
+  holdBetween(b.centre_m.z, b.velocity_mps.z, waveHalf_m().y);
+#endif
   for (uint k = 0u; k < 8u; ++k) floater_push[push + k] = 0;
   floaters[at] = vec4(b.centre_m, b.age_s + step_s);
   floaters[at + 1u] = b.rotation;

@@ -177,6 +177,30 @@ TEST_F(FloatersOnDevice, SeparateWhenTheyBeginAtOnePosition) {
   EXPECT_GT(std::hypot(both[0].x_m - both[1].x_m, both[0].y_m - both[1].y_m, both[0].z_m - both[1].z_m), 0.5);
 }
 
+/// The smallest floater that a scene accepts, as fast as one can be, into every side and corner.
+TEST_F(FloatersOnDevice, ThrownAtASideStayInTheBasin) {
+  std::vector<core::Floater> thrown;
+  for (int k = 0; k < 8; ++k) {
+    const double angle = k * std::numbers::pi / 4;
+    thrown.push_back({.kind = core::FloaterKind::kBall,
+                      .x_m = 2.0 * std::cos(angle),
+                      .y_m = 1.0,
+                      .z_m = 2.0 * std::sin(angle),
+                      .size_m = 0.1,
+                      .density_ratio = 0.5,
+                      .velocity_x_mps = 17.0 * std::cos(angle),
+                      .velocity_z_mps = 17.0 * std::sin(angle)});
+  }
+  WaterSim& sim = make(floaterScene(thrown));
+  double farthest_m = 0;
+  for (int tick = 0; tick < 60; ++tick) {
+    sim.step();
+    for (const FloaterPose& p : poses(sim)) farthest_m = std::max({farthest_m, std::abs(p.x_m), std::abs(p.z_m)});
+  }
+  EXPECT_LE(farthest_m, 4.0);
+  EXPECT_GE(farthest_m, 3.9) << "none reached a side";
+}
+
 TEST_F(FloatersOnDevice, FollowAHandTurnAndAreReleased) {
   WaterSim& sim = make(floaterScene({core::Floater{.kind = core::FloaterKind::kPlank, .y_m = 0.0, .size_m = 1.0}}));
   run(sim, 1);
