@@ -2,7 +2,6 @@
 #include <cassert>
 #include <cmath>
 #include <numbers>
-#include <span>
 
 #include <fmt/format.h>
 
@@ -160,10 +159,6 @@ shared::EventUniforms Effects::advance(double time_s, const EffectDomain& domain
   std::erase_if(active_, [&](const Active& a) { return time_s >= a.start_s + duration(a.effect); });
   out.press_begin = out.splash_count;
   strokes_.advance({domain.dt_s, domain.cell_m}, out);
-  const std::span splashes(out.splashes, out.splash_count);
-  std::ranges::sort(splashes.first(out.press_begin), {}, &shared::EventUniform::z_m);
-  std::ranges::sort(splashes.subspan(out.press_begin), {}, &shared::EventUniform::z_m);
-  for (const shared::EventUniform& each : splashes) out.reach_m = std::max(out.reach_m, SPLASH_REACH * each.radius_m);
   return out;
 }
 

@@ -50,7 +50,10 @@ class Creation {
   }
   template <typename Block>
   gpu::Buffer uniforms(std::string_view name) {
-    return made<gpu::Buffer>(name, sizeof(Block), gpu::BufferUse::kUpdatable);
+    return updatable(name, sizeof(Block));
+  }
+  gpu::Buffer updatable(std::string_view name, std::size_t size_bytes) {
+    return made<gpu::Buffer>(name, size_bytes, gpu::BufferUse::kUpdatable);
   }
   gpu::TexelBuffer texels(std::string_view name, std::size_t texel_count, gpu::TexelFormat format,
                           gpu::BufferContent content = gpu::BufferContent::kZero) {

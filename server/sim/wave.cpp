@@ -15,7 +15,7 @@
 namespace spindrift::sim {
 
 Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled)
-    : count_(layout.counts()), cell_m_(layout.cell_m), is_nonlinear_(isNonlinear(scene)) {
+    : count_(layout.counts()), is_nonlinear_(isNonlinear(scene)), splash_tiles_(layout) {
   using enum gpu::TexelFormat;
   const std::size_t cells = count_.total();
   const bool nine = scene.wave->stencil == core::Stencil::kNinePoint;
@@ -37,6 +37,7 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
     landing_ = create.texels("landing", cells, kR32I);
   }
   event_uniforms_ = create.uniforms<shared::EventUniforms>("event uniforms");
+  splash_tiles_buffer_ = create.updatable("splash tiles", splash_tiles_.count() * sizeof(shared::SplashTile));
   splash_ = create.pass("wave/splash.comp");
   crest_ = create.pass("wave/crest.comp");
   find_share_ = create.pass("wave/given_share.comp");
@@ -224,23 +225,16 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
 }
 
 /// Adds to TRANSFER and, for crests and calmed discs, changes FLOW; advance() has bound both.
-void Wave::displace(shared::EventUniforms events) {
+void Wave::displace(const shared::EventUniforms& events) {
   const bool any = events.splash_count + events.crest_count + events.calm_count > 0;
   if (!any && !had_events_) return;
   had_events_ = any;
-  // Number of cells along each side of the square that the largest splash can reach.
-  const auto across = static_cast<std::uint32_t>(2 * std::ceil(events.reach_m / cell_m_)) + 4;
-  // wave/splash.comp has two ways; the one with fewer invocations is faster.
-  const bool every_cell = std::uint64_t{across} * across * events.splash_count > count_.total();
-  events.every_cell = every_cell;
   event_uniforms_.uploadValue(events);
   event_uniforms_.bindUniform(EVENT_UNIFORMS);
-  if (events.splash_count > 0) {
-    if (every_cell) {
-      splash_.run(count_);
-    } else {
-      splash_.run(across, across, events.splash_count);
-    }
+  if (const auto tiles = splash_tiles_.list(events); !tiles.empty()) {
+    splash_tiles_buffer_.upload(tiles);
+    splash_tiles_buffer_.bindStorage(SPLASH_TILES);
+    splash_.runGroups(static_cast<std::uint32_t>(tiles.size()));
   }
   if (events.crest_count + events.calm_count > 0) crest_.run(count_);
 }

@@ -11,6 +11,7 @@
 #include <shared/event_uniforms.h>
 
 #include <spindrift/core/scene.h>
+#include <spindrift/effects/splash_tiles.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim_setup/derive.h>
 
@@ -80,12 +81,11 @@ class Wave {
 
  private:
   void accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea);
-  void displace(shared::EventUniforms events);
+  void displace(const shared::EventUniforms& events);
   void uploadOutflow(std::int64_t units);
   void limit();
 
   core::CellCounts count_;
-  double cell_m_;
   bool is_nonlinear_;
   bool had_events_ = false;
   // Buffers that the scene does not need are empty.
@@ -107,6 +107,8 @@ class Wave {
   std::vector<std::int32_t> resting_elevation_;      ///< nx x nz [units]; empty if the bulk is linear
   std::int64_t resting_units_ = 0;
   gpu::Buffer event_uniforms_;
+  SplashTiles splash_tiles_;
+  gpu::Buffer splash_tiles_buffer_;
   Pass splash_, crest_, find_share_, limit_, sample_surface_, slope_, tense_;
   Pass momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
 };

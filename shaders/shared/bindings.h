@@ -45,6 +45,8 @@
 #define TRANSFER 7
 #define GIVEN_SHARE 8
 #define LIMIT_ARGS 9
+// Tiles that splashes reach. The number is that of the grid; only wave/splash.comp uses this buffer.
+#define SPLASH_TILES 10
 // Share of ELEVATION that moved through x faces, in matched layers [units] (binding shared with SURFACE_FLOW; no pass has
 // both).
 #define ELEVATION_X 16

@@ -13,6 +13,7 @@
 // one step, and others in the next: a block of uniforms holds 16 KiB.
 #define MAX_MOVING_STROKES 64
 #define MAX_PRESSES (MAX_SPLASHES + 2 * MAX_MOVING_STROKES)
+#define SPLASH_WORDS 7  // bits for MAX_PRESSES splashes
 // Calmed discs of a step: those of MAX_CALMS strokes; others take turns. As many as fit into the 16 KiB.
 #define MAX_CALMS 62
 // A splash is cut off at this many radii: exp(-3.5^2) is 5e-6.
@@ -46,6 +47,11 @@ struct CalmUniform {
   float radius_m;
   float drag_ratio;    // share of the flow that the step takes in the middle
 };
+/// A tile of SPLASH_TILE x SPLASH_TILE cells (shared/groups.h), and the splashes that reach it.
+struct SplashTile {
+  uint place;                   // from the lowest bit: 12 bits, tiles before it along x; 12 along z; 8, the words below that are not 0
+  uint splashes[SPLASH_WORDS];  // a bit each
+};
 #ifdef __cplusplus
 struct EventUniforms {
   EventUniform splashes[MAX_PRESSES];
@@ -53,14 +59,12 @@ struct EventUniforms {
   CalmUniform calms[MAX_CALMS];
   uint splash_count;
   uint crest_count;
-  uint every_cell;  // as in the block below
-  float reach_m;    // as in the block below
-  uint press_begin;
+  uint press_begin;  // as in the block below
   uint calm_count;
-  uint padding[2];
 };
 static_assert(sizeof(EventUniform) == 64 && sizeof(CalmUniform) == 16);
-static_assert(sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 16 * MAX_CALMS + 32);
+static_assert(sizeof(SplashTile) == 4 * (1 + SPLASH_WORDS) && MAX_PRESSES <= 32 * SPLASH_WORDS);
+static_assert(sizeof(EventUniforms) == 64 * (MAX_PRESSES + MAX_CRESTS) + 16 * MAX_CALMS + 16);
 static_assert(sizeof(EventUniforms) <= 16384);
 }  // namespace spindrift::shared
 #else
@@ -70,9 +74,7 @@ layout(std140, binding = EVENT_UNIFORMS) uniform EventUniforms {
   CalmUniform calms[MAX_CALMS];
   uint splash_count;
   uint crest_count;
-  uint every_cell;  // wave/splash.comp: 1 = one invocation per cell of the domain, 0 = one per splash and cell of its square
-  float reach_m;     // of the largest splash
-  uint press_begin;  // the splashes from here on are those of strokes. Both parts are in the order of z
+  uint press_begin;  // the splashes from here on are those of strokes
   uint calm_count;
 };
 #endif

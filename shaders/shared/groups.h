@@ -9,8 +9,10 @@
 // One invocation per wave cell.
 #define WAVE_GROUP_X 64
 #define WAVE_GROUP_Y 1
-// One invocation per cell of a small square of the wave; z is the object in it (a splash, a boat).
+// One invocation per cell of a small square of the wave; z is the boat in it.
 #define PATCH_GROUP 8
+// One invocation per cell of a tile that splashes reach.
+#define SPLASH_TILE 8
 // The scan: SCAN_GROUP invocations, SCAN_ITEMS cells each. 16 instead of 4 halved the grid's time on llvmpipe, where
 // barriers are expensive.
 #define SCAN_GROUP 256

@@ -45,11 +45,13 @@ vec2 strokeShares(vec3 away_m, float highest_m) {
   return clamp(2.0 - max(away_m.xx, away_m.yz) / highest_m, 0.0, 1.0);
 }
 
-/// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. The sum is an integer,
-/// so overlapping effects give the same bits in any order.
+/// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. No other invocation of
+/// the pass may add to it.
 void addTransfer(int from, int to, uint face, int units) {
   if (units == 0) return;
-  const int sum = atomicAdd(transfer[int(OWNED_FACES) * from + int(face)], units) + units;
+  const int at = int(OWNED_FACES) * from + int(face);
+  const int sum = transfer[at] + units;
+  transfer[at] = sum;
   const uint held_from = heldUnits(texelFetch(elevation, from).x, stillDepth(from));
   const uint held_to = heldUnits(texelFetch(elevation, to).x, stillDepth(to));
   if (mayEmpty(sum, held_from, held_to)) limit_args[0] = limitGroups();

@@ -156,7 +156,8 @@ std::vector<ProgramCommand> addOptions(CLI::App& program) {
   };
   addRate("--churn-per-s", options->soak.churn_per_s, "For --suite soak: connections that clients end, all together");
   addRate("--strokes-per-s", options->soak.strokes_per_s,
-          "For --suite soak: strokes of a finger, or waves, of each client");
+          "For --suite soak: strokes of a finger of each client, one after the other");
+  addRate("--waves-per-s", options->soak.waves_per_s, "For --suite soak: waves that each client sends");
   addRate("--boats-per-s", options->soak.boats_per_s, "For --suite soak: boats that each client launches or removes");
   addRate("--level-changes-per-s", options->soak.level_changes_per_s,
           "For --suite soak: changes of a layer's level, rate and packing by each client");

@@ -49,9 +49,13 @@ void SoakClient::turn(Clock::time_point now) {
   if (now >= leave_at_) return leave(now);
   if (!is_greeted_) return;
   if (points_left_ > 0 && now >= next_point_) continueStroke(now);
-  if (now >= next_stroke_) {
+  if (now >= next_stroke_ && points_left_ == 0) {
     next_stroke_ = now + crowd_.untilNext(crowd_.options.strokes_per_s);
     beginStroke(now);
+  }
+  if (now >= next_wave_) {
+    next_wave_ = now + crowd_.untilNext(crowd_.options.waves_per_s);
+    sendWave();
   }
   if (now >= next_boat_) {
     next_boat_ = now + crowd_.untilNext(crowd_.options.boats_per_s);
@@ -95,6 +99,7 @@ void SoakClient::opened() {
   const SoakOptions& options = crowd_.options;
   leave_at_ = now + crowd_.untilNext(options.churn_per_s / static_cast<double>(options.client_count));
   next_stroke_ = now + crowd_.untilNext(options.strokes_per_s);
+  next_wave_ = now + crowd_.untilNext(options.waves_per_s);
   next_boat_ = now + crowd_.untilNext(options.boats_per_s);
   next_level_ = now + crowd_.untilNext(options.level_changes_per_s);
   points_left_ = 0;
@@ -280,16 +285,16 @@ void SoakClient::changeLevel() {
             crowd_.below(2) == 0);
 }
 
+void SoakClient::sendWave() {
+  v1::ClientMessage message;
+  v1::BreakingWave& wave = *message.mutable_command()->mutable_breaking_wave();
+  wave.set_side(v1::SIDE_DIRECTION);
+  wave.set_direction_deg(crowd_.between(-180.0, 180.0));
+  wave.set_amplitude_m(0.1);
+  send(std::move(message), false);
+}
+
 void SoakClient::beginStroke(Clock::time_point now) {
-  if (crowd_.below(8) == 0) {
-    v1::ClientMessage message;
-    v1::BreakingWave& wave = *message.mutable_command()->mutable_breaking_wave();
-    wave.set_side(v1::SIDE_DIRECTION);
-    wave.set_direction_deg(crowd_.between(-180.0, 180.0));
-    wave.set_amplitude_m(0.1);
-    send(std::move(message), false);
-    return;
-  }
   points_left_ = kStrokePoints;
   next_point_ = now;
   ++stroke_id_;

@@ -72,6 +72,7 @@ class SoakClient {
 
   void subscribe(v1::Layer layer, double rate_hz, v1::Level level, v1::Packing packing, bool adapts);
   void changeLevel();
+  void sendWave();
   void beginStroke(Clock::time_point now);
   void continueStroke(Clock::time_point now);
   void launchOrRemoveBoat();
@@ -92,6 +93,7 @@ class SoakClient {
   Clock::time_point try_at_;
   Clock::time_point leave_at_;
   Clock::time_point next_stroke_;
+  Clock::time_point next_wave_;
   Clock::time_point next_point_;
   Clock::time_point next_boat_;
   Clock::time_point next_steering_;

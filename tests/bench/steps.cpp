@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,7 +41,28 @@ double since_s(Clock::time_point begin) {
 struct StepCase {
   std::string name;
   core::Scene scene;
+  std::uint32_t drawing_count = 0;  ///< people who draw without a pause
 };
+
+/// Takes everybody's finger on by a tick: around a circle, as fast as a hand. Sizes as of a stroke that gives none.
+core::Result<void> draw(sim::WaterSim& water, std::uint32_t count) {
+  if (count == 0) return {};
+  const sim::WaveLayout& wave = *water.derived().wave;
+  const double side_m = std::min(wave.length_m, wave.width_m);
+  const double time_s = water.time_s();
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const double around = std::numbers::pi * (3.0 * k + 2.0 * time_s);
+    const double x_m = wave.length_m * (std::fmod(0.618 * k, 0.9) - 0.45) + 0.03 * side_m * std::cos(around);
+    const double z_m = wave.width_m * (std::fmod(0.755 * k, 0.9) - 0.45) + 0.03 * side_m * std::sin(around);
+    auto drawn = water.draw({.person_id = 1 + k,
+                             .stroke_id = 1,
+                             .radius_m = 0.025 * side_m,
+                             .depth_m = 0.0075 * side_m,
+                             .points = {{time_s, x_m, z_m}}});
+    if (!drawn) return drawn.error();
+  }
+  return {};
+}
 
 struct StepResult {
   std::string name;
@@ -74,6 +96,7 @@ std::vector<StepCase> stepCases(const core::Scene& base) {
     cases.push_back({"calm", calm});
   }
   if (base.wave && (base.particles || base.boats || base.foam)) cases.push_back({"wave only", wave_only});
+  if (base.wave) cases.push_back({"50 people drawing", base, 50});
   if (base.wave && base.particles && !two_way) {
     core::Scene uncoupled = base;
     uncoupled.coupling.reset();
@@ -99,22 +122,25 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
   auto sim = sim::WaterSim::create(ctx, test.scene);
   if (!sim) return sim.error();
   sim::WaterSim& water = **sim;
+  core::Result<void> drawn;
   const auto run = [&](double limit_s) {
     ctx.finish();
     const auto begin = Clock::now();
     std::uint32_t ticks = 0;
     do {
+      drawn = draw(water, test.drawing_count);
       water.step();
       ++ticks;
       if (!ctx.device().is_software && ticks % 8 == 0)
         ctx.finish();  // bound the queue, so that the measured time includes the work
-    } while (since_s(begin) < limit_s);
+    } while (drawn && since_s(begin) < limit_s);
     ctx.finish();
     return std::pair{since_s(begin), ticks};
   };
   run(std::min(0.5, seconds / 4));
   (void)water.takePassCosts();
   const auto [elapsed_s, ticks] = run(seconds);
+  if (!drawn) return drawn.error();
 
   const sim::Derived& d = water.derived();
   StepResult r;

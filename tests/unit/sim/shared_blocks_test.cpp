@@ -73,7 +73,7 @@ TEST_F(SharedBlocks, EventUniformsHaveTheLayoutOfTheDriver) {
   EXPECT_EQ(events.size_bytes, sizeof(shared::EventUniforms));
   EXPECT_EQ(offsetOf(events, "splash_count"), offsetof(shared::EventUniforms, splash_count));
   EXPECT_EQ(offsetOf(events, "crest_count"), offsetof(shared::EventUniforms, crest_count));
-  EXPECT_EQ(offsetOf(events, "every_cell"), offsetof(shared::EventUniforms, every_cell));
+  EXPECT_EQ(offsetOf(events, "calm_count"), offsetof(shared::EventUniforms, calm_count));
   const auto names = members("event_uniforms.h", "struct EventUniform");
   ASSERT_EQ(names.size(), sizeof(shared::EventUniform) / 4);
   for (std::size_t k = 0; k < names.size(); ++k) {

@@ -20,7 +20,8 @@ struct SoakOptions {
   double warm_up_s = 0.0;             ///< at the start; not part of the result
   double interval_s = 10.0;           ///< a row is printed as often
   double churn_per_s = 1.0;           ///< connections that clients end, all together
-  double strokes_per_s = 0.2;         ///< of each client; a stroke of a finger, or one wave
+  double strokes_per_s = 0.2;         ///< of a finger, of each client, at most one after the other
+  double waves_per_s = 0.025;         ///< of each client
   double boats_per_s = 0.02;          ///< of each client: boats launched and removed
   double level_changes_per_s = 0.05;  ///< of each client: another level, rate or packing of a layer
   std::uint32_t seed = 1;
