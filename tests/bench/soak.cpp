@@ -94,6 +94,7 @@ class Soak {
         {"ended", ended},
         {"refused", all.refused_count},
         {"frames", all.frame_count},
+        {"longest_gap_ms", all.longest_gap_ms},
         {"decoded", all.decoded_count},
         {"undecodable", all.undecodable_count},
         {"nonfinite", all.nonfinite_count},

@@ -133,6 +133,7 @@ void SoakClient::ended(int code) {
   }
   waiting_.clear();
   boats_.clear();
+  last_frame_ = {};
   is_open_ = false;
   client_ = nullptr;
 }
@@ -144,7 +145,15 @@ void SoakClient::take(core::ByteView bytes) {
   // The first byte is the tag of the message: most clients need no frame's content.
   constexpr std::uint8_t kFrameTag = v1::ServerMessage::kFrameFieldNumber << 3 | 2;
   const bool is_frame = !bytes.empty() && bytes[0] == kFrameTag;
-  if (is_frame) crowd_.count([](SoakTally& tally) { ++tally.frame_count; });
+  if (is_frame) {
+    const auto now = Clock::now();
+    const double gap_ms = last_frame_ == Clock::time_point() ? 0.0 : ms(now - last_frame_);
+    last_frame_ = now;
+    crowd_.count([&](SoakTally& tally) {
+      ++tally.frame_count;
+      tally.longest_gap_ms = std::max(tally.longest_gap_ms, gap_ms);
+    });
+  }
   if (is_frame && !is_witness_) return;
   const auto message = codec::parseServerMessage(bytes);
   if (!message) {

@@ -94,6 +94,7 @@ class SoakClient {
   Clock::time_point leave_at_;
   Clock::time_point next_stroke_;
   Clock::time_point next_wave_;
+  Clock::time_point last_frame_;  ///< when it came; before the first on a connection, the clock's zero
   Clock::time_point next_point_;
   Clock::time_point next_boat_;
   Clock::time_point next_steering_;

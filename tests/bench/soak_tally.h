@@ -55,6 +55,7 @@ struct SoakTally {
   std::uint64_t refused_count = 0;     ///< connections that never opened
   std::uint64_t bytes_count = 0;
   std::uint64_t frame_count = 0;
+  double longest_gap_ms = 0.0;                 ///< between two frames of a client, of any layer
   std::uint64_t decoded_count = 0;             ///< frames
   std::uint64_t undecodable_count = 0;         ///< frames that were wrong
   std::uint64_t nonfinite_count = 0;           ///< numbers in them and in diagnostics
