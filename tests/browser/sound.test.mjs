@@ -178,6 +178,47 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await desk.getByTestId("tool-finger").click();
   });
 
+  it("has gamepads move a slider, choose in a list and press a button of the panels", async () => {
+    const press = await plugGamepad(desk);
+    const chosen = () =>
+      desk.evaluate(() => {
+        const one = document.querySelector("[data-chosen]");
+        return one && { kind: one.type || one.localName, value: one.value, box: one.getBoundingClientRect().toJSON() };
+      });
+    const goTo = async (kind, up = false) => {
+      for (let k = 0; k < 80; ++k) {
+        await press(up ? 12 : 13);
+        const one = await chosen();
+        if (one?.kind === kind) return one;
+      }
+      assert.fail(`no ${kind} within 80 presses`);
+    };
+    const slider = await goTo("range");
+    assert.ok(slider.box.bottom <= 720 && slider.box.height > 0, "out of sight");
+    await press(15);
+    assert.ok(Number((await chosen()).value) > Number(slider.value));
+    const list = await goTo("select-one");
+    await press(15);
+    const isLast = (await chosen()).value === list.value;
+    if (isLast) await press(14);
+    assert.notEqual((await chosen()).value, list.value);
+    await press(isLast ? 15 : 14);
+    assert.equal((await chosen()).value, list.value);
+    // A presses the button, and the water gets no splash from it.
+    const { lastAck } = await waitFor(desk, "the page", () => true);
+    await goTo("button", true);
+    await desk.evaluate(() => document.activeElement.addEventListener("click", () => (window.pressed = true)));
+    await press(0);
+    assert.equal(await desk.evaluate(() => window.pressed), true);
+    assert.deepEqual((await waitFor(desk, "the page", () => true)).lastAck, lastAck);
+    await press(1);
+    assert.equal(await chosen(), null);
+    await desk.evaluate(() => (navigator.getGamepads = () => []));
+    await desk.getByTestId("view-above").click();
+    await waitFor(desk, "the view", (stats) => stats.view === "above");
+    await sleep(1200);
+  });
+
   it("draws with Enter and the arrow keys, and zooms with plus", async () => {
     await desk.locator("#view").focus();
     await desk.keyboard.down("Enter");

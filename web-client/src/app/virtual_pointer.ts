@@ -4,13 +4,14 @@
 // what is held or under the mouse; comma and full stop choose what the tool Float drops; plus and minus bring the camera nearer and farther.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
 // would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind, B launches a boat. The right stick turns the
-// view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. In the boat's view the left stick and the cross
-// are the helm. docs/controls.md lists all.
+// view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. The cross goes through the controls of the page
+// (panel_cursor.ts). In the boat's view the left stick and the cross are the helm. docs/controls.md lists all.
 import { isTyping } from "../ui/dom";
 import type { HelmCode } from "../ui/helm";
 import type { App } from "./app";
 import { standardGamepad } from "./gamepad";
 import { kGamepadId } from "./haptics";
+import { PanelCursor } from "./panel_cursor";
 
 const kKeyboardId = kGamepadId + 1;
 /** A paddle that is used by a key sends its wave away from the viewer: along this share of the picture's height. */
@@ -132,15 +133,16 @@ export class GamepadTools {
   private isThere = false;
   private held = new Set<number>();
   private readonly helm = new Set<keyof typeof kHelm>();
+  private readonly panel = new PanelCursor();
   private atS = NaN;
 
   constructor(private readonly target: GamepadTarget) {
     this.pointer = new VirtualPointer(target.canvas, kGamepadId);
   }
 
-  /** Where the tool would be used, in pixels of the window; undefined without a gamepad, and while it steers. */
+  /** Where the tool would be used, in pixels of the window; undefined without a gamepad, while it steers, and in the panels. */
   get cursorPx(): [x: number, y: number] | undefined {
-    return this.isThere && !this.target.isHelm() ? [this.xPx, this.yPx] : undefined;
+    return this.isThere && !this.target.isHelm() && !this.panel.isActive ? [this.xPx, this.yPx] : undefined;
   }
 
   /** Called for each picture. */
@@ -163,14 +165,26 @@ export class GamepadTools {
       if (isNew(kButtons.previousTool)) target.stepTool(-1);
       if (isNew(kButtons.nextTool)) target.stepTool(1);
     }
-    if (isNew(kButtons.launch)) target.launch();
+    const isHelm = target.isHelm();
+    if (isHelm || x !== 0 || y !== 0) this.panel.leave();
+    if (!isHelm) {
+      if (isNew(kButtons.down)) this.panel.move(1);
+      if (isNew(kButtons.up)) this.panel.move(-1);
+      if (isNew(kButtons.right)) this.panel.change(1);
+      if (isNew(kButtons.left)) this.panel.change(-1);
+    }
+    const isInPanel = this.panel.isActive;
+    if (isInPanel && isNew(kButtons.use)) this.panel.press();
+    if (isNew(kButtons.launch)) {
+      if (isInPanel) this.panel.leave();
+      else target.launch();
+    }
     if (isNew(kButtons.takeOut)) target.removePointed();
     if (isNew(kButtons.nextKind)) target.nextKind();
     if (isNew(kButtons.nextView)) target.nextView();
     if (isNew(kButtons.sound)) target.toggleSound();
     const zoom = Number(pressed.has(kButtons.farther)) - Number(pressed.has(kButtons.nearer));
     if (turnX !== 0 || turnY !== 0 || zoom !== 0) target.orbit(turnX * kOrbitRadps * stepS, turnY * kOrbitRadps * stepS, kZoomPerS ** (zoom * stepS));
-    const isHelm = target.isHelm();
     this.steer(isHelm ? { up: y < 0 || pressed.has(kButtons.up), down: y > 0 || pressed.has(kButtons.down), left: x < 0 || pressed.has(kButtons.left), right: x > 0 || pressed.has(kButtons.right) } : {});
     if (!isHelm && (x !== 0 || y !== 0)) {
       const stepPx = kCursorPerS * stepS * window.innerHeight;
@@ -178,8 +192,8 @@ export class GamepadTools {
       this.yPx = Math.min(Math.max(this.yPx + y * stepPx, 0), window.innerHeight - 1);
       this.pointer.move(this.xPx, this.yPx);
     }
-    if (pressed.has(kButtons.use)) this.pointer.press(this.xPx, this.yPx);
-    else this.pointer.release(this.xPx, this.yPx);
+    if (isNew(kButtons.use) && !isInPanel) this.pointer.press(this.xPx, this.yPx);
+    else if (!pressed.has(kButtons.use)) this.pointer.release(this.xPx, this.yPx);
     this.held = pressed;
   }
 
