@@ -1,3 +1,4 @@
+// What follows from a scene, value by value; in one file, as what it tests.
 #include <algorithm>
 #include <cmath>
 #include <string>
