@@ -9,9 +9,9 @@ const kQuietModules = 4;
 /** Returns the addresses of the pad as this server's network has them. Throws an Error with a line for people. */
 export async function joinAddresses(search: string): Promise<string[]> {
   const answer = await fetch("api/v1/join");
-  if (!answer.ok) throw new Error(`the server does not say how to join (${answer.status}); start it with --class`);
+  if (!answer.ok) throw new Error(`The server does not say how to join (${answer.status}): start it with --class`);
   const { urls }: { urls?: unknown } = await answer.json();
-  if (!Array.isArray(urls) || urls.length === 0) throw new Error("the server has no address that phones could reach");
+  if (!Array.isArray(urls) || urls.length === 0) throw new Error("Phones cannot reach this server: it listens on this machine only, or has no network. Start it with --class, or give its address with --public-url");
   return urls.map((url) => withRoom(String(url), search));
 }
 
