@@ -63,6 +63,10 @@ StrokePoint play(Stroke& stroke, double dt_s) {
   return path.size() == 1 ? path.front() : mixed(path[0], path[1], stroke.play_s);
 }
 
+/// So many fingers press with their whole depth. The waves of n fingers are sqrt(n) times as high as those of one: of
+/// more, each presses less, so that a class makes no higher waves than these few.
+constexpr double kFullFingers = 3.0;
+
 /// Number of fingers with the same tool at the position of one, counting those near it in part.
 double crowdAt(const Stroke& stroke, const std::vector<Stroke>& all) {
   double count = 0.0;
@@ -176,6 +180,8 @@ core::Result<void> Strokes::add(const StrokePart& part) {
 }
 
 void Strokes::advance(const StrokeWater& water, shared::EventUniforms& out) {
+  const auto fingers = std::ranges::count(active_, StrokeTool::kFinger, &Stroke::tool);
+  const double least_crowd = std::sqrt(std::max(static_cast<double>(fingers) / kFullFingers, 1.0));
   auto next = active_.begin();
   const auto hasRoom = [&] {
     return out.splash_count + kStepSplashMaxCount <= MAX_PRESSES && out.calm_count < MAX_CALMS;
@@ -189,7 +195,8 @@ void Strokes::advance(const StrokeWater& water, shared::EventUniforms& out) {
     const double way_m = std::hypot(at.x_m - stroke.x_m, at.z_m - stroke.z_m);
     // A finger that is faster than a radius per step would press a row of separate dents: it presses less. So do
     // fingers at one place: together they press as one.
-    const double most_ratio = std::min(1.0, stroke.radius_m / std::max(way_m, 1e-9)) / crowdAt(stroke, active_);
+    const double crowd = std::max(crowdAt(stroke, active_), stroke.tool == StrokeTool::kFinger ? least_crowd : 1.0);
+    const double most_ratio = std::min(1.0, stroke.radius_m / std::max(way_m, 1e-9)) / crowd;
     const double wanted = is_over ? 0.0 : at.pressure_ratio * most_ratio;
     const double most = water.dt_s / kPress_s;
     const double level = stroke.level_ratio + std::clamp(wanted - stroke.level_ratio, -most, most);

@@ -145,11 +145,23 @@ TEST(Strokes, FasterThanARadiusPerStepPressesLess) {
 
 TEST(Strokes, FingersAtOnePlacePressAsOne) {
   Strokes strokes;
-  for (std::uint32_t finger = 0; finger < 5; ++finger) ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}}, false, finger)));
+  for (std::uint32_t finger = 0; finger < 2; ++finger) ASSERT_TRUE(strokes.add(part({{0.0, 0, 0, 1}}, false, finger)));
   ASSERT_TRUE(strokes.add(part({{0.0, 3, 0, 1}}, false, 9)));
   for (int k = 0; k < 50; ++k) stepOf(strokes);
-  for (std::size_t finger = 0; finger < 5; ++finger) EXPECT_NEAR(strokes.active()[finger].level_ratio, 0.2, 1e-9);
-  EXPECT_NEAR(strokes.active()[5].level_ratio, 1.0, 1e-9) << "far from the others";
+  for (std::size_t finger = 0; finger < 2; ++finger) EXPECT_NEAR(strokes.active()[finger].level_ratio, 0.5, 1e-9);
+  EXPECT_NEAR(strokes.active()[2].level_ratio, 1.0, 1e-9) << "far from the others";
+}
+
+TEST(Strokes, TwelveFingersPressAsHardAsThree) {
+  Strokes strokes;
+  for (std::uint32_t person = 1; person <= 12; ++person)
+    ASSERT_TRUE(strokes.add(part({{0.0, 3.0 * person, 0, 1}}, false, 1, person)));
+  ASSERT_TRUE(strokes.add(part({{0.0, 0, 9, 1}}, false, 1, 13, StrokeTool::kRain)));
+  for (int k = 0; k < 50; ++k) stepOf(strokes);
+  double squares = 0.0;
+  for (std::size_t finger = 0; finger < 12; ++finger) squares += std::pow(strokes.active()[finger].level_ratio, 2);
+  EXPECT_NEAR(squares, 3.0, 1e-9);
+  EXPECT_NEAR(strokes.active()[12].level_ratio, 1.0, 1e-9) << "rain is no finger";
 }
 
 TEST(Strokes, LimitsAreNamed) {
