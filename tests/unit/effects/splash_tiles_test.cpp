@@ -32,7 +32,8 @@ TEST(SplashTiles, EachSplashIsInTheTilesOfAllFacesThatItReaches) {
   const auto between = [&](double low, double high) {
     return low + (high - low) * std::generate_canonical<double, 53>(random);
   };
-  for (const auto& [px, pz] : {std::pair{false, false}, {true, false}, {true, true}}) {
+  for (const auto& periodic : {std::pair{false, false}, {true, false}, {true, true}}) {
+    const bool px = periodic.first, pz = periodic.second;
     const WaveLayout wave = waveOf(61, 44, px, pz);
     SplashTiles tiles(wave);
     for (int round = 0; round < 20; ++round) {
