@@ -18,7 +18,7 @@ class SplashTiles {
   /// Number of tiles of the grid: list() never returns more.
   [[nodiscard]] std::size_t count() const { return position_of_tile_.size(); }
 
-  /// Returns each tile that at least one splash reaches once, with the splashes that do. Valid until the next call.
+  /// Returns every tile that a splash reaches, each once, with its splashes. Valid until the next call.
   std::span<const shared::SplashTile> list(const shared::EventUniforms& events);
 
  private:
