@@ -66,6 +66,38 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await page.close();
   });
 
+  it("holds the view, the camera and the light, and shows them again elsewhere", slow, async () => {
+    const pixels = () => page.evaluate(() => [[0, 0], [1, 0], [0, 1]].map(([xM, zM]) => window.spindrift.pixelOf(xM, zM)));
+    const isLive = (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2;
+    await open(`${server.url}?quality=minimal`);
+    await waitFor("frames", isLive);
+    await sleep(1500);
+    assert.equal(new URL(page.url()).search, "?quality=minimal", "nothing was chosen yet");
+    await page.getByTestId("view-overview").click();
+    await page.waitForURL(/view=overview/, { timeout: WAIT_MS });
+    await page.locator("#view").focus();
+    for (let k = 0; k < 20; ++k) await page.keyboard.press("Shift+ArrowLeft");
+    await page.getByTestId("light").selectOption("golden hour");
+    await page.waitForURL(/camera=/, { timeout: WAIT_MS });
+    await sleep(2000);
+    const { searchParams } = new URL(page.url());
+    assert.equal(searchParams.get("light"), "golden-hour");
+    assert.equal(searchParams.get("view"), null);
+    const [address, shown] = [page.url(), await pixels()];
+    await page.close();
+
+    await open(address);
+    await waitFor("frames", isLive);
+    await waitFor("the camera of the address", (stats) => stats.view === null);
+    await sleep(1000);
+    const again = await pixels();
+    shown.flat().forEach((px, k) => assert.ok(Math.abs(px - again.flat()[k]) < 2, `${JSON.stringify(shown)}, then ${JSON.stringify(again)}`));
+    assert.equal(await page.getByTestId("light").inputValue(), "golden hour");
+    assert.equal(page.url(), address);
+    assert.deepEqual(complaints, []);
+    await page.close();
+  });
+
   it("of a missing room links the existing rooms", slow, async () => {
     await open(`${server.url}?quality=minimal&room=nope`);
     await waitFor("a refusal", (stats) => stats.connectionState === "refused: there is no room nope");

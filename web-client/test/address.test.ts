@@ -1,7 +1,9 @@
 import { describe, expect, it } from "vitest";
 
 import { takeLinkToken } from "../src/app/address";
+import { viewOf } from "../src/app/view_address";
 import { IdentityStore } from "../src/net/identity_store";
+import { lightOf } from "../src/ui/light_rows";
 
 /** Returns the token of a link and the address afterwards. */
 function opened(href: string): { token: string | undefined; address: string } {
@@ -33,5 +35,20 @@ describe("the token of a link", () => {
     new IdentityStore(storage, "u").leave({ name: "Ada", token: "old", resumeKey: "key" });
     expect(new IdentityStore(storage, "u").load("new")).toEqual({ name: "Ada", token: "new", resumeKey: "key" });
     expect(new IdentityStore(storage, "u").load()).toEqual({ name: "Ada", token: "new", resumeKey: "" });
+  });
+});
+
+describe("the view of an address", () => {
+  it("is a view that there is, or a camera of six numbers", () => {
+    expect(viewOf("?view=side&quality=low")).toEqual({ view: "side" });
+    expect(viewOf("?camera=1,2.5,-3,0,0,0")).toEqual({ eyeM: [1, 2.5, -3], targetM: [0, 0, 0] });
+    for (const search of ["", "?view=", "?view=boat", "?view=toString", "?camera=1,2,3", "?camera=1,2,3,1,2,3", "?camera=a,2,3,0,0,0", "?camera=1e9,2,3,0,0,0", "?camera=Infinity,0,0,0,0,0"])
+      expect(viewOf(search), search).toBeUndefined();
+  });
+
+  it("has a light by name or by hour; anything else is automatic", () => {
+    expect(lightOf("?light=golden-hour")).toBe("golden hour");
+    expect(lightOf("?light=17.5")).toBe(17.5);
+    for (const search of ["", "?light=", "?light=25", "?light=-1", "?light=NaN", "?light=toString"]) expect(lightOf(search), search).toBe("automatic");
   });
 });

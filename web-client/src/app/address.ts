@@ -14,11 +14,29 @@ export function isProjectorAddress({ search }: Pick<PageAddress, "search">): boo
   return new URLSearchParams(search).has("class");
 }
 
-/** `value` undefined: the default, which the address leaves out. */
+/** Browsers refuse pages that change their address more often than 100 times in 30 s. */
+const kAddressEveryMs = 400;
+const changes = new Map<string, string | undefined>();
+let writtenMs = -kAddressEveryMs;
+let writing: number | undefined;
+
+/** `value` undefined: the default, which the address leaves out. Changes in quick succession are written together. */
 export function setAddressParameter(name: string, value: string | undefined): void {
+  changes.set(name, value);
+  const waitMs = writtenMs + kAddressEveryMs - performance.now();
+  if (waitMs <= 0) writeAddress();
+  else writing ??= window.setTimeout(writeAddress, waitMs);
+}
+
+function writeAddress(): void {
+  writing = undefined;
+  writtenMs = performance.now();
   const url = new URL(location.href);
-  if (value === undefined) url.searchParams.delete(name);
-  else url.searchParams.set(name, value);
+  for (const [name, value] of changes) {
+    if (value === undefined) url.searchParams.delete(name);
+    else url.searchParams.set(name, value);
+  }
+  changes.clear();
   history.replaceState(null, "", url);
 }
 

@@ -22,7 +22,7 @@ import { FloaterRows } from "../ui/floater_rows";
 import { kHoldLabel } from "../ui/hold_sender";
 import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
-import { addLightRows } from "../ui/light_rows";
+import { addLightRows, lightOf } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
 import { QualityRow } from "../ui/quality_row";
@@ -32,13 +32,14 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { setAddressParameter, takeLinkToken } from "./address";
+import { isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
 import { SoundControls } from "./sound_controls";
+import { ViewAddress } from "./view_address";
 
 /** Shown where the server sends no text. */
 const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
@@ -68,6 +69,7 @@ export class App {
   readonly sound: SoundControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
+  private readonly viewAddress: ViewAddress | undefined;
   /** Its role is "viewer" until the server's Welcome, so that no control is enabled before. */
   readonly lessons = new LessonState();
   state: ConnectionState = { name: "connecting" };
@@ -122,6 +124,7 @@ export class App {
       drawn: (atS) => {
         this.showTags(atS);
         this.looks.update(atS);
+        this.viewAddress?.update(atS);
         this.sound.update();
         this.haptics.follow(this.display.scene, this.entered, this.boats.mineId);
       },
@@ -130,13 +133,15 @@ export class App {
     });
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
+    // A projector's camera moves by itself.
+    this.viewAddress = isProjectorAddress(location) ? undefined : new ViewAddress(this.display.views);
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
       this.identity = { ...this.identity, name, token };
       this.keepIdentity(false);
       this.client.call("introduce", name, token);
     });
-    addLightRows(this.display.scene.daylight, location.search);
+    addLightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
     this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
     this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
       setAddressParameter("quality", choice === "automatic" ? undefined : choice);
@@ -282,6 +287,7 @@ export class App {
     this.showQuality();
     this.viewButtons.hasBoats = this.boats.available;
     this.viewButtons.canDive = this.display.views.canDive;
+    this.viewAddress?.enter(nowS());
     // Tells all that depend on the lesson, the role or the scene.
     if (isOtherRoom) this.lessons.enter();
     else this.lessons.set({});

@@ -11,17 +11,31 @@ function isPreset(name: string): name is PresetName {
   return (kPresetNames as readonly string[]).includes(name);
 }
 
-/** Adds both rows. `search`: of the page's address; `?light=dusk` chooses the first light. */
-export function addLightRows(daylight: Daylight, search: string): void {
+/** Light of an address: `?light=golden-hour`, or an hour as in `?light=17.5`; anything else is automatic. */
+export function lightOf(search: string): PresetName | number {
+  const wanted = new URLSearchParams(search).get("light") ?? "";
+  const hour = /^\d+(\.\d+)?$/.test(wanted) ? Number(wanted) : NaN;
+  if (hour <= 24) return hour;
+  const name = wanted.replace(/[-_]/g, " ");
+  return isPreset(name) ? name : "automatic";
+}
+
+/** Adds both rows. `first`: chosen at the beginning. `chosen` gets what the address has to say then, undefined for automatic. */
+export function addLightRows(daylight: Daylight, first: PresetName | number, chosen: (light: string | undefined) => void): void {
   const help = "Light on this page. Automatic: noon, darker and grey in a storm of the room.";
-  const select = new SelectRow("light", "Light", help, (name) => isPreset(name) && hour.show(daylight.choose(name), ""));
+  const select = new SelectRow("light", "Light", help, (name) => {
+    if (!isPreset(name)) return;
+    hour.show(daylight.choose(name), "");
+    chosen(name === "automatic" ? undefined : name.replaceAll(" ", "-"));
+  });
   const hour = new SliderRow("hour", { label: "Hour", unit: "h", min: 0, max: 24, step: 0.25 }, 12, "Hour of the day on this page.", (value) => {
     daylight.chooseHour(value);
     select.value = kByHour;
+    chosen(String(value));
   });
-  const wanted = (new URLSearchParams(search).get("light") ?? "").replace(/[-_]/g, " ");
-  const first = isPreset(wanted) ? wanted : "automatic";
-  select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: name as string })), { value: kByHour, label: "by hour" }], first);
-  hour.show(daylight.choose(first), "");
+  const isHour = typeof first === "number";
+  select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: name as string })), { value: kByHour, label: "by hour" }], isHour ? kByHour : first);
+  if (isHour) daylight.chooseHour(first);
+  hour.show(isHour ? first : daylight.choose(first), "");
   byId("light-rows").append(select.element, hour.element);
 }
