@@ -192,14 +192,15 @@ void SoakClient::takeGreeting(const v1::Greeting& greeting) {
 void SoakClient::takeAnswer(std::uint64_t command_id, const v1::ServerMessage& message) {
   const auto sent = waiting_.extract(command_id);
   if (message.has_reject()) {
-    crowd_.count([&](SoakTally& tally) { ++tally.rejected[message.reject().reason()]; });
+    crowd_.count([&](SoakTally& tally) { ++tally.rejected[message.reject().reason()]; },
+                 sent && sent.mapped().is_measured);
     return;
   }
   if (message.ack().boat_id() != 0) boat_ = message.ack().boat_id();
   if (!sent) return;
   const double delay_ms = ms(Clock::now() - sent.mapped().at);
-  crowd_.count(
-      [&](SoakTally& tally) { (sent.mapped().is_heavy ? tally.heavy_answers : tally.answers).note(delay_ms); });
+  crowd_.count([&](SoakTally& tally) { (sent.mapped().is_heavy ? tally.heavy_answers : tally.answers).note(delay_ms); },
+               sent.mapped().is_measured);
 }
 
 void SoakClient::checkFrame(const v1::LayerFrame& frame) {
@@ -362,7 +363,7 @@ void SoakClient::steer() {
 void SoakClient::send(v1::ClientMessage message, bool is_heavy) {
   message.mutable_command()->set_command_id(++last_command_);
   if (!client_->send(bytesOf(message))) return;
-  waiting_[last_command_] = {Clock::now(), is_heavy};
+  waiting_[last_command_] = {Clock::now(), is_heavy, crowd_.measures};
   crowd_.count([](SoakTally& tally) { ++tally.sent_count; });
 }
 

@@ -22,11 +22,11 @@ namespace spindrift::bench {
 struct SoakCrowd {
   using Clock = std::chrono::steady_clock;
 
-  /// Adds to the total and to the present interval.
+  /// Adds to the present interval and, unless `measured` is false, to the total.
   template <typename Change>
-  void count(Change change) {
+  void count(Change change, bool measured = true) {
     change(interval);
-    if (measures) change(total);
+    if (measures && measured) change(total);
   }
   double between(double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); }
   std::size_t below(std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); }
@@ -58,6 +58,7 @@ class SoakClient {
   struct Sent {
     Clock::time_point at;
     bool is_heavy = false;
+    bool is_measured = false;  ///< not in the warm-up: the answer counts as the command does
   };
 
   void connect();
