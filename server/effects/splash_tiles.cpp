@@ -28,8 +28,8 @@ struct Axis {
     std::int64_t first = cellAt(at_m - reach_m) - 1;
     std::int64_t last = cellAt(at_m + reach_m) + 1;
     if (!is_periodic || last - first >= cells_count) {
-      first = std::max<std::int64_t>(is_periodic ? 0 : first, 0);
-      last = std::min(is_periodic ? cells_count : last, cells_count - 1);
+      first = is_periodic ? 0 : std::max<std::int64_t>(first, 0);
+      last = is_periodic ? cells_count - 1 : std::min(last, cells_count - 1);
     }
     while (first <= last) {
       const std::int64_t cell = (first % cells_count + cells_count) % cells_count;
@@ -47,8 +47,7 @@ SplashTiles::SplashTiles(const WaveLayout& wave)
       position_of_tile_(std::size_t{count_x_} * tilesAlong(wave.count_z)) {}
 
 std::span<const shared::SplashTile> SplashTiles::list(const shared::EventUniforms& events) {
-  for (const shared::SplashTile& tile : listed_)
-    position_of_tile_[(tile.place & 0xfffu) + count_x_ * (tile.place >> 12 & 0xfffu)] = 0;
+  if (!listed_.empty()) std::ranges::fill(position_of_tile_, 0u);
   listed_.clear();
   const Axis along_x{wave_.count_x, wave_.cell_m, wave_.is_periodic_x};
   const Axis along_z{wave_.count_z, wave_.cell_m, wave_.is_periodic_z};

@@ -17,6 +17,10 @@ constexpr double kDelay_s = 0.05;
 /// A dent takes this long from nothing to its full depth, and back.
 constexpr double kPress_s = 0.12;
 
+/// This many fingers press with their whole depth. The waves of n fingers are sqrt(n) times as high as those of one:
+/// where there are more, each presses less, so that a class makes no higher waves than these few.
+constexpr double kFullFingers = 3.0;
+
 /// A stroke moves less water where the surface is farther than this many times its depth from its rest, and none from
 /// twice that on.
 constexpr double kHighestDepths = 2.0;
@@ -62,10 +66,6 @@ StrokePoint play(Stroke& stroke, double dt_s) {
   path.erase(path.begin(), next - 1);
   return path.size() == 1 ? path.front() : mixed(path[0], path[1], stroke.play_s);
 }
-
-/// So many fingers press with their whole depth. The waves of n fingers are sqrt(n) times as high as those of one: of
-/// more, each presses less, so that a class makes no higher waves than these few.
-constexpr double kFullFingers = 3.0;
 
 /// Number of fingers with the same tool at the position of one, counting those near it in part.
 double crowdAt(const Stroke& stroke, const std::vector<Stroke>& all) {

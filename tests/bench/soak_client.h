@@ -95,12 +95,12 @@ class SoakClient {
   Clock::time_point leave_at_;
   Clock::time_point next_stroke_;
   Clock::time_point next_wave_;
-  Clock::time_point last_frame_;  ///< when it came; before the first on a connection, the clock's zero
   Clock::time_point next_point_;
   Clock::time_point next_boat_;
   Clock::time_point next_steering_;
   Clock::time_point next_level_;
   int points_left_ = 0;
+  Clock::time_point last_frame_;  ///< time of the last frame on this connection; zero before the first
   std::uint32_t stroke_id_ = 0;
   double stroke_x_m_ = 0.0;
   double stroke_z_m_ = 0.0;

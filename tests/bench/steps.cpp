@@ -44,7 +44,8 @@ struct StepCase {
   std::uint32_t drawing_count = 0;  ///< people who draw without a pause
 };
 
-/// Takes everybody's finger on by a tick: around a circle, as fast as a hand. Sizes as of a stroke that gives none.
+/// Moves each person's finger by a tick, around a circle. Radius: the default of a stroke; depth: its default in
+/// harbor.
 core::Result<void> draw(sim::WaterSim& water, std::uint32_t count) {
   if (count == 0) return {};
   const sim::WaveLayout& wave = *water.derived().wave;

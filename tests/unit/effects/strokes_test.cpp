@@ -161,7 +161,7 @@ TEST(Strokes, TwelveFingersPressAsHardAsThree) {
   double squares = 0.0;
   for (std::size_t finger = 0; finger < 12; ++finger) squares += std::pow(strokes.active()[finger].level_ratio, 2);
   EXPECT_NEAR(squares, 3.0, 1e-9);
-  EXPECT_NEAR(strokes.active()[12].level_ratio, 1.0, 1e-9) << "rain is no finger";
+  EXPECT_NEAR(strokes.active()[12].level_ratio, 1.0, 1e-9) << "rain does not count as a finger";
 }
 
 TEST(Strokes, LimitsAreNamed) {

@@ -177,7 +177,7 @@ TEST_F(FloatersOnDevice, SeparateWhenTheyBeginAtOnePosition) {
   EXPECT_GT(std::hypot(both[0].x_m - both[1].x_m, both[0].y_m - both[1].y_m, both[0].z_m - both[1].z_m), 0.5);
 }
 
-/// The smallest floater that a scene accepts, as fast as one can be, into every side and corner.
+/// Small balls, thrown into every side and corner.
 TEST_F(FloatersOnDevice, ThrownAtASideStayInTheBasin) {
   std::vector<core::Floater> thrown;
   for (int k = 0; k < 8; ++k) {

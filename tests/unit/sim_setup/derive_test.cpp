@@ -1,4 +1,4 @@
-// What follows from a scene, value by value; in one file, as what it tests.
+// What follows from a scene, value by value; in one file, because derive.cpp is one.
 #include <algorithm>
 #include <cmath>
 #include <string>

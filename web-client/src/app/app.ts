@@ -134,7 +134,7 @@ export class App {
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     // A projector's camera moves by itself.
-    this.viewAddress = isProjectorAddress(location) ? undefined : new ViewAddress(this.display.views);
+    this.viewAddress = isProjectorAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
       this.identity = { ...this.identity, name, token };

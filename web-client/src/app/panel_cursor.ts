@@ -1,4 +1,4 @@
-// The controls of the page under a gamepad: the cross goes through them and moves sliders, A presses one, B returns to the water.
+// The controls of the page under a gamepad: the D-pad goes through them and moves sliders, A presses one, B returns to the water.
 
 const kControls = "button, input, select, summary, a[href]";
 /** So many presses take a slider from end to end. */
@@ -26,6 +26,7 @@ export class PanelCursor {
   /** Moves a slider by a step, chooses the next entry of a list; elsewhere as move(). */
   change(by: 1 | -1): void {
     const { chosen } = this;
+    const before = chosen instanceof HTMLInputElement || chosen instanceof HTMLSelectElement ? chosen.value : "";
     if (chosen instanceof HTMLInputElement && chosen.type === "range") {
       const steps = (Number(chosen.max) - Number(chosen.min)) / Number(chosen.step) / kSliderPresses;
       if (by > 0) chosen.stepUp(Math.max(Math.round(steps), 1));
@@ -35,6 +36,7 @@ export class PanelCursor {
     } else {
       return this.move(by);
     }
+    if (chosen.value === before) return;
     for (const type of ["input", "change"]) chosen.dispatchEvent(new Event(type, { bubbles: true }));
   }
 

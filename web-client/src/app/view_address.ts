@@ -1,5 +1,7 @@
 // The view in the page's address: `?view=side`, or, where somebody has moved the camera, `?camera=` with its position and what it looks at, as
 // six numbers in metres.
+import type { Vector3 } from "three";
+
 import type { CameraViews, ViewName } from "../scene/camera/camera_views";
 import { setAddressParameter } from "./address";
 
@@ -11,6 +13,7 @@ const kFirstViews: readonly ViewName[] = ["side", "overview", "below"];
 const kFarthestM = 1e4;
 /** The camera has to rest for so long before the address says where it is. */
 const kRestS = 0.7;
+const kLookEveryS = 0.25;
 
 /** Undefined: the first view of the scene. */
 export function viewOf(search: string): AddressView | undefined {
@@ -28,9 +31,13 @@ export class ViewAddress {
   private first = viewOf(location.search);
   private seen = "";
   private seenSinceS = 0;
+  private nextS = 0;
   private isWritten = true;
 
-  constructor(private readonly views: CameraViews) {}
+  constructor(
+    private readonly views: CameraViews,
+    private readonly eyeM: Vector3,
+  ) {}
 
   /** Shows the view of the address, once, when there is water. */
   enter(nowS: number): void {
@@ -43,8 +50,10 @@ export class ViewAddress {
 
   /** Call it after each picture. */
   update(nowS: number): void {
-    const { view, placeM } = this.views;
-    const now = view ?? placeM.map((each) => Number(each.toFixed(2))).join(",");
+    if (nowS < this.nextS) return;
+    this.nextS = nowS + kLookEveryS;
+    const { view, targetM } = this.views;
+    const now = view ?? [...this.eyeM, ...targetM].map((each) => Number(each.toFixed(2))).join(",");
     if (now !== this.seen) {
       this.isWritten = this.seen === "" && view !== undefined;
       this.seen = now;

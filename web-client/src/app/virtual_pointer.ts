@@ -4,8 +4,8 @@
 // what is held or under the mouse; comma and full stop choose what the tool Float drops; plus and minus bring the camera nearer and farther.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
 // would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind, B launches a boat. The right stick turns the
-// view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. The cross goes through the controls of the page
-// (panel_cursor.ts). In the boat's view the left stick and the cross are the helm. docs/controls.md lists all.
+// view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. The D-pad goes through the controls of the page
+// (panel_cursor.ts). In the boat's view the left stick and the D-pad are the helm. docs/controls.md lists all.
 import { isTyping } from "../ui/dom";
 import type { HelmCode } from "../ui/helm";
 import type { App } from "./app";
@@ -154,6 +154,7 @@ export class GamepadTools {
     if (!pad) {
       this.steer({});
       this.held.clear();
+      this.panel.leave();
       return this.pointer.release(this.xPx, this.yPx);
     }
     const pressed = new Set(pad.buttons.flatMap((button, k) => (button.pressed ? [k] : [])));
@@ -166,7 +167,7 @@ export class GamepadTools {
       if (isNew(kButtons.nextTool)) target.stepTool(1);
     }
     const isHelm = target.isHelm();
-    if (isHelm || x !== 0 || y !== 0) this.panel.leave();
+    if (isHelm || x !== 0 || y !== 0 || !this.panel.isActive) this.panel.leave();
     if (!isHelm) {
       if (isNew(kButtons.down)) this.panel.move(1);
       if (isNew(kButtons.up)) this.panel.move(-1);

@@ -124,11 +124,6 @@ export class CameraViews {
     return this.controls.target.clone();
   }
 
-  /** Where the camera is, and what it looks at: x, y and z of each. [m] */
-  get placeM(): number[] {
-    return [...this.camera.position.toArray(), ...this.controls.target.toArray()];
-  }
-
   get canDive(): boolean {
     return this.water !== undefined;
   }
