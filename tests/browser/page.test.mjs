@@ -260,7 +260,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok(await page.getByTestId("look-key").isHidden(), "natural water has a colour bar");
     await look.selectOption("height");
     assert.match(await page.getByTestId("key-title").textContent(), /height \[m\]/);
-    assert.match(page.url(), /look=height/);
+    await page.waitForURL(/look=height/, { timeout: WAIT_MS });
     await acknowledged(page, () => page.getByTestId("splash").click());
     await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.2);
     await acknowledged(page, () => page.getByTestId("pause").click());
@@ -317,7 +317,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.match(await page.getByTestId("key-title").textContent(), /speed \[m\/s\]/);
     await page.getByTestId("look").selectOption("natural");
     assert.ok(await page.getByTestId("look-key").isHidden(), "natural water has a colour bar");
-    assert.doesNotMatch(page.url(), /look=/);
+    await page.waitForURL((url) => !url.searchParams.has("look"), { timeout: WAIT_MS });
     await drawnPictures(page, 500);
     assert.ok(await page.getByTestId("probe").isHidden(), "natural water has a probe");
     assert.ok((await measure(page, height, await shootWater(page))).changed_ratio > 0.5, "the water still shows its height");
@@ -355,7 +355,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       await quality.selectOption(tier);
       const stats = await waitFor(page, `the tier ${tier}`, (now) => now.quality === tier);
       assert.equal(stats.pixelRatio, tier === "minimal" ? 0.45 : 1);
-      assert.equal(new URL(page.url()).searchParams.get("quality"), tier);
+      await page.waitForURL((url) => url.searchParams.get("quality") === tier, { timeout: WAIT_MS });
       await drawnPictures(page, 0);
       // A picture of the tier "high" takes a second here.
       assert.ok(stats.maxElevationM !== null, "no water is shown");
