@@ -24,7 +24,8 @@ import sys
 import textwrap
 
 # What differs from these rules.
-HOST_ONLY = {"Scene.fidelity", "Scene.unwatched", "Scene.setting", "Scene.restart_after_s", "ElevationSeries.file"}
+HOST_ONLY = {"Scene.fidelity", "Scene.unwatched", "Scene.setting", "Scene.water_type", "Scene.first_view",
+             "Scene.restart_after_s", "ElevationSeries.file"}
 ALWAYS_PRESENT = {"Scene.stream"}
 INITIAL = {"Scene.seed": "1"}
 BY_HAND = {"DepthGrid"}  # core/depth_grid.h; toCore() in scene_convert.cpp

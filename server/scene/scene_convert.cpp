@@ -55,19 +55,29 @@ v1::Setting ofBox(const v1::Scene& scene) {
   return walledSetting(longer_m);
 }
 
+/// The optics of the water, as they follow from what is around it. Precondition: the setting is known.
+v1::WaterType waterTypeOf(const v1::Scene& scene) {
+  if (scene.setting() != v1::SETTING_OPEN_SEA) return v1::WATER_TYPE_POOL;
+  const bool has_ground = scene.beaches_size() > 0 || scene.obstacles_size() > 0 || scene.has_bed();
+  return has_ground ? v1::WATER_TYPE_COAST : v1::WATER_TYPE_OCEAN;
+}
+
 }  // namespace
 
 void fillDefaults(v1::Scene& scene) {
   scene.mutable_stream();
   if (scene.seed() == 0) scene.set_seed(core::Scene{}.seed);
-  // Enums whose defaults depend on other fields: absorption, and the setting below, which needs the numbers filled in.
+  // Enums whose defaults depend on other fields: absorption, and setting and water type below, which
+  // need the numbers filled in.
   if (scene.has_wave() && scene.wave().absorption() == v1::ABSORPTION_UNSPECIFIED) {
     const bool nine = scene.wave().stencil() == v1::STENCIL_NINE_POINT;
     scene.mutable_wave()->set_absorption(nine ? v1::ABSORPTION_SPONGE : v1::ABSORPTION_PML);
   }
   const v1::Setting named = scene.setting();
+  const v1::WaterType named_type = scene.water_type();
   fillMessageDefaults(scene);
   scene.set_setting(named != v1::SETTING_UNSPECIFIED ? named : scene.has_wave() ? ofWave(scene.wave()) : ofBox(scene));
+  scene.set_water_type(named_type != v1::WATER_TYPE_UNSPECIFIED ? named_type : waterTypeOf(scene));
 }
 
 std::string settingName(v1::Setting setting) {

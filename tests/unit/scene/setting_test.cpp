@@ -42,6 +42,34 @@ TEST(Setting, ThatTheSceneNamesCounts) {
   EXPECT_EQ(loaded("particles {} setting: SETTING_GLASS_TANK"), v1::SETTING_GLASS_TANK);
 }
 
+v1::WaterType waterTypeOf(const std::string& text) {
+  const auto scene = parseSceneText(text, "water.textproto");
+  EXPECT_TRUE(scene) << scene.error().message;
+  return scene ? scene->water_type() : v1::WATER_TYPE_UNSPECIFIED;
+}
+
+TEST(WaterType, FollowsFromWhatIsAroundTheWater) {
+  const std::string sea = "wave { " SIDES_X("ABSORB") SIDES_Z("ABSORB") "} ";
+  EXPECT_EQ(waterTypeOf(sea), v1::WATER_TYPE_OCEAN);
+  EXPECT_EQ(waterTypeOf(sea + "obstacles { rock { radius_m: 1 height_m: 1 } }"), v1::WATER_TYPE_COAST);
+  EXPECT_EQ(waterTypeOf(sea + "bed { shapes { slope { gradient_ratio: 0.01 } } }"), v1::WATER_TYPE_COAST);
+  EXPECT_EQ(waterTypeOf("particles {}"), v1::WATER_TYPE_POOL);
+}
+
+TEST(WaterType, ThatTheSceneNamesCounts) {
+  EXPECT_EQ(waterTypeOf("wave {} water_type: WATER_TYPE_HARBOR"), v1::WATER_TYPE_HARBOR);
+}
+
+TEST(FirstView, HasDefaultsAndBounds) {
+  const auto scene = parseSceneText("wave {} first_view { x_m: 2 }", "water.textproto");
+  ASSERT_TRUE(scene) << scene.error().message;
+  EXPECT_EQ(scene->first_view().heading_deg(), -90);
+  EXPECT_EQ(scene->first_view().pitch_deg(), 22);
+  EXPECT_EQ(scene->first_view().hour(), 12);
+  EXPECT_FALSE(parseSceneText("wave {} first_view { pitch_deg: 90 }", "water.textproto"));
+  EXPECT_FALSE(parseSceneText("wave {} first_view { hour: 24.5 }", "water.textproto"));
+}
+
 // The documents and `spindrift check` name settings in words; a new one needs a name.
 TEST(Setting, HasAName) {
   const auto* type = v1::Setting_descriptor();

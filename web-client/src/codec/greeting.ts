@@ -8,15 +8,19 @@ import { kLayerNames, kLayers, type LayerName } from "./layers";
 import { malformed, type Malformed } from "./malformed";
 import {
   readBeaches,
+  readFirstView,
   readGauges,
   readObstacles,
   readSetting,
+  readWaterType,
   readWave,
   readWind,
   type BeachInfo,
+  type FirstViewInfo,
   type GaugeInfo,
   type ObstacleInfo,
   type SettingName,
+  type WaterTypeName,
   type WaveInfo,
   type WindInfo,
 } from "./scene_info";
@@ -76,6 +80,9 @@ export interface GreetingInfo {
   fidelityLevels: FidelityLevelInfo[];
   /** Where the water is. */
   setting: SettingName;
+  waterType: WaterTypeName;
+  /** Undefined: the view that suits the setting. */
+  firstView: FirstViewInfo | undefined;
   /** Undefined in a scene without a heightfield. */
   wave: WaveInfo | undefined;
   /** Undefined in a scene without a storm. */
@@ -190,6 +197,8 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
       fidelity: fidelityName(scene?.fidelity),
       fidelityLevels: readFidelityLevels(greeting.fidelityLevels),
       setting: scene ? readSetting(scene) : "glassTank",
+      waterType: scene ? readWaterType(scene) : "pool",
+      firstView: scene && readFirstView(scene),
       wave,
       wind: scene && readWind(scene),
       sideM,

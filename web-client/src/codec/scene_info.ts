@@ -1,10 +1,11 @@
 // What the page draws of a scene besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
-import { Bulk, Dispersion, Setting, Side, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
+import { Bulk, Dispersion, Setting, Side, WaterType, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
 /** As many as the server allows, or more; the rest is ignored. */
 const kMaxObstacleCount = 256;
 const kMaxGaugeCount = 64;
 
+export type WaterTypeName = "pool" | "ocean" | "coast" | "harbor" | "lagoon";
 export type SettingName = "openSea" | "pool" | "glassTank" | "flume";
 /** In the order of shader uniforms. */
 export const kSideNames = ["+x", "-x", "+z", "-z"] as const;
@@ -119,6 +120,40 @@ export function readSetting(scene: Scene): SettingName {
   if (named && (wave || named !== "openSea")) return named;
   if (!wave) return "glassTank";
   return Object.values(wave.sides).every((kind) => kind === "closed") ? "pool" : "openSea";
+}
+
+const kWaterTypes: Partial<Record<WaterType, WaterTypeName>> = {
+  [WaterType.POOL]: "pool",
+  [WaterType.OCEAN]: "ocean",
+  [WaterType.COAST]: "coast",
+  [WaterType.HARBOR]: "harbor",
+  [WaterType.LAGOON]: "lagoon",
+};
+
+/** Returns the optical type of the water; a server that names none, or one that this page does not know, has a sea or a pool. */
+export function readWaterType(scene: Scene): WaterTypeName {
+  return kWaterTypes[scene.waterType] ?? (readSetting(scene) === "openSea" ? "coast" : "pool");
+}
+
+/** What a visitor sees first; a size of 0 leaves it to the setting. */
+export interface FirstViewInfo {
+  xM: number;
+  zM: number;
+  lengthM: number;
+  depthM: number;
+  /** Where the camera looks, from +x toward +z, and by how much down. */
+  headingRad: number;
+  pitchRad: number;
+  /** Of the light. */
+  hour: number;
+}
+
+/** Returns the first view of a scene; undefined without one, or with numbers that cannot be drawn. */
+export function readFirstView({ firstView }: Scene): FirstViewInfo | undefined {
+  if (!firstView) return undefined;
+  const { xM = 0, zM = 0, lengthM = 0, depthM = 0, headingDeg = -90, pitchDeg = 22, hour = 12 } = firstView;
+  const isDrawable = [xM, zM, headingDeg].every(Number.isFinite) && [lengthM, depthM].every((sizeM) => sizeM >= 0 && sizeM <= 1e6) && pitchDeg > 0 && pitchDeg < 90 && hour >= 0 && hour <= 24;
+  return isDrawable ? { xM, zM, lengthM, depthM, headingRad: (headingDeg * Math.PI) / 180, pitchRad: (pitchDeg * Math.PI) / 180, hour } : undefined;
 }
 
 /** Returns the wind of a scene with a storm; undefined without one, or with numbers that cannot be drawn. */
