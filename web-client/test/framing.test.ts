@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/camera/framing";
+import { firstView, focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/camera/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
 const waters: ViewedBox[] = [
@@ -113,6 +113,31 @@ describe("a view of the water", () => {
     const { positionM } = frameBox(waters[0]!, backwards[0]!, nothing);
     expect(positionM.length()).toBeGreaterThan(24);
     expect(positionM.length()).toBeLessThan(24 * 20);
+  });
+});
+
+describe("the first view of a scene", () => {
+  const first = { xM: 3, zM: -2, lengthM: 12, depthM: 6, headingRad: 0.7, pitchRad: 0.3, hour: 12 };
+  const water = { sideM: 40, minYM: -1, maxYM: 1 };
+
+  it("looks along its heading and down by its pitch, at its rectangle", () => {
+    const { box, backward } = firstView(water, first, { across: 2, up: 1 });
+    expect(backward.length()).toBeCloseTo(1, 12);
+    expect(Math.asin(backward.y)).toBeCloseTo(0.3, 12);
+    expect(Math.atan2(-backward.z, -backward.x)).toBeCloseTo(0.7, 12);
+    expect(box).toMatchObject({ sideM: 6, widthM: 12, centreM: { x: 3, z: -2 } });
+    // The picture's right is across the heading, so the rectangle's length fills it.
+    const { positionM, targetM } = frameBox({ ...box, minYM: 0, maxYM: 0 }, backward, { across: 1, up: 10 });
+    const nearestM = new Vector3(3 - 3 * Math.cos(0.7), 0, -2 - 3 * Math.sin(0.7)).sub(positionM).dot(backward.clone().negate());
+    expect(nearestM).toBeCloseTo(6, 9);
+    expect(targetM.clone().sub(positionM).normalize().distanceTo(backward.clone().negate())).toBeCloseTo(0, 12);
+  });
+
+  it("is shorter and steeper in a tall free part, and as wide as the setting where it names no size", () => {
+    const tall = firstView(water, first, { across: 0.4, up: 1 });
+    expect(tall.box.widthM).toBeLessThan(8);
+    expect(Math.asin(tall.backward.y)).toBeGreaterThan(0.4);
+    expect(firstView(water, { ...first, lengthM: 0, depthM: 0 }, { across: 2, up: 1 }).box).toMatchObject({ sideM: 40, widthM: 40 });
   });
 });
 

@@ -2,8 +2,9 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { readSetting, readWind } from "../src/codec/scene_info";
-import { Boundary, Dispersion, SceneSchema, Setting, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { readFirstView, readSetting, readWaterType, readWind } from "../src/codec/scene_info";
+import { Boundary, Dispersion, SceneSchema, Setting, WaterType, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { waterOpticsOf } from "../src/scene/light/water_optics";
 import { makeGlassGeometry, makeStandGeometry, tankSize } from "../src/scene/solids/glass_tank";
 import { makeBasinGeometries } from "../src/scene/solids/pool_basin";
 
@@ -26,6 +27,39 @@ describe("the setting", () => {
 
   it("is not an open sea without a wave", () => {
     expect(readSetting(create(SceneSchema, { particles: {}, setting: Setting.OPEN_SEA }))).toBe("glassTank");
+  });
+});
+
+describe("the water", () => {
+  it("is of the type that the server names, or one that suits the setting", () => {
+    expect(readWaterType(create(SceneSchema, { wave: sized, waterType: WaterType.LAGOON }))).toBe("lagoon");
+    expect(readWaterType(create(SceneSchema, { wave: sized, waterType: 99 as WaterType }))).toBe("coast");
+    expect(readWaterType(create(SceneSchema, { particles: {} }))).toBe("pool");
+  });
+
+  it("sends up blue light in the ocean, green light in a harbor, and never more than comes in", () => {
+    const [ocean, harbor] = [waterOpticsOf("ocean"), waterOpticsOf("harbor")];
+    expect(ocean.scattered[2]).toBeGreaterThan(1.5 * ocean.scattered[1]);
+    expect(harbor.scattered[1]).toBeGreaterThan(harbor.scattered[2]);
+    for (const type of ["pool", "lagoon", "ocean", "coast", "harbor"] as const) {
+      const { lossPerM, scattered, bubbly } = waterOpticsOf(type);
+      expect(lossPerM[0]).toBeGreaterThan(lossPerM[1]);
+      for (const i of [0, 1, 2] as const) {
+        expect(bubbly[i]).toBeGreaterThan(scattered[i]);
+        expect(bubbly[i]).toBeLessThan(0.6);
+      }
+    }
+  });
+});
+
+describe("the first view", () => {
+  it("is that of the scene in radians, with the defaults of the server's rules", () => {
+    expect(readFirstView(create(SceneSchema, { wave: sized }))).toBeUndefined();
+    expect(readFirstView(create(SceneSchema, { firstView: { xM: 2, headingDeg: 180, hour: 16 } }))).toEqual({ xM: 2, zM: 0, lengthM: 0, depthM: 0, headingRad: Math.PI, pitchRad: (22 * Math.PI) / 180, hour: 16 });
+  });
+
+  it("is left out where its numbers cannot be drawn", () => {
+    for (const firstView of [{ xM: NaN }, { lengthM: -1 }, { pitchDeg: 90 }, { hour: 25 }]) expect(readFirstView(create(SceneSchema, { firstView }))).toBeUndefined();
   });
 });
 

@@ -26,6 +26,7 @@ const kRoom = {
   sideM: 16,
   widthM: 16,
   waterExtents: { sideM: 16, longM: 16, depthM: 2 },
+  waterType: "coast",
   obstacles: [],
   beaches: [],
   boats: [],

@@ -96,8 +96,9 @@ export class WaterScene {
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined, isSameWater);
     if (!isSameWater) this.wetness.clear();
-    this.sky.enter(isIndoors(greeting));
+    this.sky.enter(isIndoors(greeting), greeting.waterType);
     this.sky.hideBelowHorizon(greeting.setting === "openSea");
+    this.daylight.setSceneHour(greeting.firstView?.hour ?? 12);
     this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
     this.base = makeBase(greeting, this.tools);
     this.base.solids.setOwnerColors(this.ownerColors);

@@ -22,7 +22,7 @@ export function lightOf(search: string): PresetName | number {
 
 /** Adds both rows. `first`: chosen at the beginning. `chosen` gets what the address has to say then, undefined for automatic. */
 export function addLightRows(daylight: Daylight, first: PresetName | number, chosen: (light: string | undefined) => void): void {
-  const help = "Light on this page. Automatic: noon, darker and grey in a storm of the room.";
+  const help = "Light on this page. Automatic: the scene's hour, darker and grey in a storm of the room.";
   const select = new SelectRow("light", "Light", help, (name) => {
     if (!isPreset(name)) return;
     hour.show(daylight.choose(name), "");

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { clamp, smooth, wrapAngle } from "../maths/interpolate";
 import { CameraHand } from "./camera_hand";
 import { diveView, keepClear, type DiveWater } from "./dive";
-import { focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
+import { firstView, focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
 export type ViewName = "above" | "side" | "boat" | "overview" | "below";
 type FixedView = Exclude<ViewName, "boat">;
@@ -283,6 +283,7 @@ export class CameraViews {
   /** Direction from the water to the camera. */
   private backwardOf(name: Exclude<FixedView, "below">, tangents: { across: number; up: number }): Vector3 {
     const { extent } = this;
+    if (name === "above" && extent.first) return firstView(extent, extent.first, tangents).backward;
     const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
     if (name === "above") backward.y *= raisedBy(extent, tangents);
     if (name === "side") backward.y *= extent.sideRaised ?? 1;
@@ -297,7 +298,8 @@ export class CameraViews {
     }
     if (name === "below") return this.placed("above");
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
-    const placement = frameBox(focusBox(extent, tangents), this.backwardOf(name, tangents), tangents);
+    const box = name === "above" && extent.first ? firstView(extent, extent.first, tangents).box : focusBox(extent, tangents);
+    const placement = frameBox(box, this.backwardOf(name, tangents), tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
     this.controls.minDistance = 0.25 * extent.sideM;
     this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);

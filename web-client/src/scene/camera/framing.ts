@@ -1,7 +1,7 @@
 // Places a camera so that a whole box is seen inside a part of the canvas. Pure: no DOM, no renderer.
 import { Vector3 } from "three";
 
-import type { SideName } from "../../codec/scene_info";
+import type { FirstViewInfo, SideName } from "../../codec/scene_info";
 import { clamp } from "../maths/interpolate";
 
 /** A part of the canvas in CSS pixels from its top left corner. */
@@ -25,6 +25,10 @@ export interface ViewedBox {
   lean?: { x: number; z: number };
   /** Middle of the box if it is not the y axis. */
   centreM?: { x: number; z: number };
+  /** Angle about the y axis by which the box's sides are turned, from +x toward +z; 0 if left out. */
+  turnRad?: number;
+  /** What the scene shows first, instead of the view from above. */
+  first?: FirstViewInfo;
   /** How much higher than usual the view from above looks down in a wide and in a tall free part; the framing's own limits if left out. */
   raised?: { wide: number; tall: number };
   /** How much higher than usual the view from the side looks down, because a rim hides the water from below; 1 if left out. */
@@ -80,6 +84,23 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
   return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
 }
 
+/** In a tall free part, a scene's first view shows this share of its length, from so many times steeper. */
+const kFirstTall = { length: 0.55, steep: 1.5 };
+
+/** Returns the part of the water that a scene shows first, and the direction to the camera, in a free part of this shape. */
+export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { across: number; up: number }): { box: ViewedBox; backward: Vector3 } {
+  const tall = tallness(tangents);
+  const whole = focusBox(box, tangents);
+  const wideM = first.lengthM > 0 ? first.lengthM * (1 + (kFirstTall.length - 1) * tall) : Math.max(whole.sideM, whole.widthM ?? 0);
+  const { headingRad, xM, zM } = first;
+  const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.steep - 1) * tall));
+  const { minYM, maxYM } = box;
+  return {
+    box: { sideM: first.depthM || wideM, widthM: wideM, minYM, maxYM, centreM: { x: xM, z: zM }, turnRad: headingRad },
+    backward: new Vector3(-Math.cos(headingRad) * Math.cos(pitchRad), Math.sin(pitchRad), -Math.sin(headingRad) * Math.cos(pitchRad)),
+  };
+}
+
 /** Unit vectors out of the sides, along x and z. */
 const kOutward: Record<SideName, readonly [number, number]> = { "+x": [1, 0], "-x": [-1, 0], "+z": [0, 1], "-z": [0, -1] };
 
@@ -125,12 +146,13 @@ export function frameBox(extent: ViewedBox, backward: Vector3, tangents: { acros
   const halfX = extent.sideM / 2;
   const halfZ = (extent.widthM ?? extent.sideM) / 2;
   const middleM = new Vector3(extent.centreM?.x ?? 0, (extent.minYM + extent.maxYM) / 2, extent.centreM?.z ?? 0);
+  const [c, s] = [Math.cos(extent.turnRad ?? 0), Math.sin(extent.turnRad ?? 0)];
   const across: AxisCorners = [];
   const upward: AxisCorners = [];
   for (const x of [-halfX, halfX])
     for (const y of [extent.minYM, extent.maxYM])
       for (const z of [-halfZ, halfZ]) {
-        const corner = new Vector3(x, y - middleM.y, z);
+        const corner = new Vector3(c * x - s * z, y - middleM.y, s * x + c * z);
         across.push([corner.dot(right), corner.dot(back)]);
         upward.push([corner.dot(up), corner.dot(back)]);
       }

@@ -22,10 +22,10 @@ const kSideSamples = [-0.45, -0.3, -0.15, 0, 0.15, 0.3, 0.45] as const;
 /** Slope behind a shore that no beach makes. */
 const kShoreSlope = 0.1;
 /** Dunes and hills, in sides of the square: height, and the distances over which the hills rise. */
-const kDuneSides = 0.05;
-const kHillSides = 0.5;
-const kHillsFromSides = 2.5;
-const kHillsToSides = 14;
+const kDuneSides = 0.06;
+const kHillSides = 0.85;
+const kHillsFromSides = 1.1;
+const kHillsToSides = 9;
 /** Width of the paving behind a quay, in sides. */
 const kPavingSides = 0.06;
 /** The ground is drawn out to this many sides, under water only out to kBedReachSides. */
@@ -36,8 +36,8 @@ const kGrowth = 1.35;
 const kCoarseGrowth = 1.7;
 const kFewCells = 64;
 
-const kGrass: Paint = [0.15, 0.2, 0.075, 1.0];
-const kFarGrass: Paint = [0.11, 0.16, 0.08, 0.6];
+const kGrass: Paint = [0.17, 0.185, 0.085, 1.0];
+const kFarGrass: Paint = [0.085, 0.125, 0.075, 0.6];
 const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
 const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
 

@@ -2,10 +2,10 @@
 import type { BufferGeometry } from "three";
 
 import type { RockInfo } from "../../codec/scene_info";
-import { mix, smooth } from "../maths/interpolate";
+import { mix, smooth, smoothstep } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
-import { overgrown, shaded } from "./paints";
+import { bedPaint, mixPaint, overgrown, shaded } from "./paints";
 
 /** Rows and columns of a boulder; the second for software renderers. */
 const kCounts = { full: { rings: 16, around: 26 }, plain: { rings: 9, around: 14 } } as const;
@@ -49,11 +49,12 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
       const out = under > 0 ? 1 : Math.cos(polar) ** 0.85;
       let [x, y, z] = [c * out, Math.sin(polar), s * out];
       for (const [cutX, cutY, cutZ, away] of cuts) {
-        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0);
+        // The flat faces end where the foot begins, whose outline is seen through the water.
+        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0) * (1 - under);
         [x, y, z] = [x - cutX * beyond, y - cutY * beyond, z - cutZ * beyond];
       }
-      const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * y + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * y + 7, 6 * z + 20, seed + 1);
-      const wide = radiusM * (0.98 + 0.26 * rough) * (1 + 0.35 * under);
+      const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * (y - under) + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * (y - under) + 7, 6 * z + 20, seed + 1);
+      const wide = radiusM * (0.98 + (0.26 + 0.5 * under) * rough) * (1 + 0.3 * under);
       const high = under > 0 ? bottomM * under + heightM * y * (1 - under) : heightM * y * (1.02 + 0.22 * (rough - 0.5));
       row.push([rock.xM + x * wide, high, rock.zM + z * wide]);
     }
@@ -62,7 +63,10 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
   const weedM = kWeedHeights * heightM;
   builder.grid(rows, (row, column) => {
     const uneven = 0.8 + 0.4 * hash(row, column % around, seed);
-    return overgrown(shaded(kStone, uneven), rows[row]![column]![1], weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
+    const highM = rows[row]![column]![1];
+    const stone = overgrown(shaded(kStone, uneven), highM, weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
+    // Sand lies on the foot.
+    return mixPaint(stone, bedPaint(bottomM, -bottomM), smoothstep(0.25, 0.85, highM / bottomM));
   });
 }
 

@@ -2,9 +2,9 @@
 import { clamp, mix, smooth } from "../maths/interpolate";
 import { lightAt, type Light } from "./light";
 
-/** Points of the day by name. `storm` undefined: the room's. */
+/** Points of the day by name. `hour` undefined: the scene's, `storm` undefined: the room's. */
 const kPresets = {
-  automatic: { hour: 12, storm: undefined },
+  automatic: { hour: undefined, storm: undefined },
   noon: { hour: 12, storm: 0 },
   "golden hour": { hour: 17.15, storm: 0 },
   dusk: { hour: 18.35, storm: 0 },
@@ -24,7 +24,8 @@ interface Moment {
 }
 
 export class Daylight {
-  private chosen: { hour: number; storm: number | undefined } = kPresets.automatic;
+  private chosen: { hour: number | undefined; storm: number | undefined } = kPresets.automatic;
+  private sceneHour = 12;
   private roomStorm = 0;
   private isNoonHeld = false;
   private shown: Moment = { hour: 12, storm: 0 };
@@ -35,7 +36,7 @@ export class Daylight {
   /** Chooses a preset. Returns its hour. */
   choose(name: PresetName): number {
     this.chosen = kPresets[name];
-    return this.chosen.hour;
+    return this.chosen.hour ?? this.sceneHour;
   }
 
   /** Chooses an hour (0..24) in the weather of the room, without a transition: a slider is one. */
@@ -44,6 +45,11 @@ export class Daylight {
     this.shown = this.target();
     this.travel = undefined;
     this.isNew = true;
+  }
+
+  /** Takes the hour in which the scene is seen first; setRoomStorm() shows it. */
+  setSceneHour(hour: number): void {
+    this.sceneHour = hour;
   }
 
   /** Follows the storm of the room, 0..1. `atOnce`: the room is new. */
@@ -78,6 +84,6 @@ export class Daylight {
 
   private target(): Moment {
     if (this.isNoonHeld) return kPresets.noon;
-    return { hour: this.chosen.hour, storm: this.chosen.storm ?? this.roomStorm };
+    return { hour: this.chosen.hour ?? this.sceneHour, storm: this.chosen.storm ?? this.roomStorm };
   }
 }

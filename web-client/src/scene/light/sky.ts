@@ -17,10 +17,12 @@ import {
   type WebGLRenderer,
 } from "three";
 
+import type { WaterTypeName } from "../../codec/scene_info";
 import { makeFullscreenGeometry } from "../drawing/fullscreen";
 import type { Quality } from "../drawing/quality";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { derive, indoors, lightAt, type Light, type Rgb } from "./light";
+import { waterOpticsOf } from "./water_optics";
 
 const kFaceCount = 512;
 /** Height of the lowest direction in which the sky is seen over a horizon of land or sea. */
@@ -69,6 +71,10 @@ export class Sky {
       u_veiled_sky: { value: [new Vector3(), new Vector3(), new Vector3()] },
       u_sun_sharp: { value: 1 },
       u_exposure: { value: 1 },
+      u_loss_per_m: vector(),
+      u_scattered: vector(),
+      u_bubbly: vector(),
+      u_crest: vector(),
     };
     this.bakeUniforms = {
       u_sun_direction: vector(),
@@ -104,9 +110,11 @@ export class Sky {
     this.setLight(this.light);
   }
 
-  /** Chooses between the open sky and a room, and has it baked; needed again after the WebGL context was restored. */
-  enter(isRoom: boolean): void {
+  /** Chooses the open sky or a room, which is baked, and the water; needed again after the WebGL context was restored. */
+  enter(isRoom: boolean, waterType: WaterTypeName): void {
     this.isRoom = isRoom;
+    const { lossPerM, scattered, bubbly, crest } = waterOpticsOf(waterType);
+    Object.entries({ u_loss_per_m: lossPerM, u_scattered: scattered, u_bubbly: bubbly, u_crest: crest }).forEach(([name, rgb]) => (this.uniforms[name]!.value as Vector3).set(...rgb));
     this.box.material = isRoom ? this.room : this.outdoors;
     this.bakedS = Number.NEGATIVE_INFINITY;
     this.setLight(this.light);

@@ -20,6 +20,8 @@ const float kShaftReachM = 9.0;
 // Light that leaves its way besides what is absorbed. Less than the scattering that gives water its colour from above: most of it continues.
 const float kVeilPerM = 0.06;
 const float kGlowPerM = 0.15;
+// An eye in the water gets this many times the light that leaves it upward: water scatters mostly forward.
+const float kGlowPerScattered = 3.0;
 
 // exp(-x) for x >= 0.
 vec3 fadingBelow(vec3 x) {
@@ -100,8 +102,8 @@ vec3 throughWater(vec3 light, vec3 from, vec3 ray, float way_m, float shafts) {
   float ahead = max(dot(ray, toward_sun), 0.0);
   ahead *= ahead;
   // Water is brighter above than below, and toward the sun, because it scatters mostly forward.
-  vec3 glow = waterScattered(0.35) * u_water_light * mix(0.40, 1.05, smoothstep(-0.8, 0.7, ray.y));
-  glow += vec3(0.04, 0.40, 0.44) * u_sun_below * (0.12 + 1.1 * ahead * ahead) * shafts * shafts;
-  vec3 passed = fadingBelow((0.6 * kAbsorptionPerM + kVeilPerM) * way_m);
+  vec3 glow = kGlowPerScattered * waterScattered(0.35) * u_water_light * mix(0.40, 1.05, smoothstep(-0.8, 0.7, ray.y));
+  glow += u_crest * u_sun_below * (0.12 + 1.1 * ahead * ahead) * shafts * shafts;
+  vec3 passed = fadingBelow((0.6 * u_loss_per_m + kVeilPerM) * way_m);
   return light * passed + glow * (1.0 - fadingBelow(vec3(kGlowPerM * way_m)).x);
 }

@@ -30,12 +30,6 @@ const float kLeastFacing = 0.18;
 // Size of one tile of the noise in particle radii.
 const float kLaceRadii = 26.0;
 const float kOutlineBend = 0.8;
-#ifdef WAVE
-const float kGlow = 1.0;
-#else
-// Tap water scatters less than the sea.
-const float kGlow = 0.7;
-#endif
 layout(location = 0) out vec4 color;
 
 // 1 / distance between texels of the smaller target, without those that are empty.
@@ -103,12 +97,12 @@ void main() {
   // Near an outline the far side reflects totally, so that the path is longer than the ray's straight way out.
   float folded_m = 6.0 * u_radius_m * (1.0 - exp(-thickness_m / u_radius_m)) * (1.0 - alone) * raised;
   float path_m = (thickness_m + folded_m) * u_colour_ratio;
-  vec3 passed = exp(-kAbsorptionPerM * path_m);
+  vec3 passed = exp(-u_loss_per_m * path_m);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
-  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * against_sun * 0.35;
-  vec3 glow = kGlow * scattered * (1.0 - exp(-kScatteringPerM * path_m));
+  scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
+  vec3 glow = scattered * (1.0 - passed);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   float fresnel = waterFresnel(facing) * raised;
@@ -123,7 +117,7 @@ void main() {
   vec3 lens = skyLight(normalize(bent + 0.6 * (bent - ray))) * (0.55 + 0.4 * sun);
 #ifdef WAVE
   // The picture behind shows through by the green share that passes.
-  float kept = (1.0 - fresnel) * passed.g * (1.0 - white) * (1.0 - 0.6 * alone * raised);
+  float kept = (1.0 - fresnel) * passed.g * (1.0 - white) * (1.0 - 0.4 * alone * raised);
   vec3 own = mix(fresnel * mirrored_light + glint + (1.0 - fresnel) * mix(glow, lens * 0.6, alone * raised), froth, white);
   color = vec4(toDisplay(own / max(1.0 - kept, 0.02)), covered * (1.0 - kept));
 #else
@@ -134,7 +128,7 @@ void main() {
   vec3 behind = texture(u_behind, uv).rgb;
   // Below the horizon the floor is reflected, of which the screen shows a part.
   mirrored_light = mix(mirrored_light, behind, smoothstep(0.1, -0.1, mirrored.y));
-  vec3 inside = mix(behind * passed + glow, lens, 0.6 * alone);
+  vec3 inside = mix(behind * passed + glow, lens, 0.4 * alone);
   color = vec4(toDisplay(mix(mix(inside, mirrored_light, fresnel) + glint, froth, white)), covered);
 #endif
 }

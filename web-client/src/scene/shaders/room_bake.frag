@@ -57,5 +57,6 @@ void main() {
     }
     light *= mix(0.55, 1.0, smoothstep(0.0, 0.035, high));
   }
-  color = vec4(light * 0.85, 1.0);
+  // Darker than what stands in it, so that water and glass are what is seen.
+  color = vec4(light * 0.38, 1.0);
 }

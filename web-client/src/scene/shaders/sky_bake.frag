@@ -47,15 +47,21 @@ void main() {
   sky += u_glow * (0.07 * pow(toward_sun, 5.0) + 0.28 * pow(toward_sun, 110.0));
   float toward_moon = max(dot(direction, u_moon_direction), 0.0);
   sky += u_halo * (0.4 * pow(toward_moon, 8.0) + pow(toward_moon, 160.0));
-  vec2 plane = direction.xz / (up + 0.16);
-  float cover = cloud(plane * vec2(0.75, 1.05) + vec2(3.1, 1.7));
+  vec2 plane = direction.xz / (up + 0.09);
+  vec2 at = plane * vec2(0.55, 0.75) + vec2(3.1, 1.7);
+  float dense = cloud(at);
   float heavy = clamp((u_cloud_cover - 0.22) / 0.78, 0.0, 1.0);
-  vec3 lit = mix(u_cloud, u_cloud_lit, pow(toward_sun, 3.0));
-  // A closed layer shows its thickness.
-  lit *= mix(1.0, 0.45 + 1.1 * smoothstep(0.25, 0.75, cover), heavy);
-  cover = smoothstep(0.46 - 0.56 * heavy, 0.80 - 0.30 * heavy, cover) * smoothstep(0.02, 0.22, up);
-  cover *= mix(0.75, 0.95, heavy);
-  sky = mix(sky, lit, cover);
+  // Heaps are bright where they are thinner toward the sun, and grey at their bases; a closed layer shows its thickness.
+  vec2 sunward = normalize(u_sun_direction.xz + vec2(1e-4));
+  float edge = clamp(0.5 + 2.6 * (dense - cloud(at + 0.16 * sunward)), 0.0, 1.0);
+  vec3 lit = mix(u_cloud, u_cloud_lit, clamp(pow(toward_sun, 3.0) + 0.75 * edge * (1.0 - heavy), 0.0, 1.0));
+  lit *= mix(mix(0.72, 1.12, edge), 0.45 + 1.1 * smoothstep(0.25, 0.75, dense), heavy);
+  float cover = smoothstep(0.52 - 0.62 * heavy, 0.66 - 0.16 * heavy, dense) * smoothstep(0.0, 0.06, up);
+  // Thin high clouds between them.
+  cover = max(cover, 0.35 * (1.0 - heavy) * smoothstep(0.4, 0.9, cloud(plane * vec2(0.2, 0.9) + 11.0)) * smoothstep(0.1, 0.4, up));
+  cover *= mix(0.9, 0.95, heavy);
+  // Air lies between the eye and the low ones.
+  sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.16, up), 1.0, heavy)), cover);
   vec3 ground = u_ambient_up * vec3(0.95, 0.79, 0.66);
   sky = mix(sky, ground, smoothstep(0.0, -0.08, direction.y));
   // Stars shine through where there are no clouds, and not through the haze at the horizon.

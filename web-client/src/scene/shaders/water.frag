@@ -252,7 +252,7 @@ void main() {
   path_m = mix(deep_m * inversesqrt(1.0 - sine2), path_m, smoothstep(0.15, 0.6, deep_m));
 #endif
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = fading(kAbsorptionPerM * path_m * (1.0 + max(-ray.y, 0.25)));
+  vec3 passed = fading(u_loss_per_m * path_m * (1.0 + max(-ray.y, 0.25)));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light;
   float sunlit_share = 1.0;
@@ -269,8 +269,8 @@ void main() {
 #else
   float crest_m = max(v_top_m, 0.0);
 #endif
-  scattered += vec3(0.02, 0.289, 0.324) * u_sun_light * against_sun * crest_m * 1.6;
-  vec3 under = behind * passed + scattered * (1.0 - fading(vec3(kScatteringPerM * path_m)).x);
+  scattered += u_crest * u_sun_light * against_sun * crest_m * 1.6;
+  vec3 under = behind * passed + scattered * (1.0 - passed);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   float fresnel = waterFresnel(facing);
@@ -345,20 +345,20 @@ void main() {
     vec2 at = v_world.xz - 0.6 * field.gb;
     float lace = texture(u_noise, at / u_lace_m).r;
 #ifndef PLAIN
-    lace = clamp(0.68 * lace + 0.42 * texture(u_noise, at.yx / (0.29 * u_lace_m)).r - 0.05, 0.0, 1.0);
+    lace = clamp(0.54 * lace + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
 #endif
-    // Much foam is a closed white area, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
-    // water that has just broken is solid white.
-    float strength = min(1.1 * foam * sqrt(foam) + 0.1, 1.0);
-    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.16 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
+    // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
+    // water that has just broken is nearly closed.
+    float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
+    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.26 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     float clouded = 0.45 * foam;
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif
-    water = mix(water, vec3(0.16, 0.42, 0.46) * u_water_light, clouded);
+    water = mix(water, u_bubbly * u_water_light, clouded);
     float sunlit = sunlit_share * clamp(dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.80 + 0.28 * lace);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.66 + 0.42 * lace);
     water = mix(water, froth, 0.94 * white);
   }
 #endif

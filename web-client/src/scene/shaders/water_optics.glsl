@@ -1,9 +1,12 @@
-// Include: what light does in water and at its surface.
-const vec3 kAbsorptionPerM = vec3(0.85, 0.19, 0.10);
-const float kScatteringPerM = 0.55;
+// Include: what light does in water of the scene's type (light/water_optics.ts) and at its surface.
+uniform vec3 u_loss_per_m;  // share of the light that is absorbed or scattered per metre
+uniform vec3 u_scattered;   // light that deep water sends up at noon
+uniform vec3 u_bubbly;      // the same of water full of bubbles
+uniform vec3 u_crest;       // sunlight that a crest lets through, per metre of its height
 
-// Light that water scatters toward the eye, per its share along an infinite path, at noon. `lifted`: 0 in a trough, 1 in a crest.
-vec3 waterScattered(float lifted) { return mix(vec3(0.005, 0.102, 0.186), vec3(0.036, 0.408, 0.48), lifted); }
+// Light that water scatters toward the eye, per its share along an infinite path, at noon. `lifted`: 0 in a trough, 1 in a crest, into which
+// light comes from all sides.
+vec3 waterScattered(float lifted) { return u_scattered * mix(0.75, 1.9, lifted); }
 
 // Schlick's fit of the Fresnel equations for water. `facing`: cosine between normal and ray.
 float waterFresnel(float facing) {

@@ -39,8 +39,9 @@ const kTrayDepth = 0.2;
 const kTrayView = { ...kSettingViews.glassTank, raised: { wide: 1.8, tall: 2.6 } };
 
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
-export function viewOf({ setting, wave }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom"> {
-  const view = setting === "glassTank" && wave && wave.depthM < kTrayDepth * Math.min(wave.sideM, wave.widthM) ? kTrayView : kSettingViews[setting];
+export function viewOf({ setting, wave, firstView }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom" | "first"> {
+  const framed = setting === "glassTank" && wave && wave.depthM < kTrayDepth * Math.min(wave.sideM, wave.widthM) ? kTrayView : kSettingViews[setting];
+  const view = firstView ? { ...framed, first: firstView } : framed;
   if (setting !== "openSea" || !wave) return view;
   const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
   const seenFrom = kSeenFrom.find((side) => closed(side) === 0) ?? "+z";

@@ -79,7 +79,7 @@ export class WaterPass implements Pass {
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
-      u_lace_m: { value: clamp(longSideM(bed) / 7, 1, 9) },
+      u_lace_m: { value: clamp(longSideM(bed) / 10, 1, 9) },
       u_froth: { value: froth },
       ...foam,
       ...rain,

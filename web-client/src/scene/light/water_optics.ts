@@ -1,0 +1,56 @@
+// Optical types of water: what it absorbs and scatters, and the colours that follow for the shaders (shaders/water_optics.glsl). Pure.
+import type { WaterTypeName } from "../../codec/scene_info";
+import type { Rgb } from "./light";
+
+/** Inherent optical properties at 650, 550 and 450 nm, per metre: light lost to absorption, and scattered back where it came from. */
+interface Properties {
+  absorption: Rgb;
+  backscattering: Rgb;
+  /** Scenes are models: so many metres of real water have the colour of one of theirs; kRealPerModelLength if left out. */
+  realPerModelLength?: number;
+}
+
+/** Pure water absorbs (0.340, 0.0565, 0.0092) /m (Pope & Fry 1997). The rest is plankton, silt and what rivers bring, within the ranges that
+ *  Mobley (Light and Water, 1994, chapter 3) reports. */
+const kProperties: Record<WaterTypeName, Properties> = {
+  pool: { absorption: [0.340, 0.065, 0.026], backscattering: [0.0040, 0.0060, 0.0090] },
+  lagoon: { absorption: [0.345, 0.060, 0.022], backscattering: [0.0050, 0.0085, 0.0130] },
+  // No bed is seen in it.
+  ocean: { absorption: [0.350, 0.068, 0.030], backscattering: [0.0016, 0.0028, 0.0052], realPerModelLength: 20 },
+  coast: { absorption: [0.375, 0.090, 0.082], backscattering: [0.0045, 0.0070, 0.0078] },
+  harbor: { absorption: [0.440, 0.150, 0.200], backscattering: [0.0075, 0.0115, 0.0105] },
+};
+
+const kRealPerModelLength = 2.5;
+/** Light that level, infinitely deep water sends up, per light that comes in: this times backscattering over both losses (Gordon et al. 1975). */
+const kReflectancePerRatio = 0.33;
+/** Photographs of the sea are exposed for its darkest part. */
+const kExposure = 1.5;
+/** Backscattering by the bubbles of broken water, which have no colour (/m), and the share of that light which is seen. */
+const kBubblesPerM = 0.35;
+const kBubblesShare = 0.55;
+/** Light through a crest has gone this far in the water (m), and this share of it goes on to the eye. */
+const kCrestM = 0.8;
+const kCrestShare = 0.34;
+
+export interface WaterOptics {
+  /** Share of the light lost per metre of way in the model. */
+  lossPerM: Rgb;
+  /** Light that deep water sends up at noon. */
+  scattered: Rgb;
+  /** The same of water full of bubbles. */
+  bubbly: Rgb;
+  /** Sunlight that a crest lets through, per metre of its height. */
+  crest: Rgb;
+}
+
+export function waterOpticsOf(type: WaterTypeName): WaterOptics {
+  const { absorption, backscattering, realPerModelLength = kRealPerModelLength } = kProperties[type];
+  const of = (value: (a: number, b: number) => number): Rgb => [0, 1, 2].map((i) => value(absorption[i]!, backscattering[i]!)) as unknown as Rgb;
+  return {
+    lossPerM: of((a, b) => realPerModelLength * (a + b)),
+    scattered: of((a, b) => (kExposure * kReflectancePerRatio * b) / (a + b)),
+    bubbly: of((a, b) => (kBubblesShare * (b + kBubblesPerM)) / (a + b + kBubblesPerM)),
+    crest: of((a) => kCrestShare * Math.exp(-kRealPerModelLength * a * kCrestM)),
+  };
+}
