@@ -7,8 +7,8 @@ command_gallery() {
 usage: ./dev gallery [pictures] [--scenes A,B] [--lights A,B] [--qualities low,high] [--update]
        ./dev gallery readme|class|animation|tour|all [--qualities low|high]
 
-pictures   one of every shipped scene at a fixed tick in every light at low quality, and at noon at high quality (the harbor in
-           every light), into build/gallery; compares each with the one in tests/browser/gallery/kept, and makes a contact
+pictures   one of every shipped scene as it is seen first, at a fixed tick, at low and high quality (the harbor in every light),
+           into build/gallery; compares each with the one in tests/browser/gallery/kept, and makes a contact
            sheet (index.html, contact_sheet.png). --update keeps the new ones. Fails when one differs.
 readme     web-client/screenshots/SCENE.webp, the pictures in the README
 class      web-client/screenshots/class_*.webp, the pictures in docs/class.md

@@ -157,7 +157,7 @@ std::shared_ptr<const StaticFile> StaticFiles::read(const std::string& relative,
 }
 
 std::string contentType(std::string_view file_name) {
-  constexpr std::array<std::pair<std::string_view, std::string_view>, 16> kTypes{{
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 17> kTypes{{
       {".html", "text/html; charset=utf-8"},
       {".js", "text/javascript; charset=utf-8"},
       {".mjs", "text/javascript; charset=utf-8"},
@@ -167,6 +167,7 @@ std::string contentType(std::string_view file_name) {
       {".wasm", "application/wasm"},
       {".svg", "image/svg+xml"},
       {".png", "image/png"},
+      {".webp", "image/webp"},
       {".jpg", "image/jpeg"},
       {".jpeg", "image/jpeg"},
       {".ico", "image/vnd.microsoft.icon"},

@@ -98,6 +98,31 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await page.close();
   });
 
+  it("shows a still of a shipped scene until the water is drawn", slow, async () => {
+    const shipped = await startServer(0, ["--scene", "still_pool"]);
+    try {
+      await open("about:blank");
+      // The page's own code waits.
+      let release;
+      const held = new Promise((resolve) => (release = resolve));
+      await page.route(/water_page-.*\.js$/, async (route) => {
+        await held;
+        await route.continue();
+      });
+      await page.goto(`${shipped.url}?quality=minimal`, { timeout: WAIT_MS });
+      const poster = page.locator("#poster");
+      await poster.waitFor({ state: "visible", timeout: WAIT_MS });
+      assert.ok((await poster.evaluate((image) => image.naturalWidth)) > 100);
+      release();
+      await waitFor("a picture of the water", (stats) => stats.shownTimeS !== null);
+      await poster.waitFor({ state: "detached", timeout: WAIT_MS });
+      assert.deepEqual(complaints, []);
+    } finally {
+      await page.close();
+      await shipped.stop("SIGTERM");
+    }
+  });
+
   it("of a missing room links the existing rooms", slow, async () => {
     await open(`${server.url}?quality=minimal&room=nope`);
     await waitFor("a refusal", (stats) => stats.connectionState === "refused: there is no room nope");

@@ -1,5 +1,5 @@
-// Pictures of the page at low quality against the kept ones: every shipped scene at noon, the harbor in every light. `./dev gallery` makes
-// them in every light and at high quality, and keeps new ones (docs/contributing.md).
+// Pictures of the page at low quality against the kept ones: every shipped scene as it is seen first, the harbor in every light. `./dev
+// gallery` makes them at high quality, too, and keeps new ones (docs/contributing.md).
 import assert from "node:assert/strict";
 import { existsSync, readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ import { executable, kChromiumArgs } from "./chromium.mjs";
 import { compare, described } from "./gallery/compare.mjs";
 import { DrivenPage } from "./gallery/driven_page.mjs";
 import { check, differencePath, kFile, keptPath, kKept, madePath, makePictures, nameOf } from "./gallery/pictures.mjs";
-import { fewLightsOf, kSize, sceneOf, setUp, shippedScenes, shotOf } from "./gallery/shots.mjs";
+import { lightsOf, kSize, sceneOf, setUp, shippedScenes, shotOf } from "./gallery/shots.mjs";
 
 const kWaitMs = 600_000;
 const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
@@ -52,7 +52,7 @@ describe("pictures of the shipped scenes", { concurrency: 1, skip }, () => {
   for (const scene of shippedScenes())
     it(`${scene} looks as kept`, { timeout: kWaitMs }, async () => {
       const different = [];
-      for await (const { name, file } of makePictures(context, { scene, quality: "low", lights: fewLightsOf(scene) })) {
+      for await (const { name, file } of makePictures(context, { scene, quality: "low", lights: lightsOf(scene) })) {
         const difference = await check(scratch, name, file);
         if (!difference) different.push(`${name}: none is kept; look at ${madePath(name)}, then run ./dev gallery --update`);
         else if (!difference.isLike) different.push(`${name}: ${described(difference)}\n  made ${madePath(name)}\n  kept ${keptPath(name)}\n  places ${differencePath(name)}`);

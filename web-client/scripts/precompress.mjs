@@ -1,5 +1,5 @@
 // Compresses the built page: writes FILE.br and FILE.gz beside each file of dist that becomes smaller, which the server sends instead
-// (server/http/include/spindrift/http/static_files.h). Prints the bytes of the page in each coding.
+// (server/http/include/spindrift/http/static_files.h). Prints the bytes of the page in each coding, without the stills of scenes, of which it loads one.
 import { readdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
@@ -16,6 +16,7 @@ for (const entry of readdirSync(dist, { recursive: true, withFileTypes: true }))
   const file = path.join(entry.parentPath, entry.name);
   if (!entry.isFile() || Object.keys(kCodings).includes(path.extname(file))) continue;
   const bytes = readFileSync(file);
+  if (path.extname(file) === ".webp") continue;
   sums.plain += bytes.length;
   for (const [suffix, compress] of Object.entries(kCodings)) {
     const compressed = compress(bytes);

@@ -36,7 +36,7 @@ async function shootPictures(context, { scenes, lights, qualities, isUpdate }) {
   const counts = { made: 0, failed: 0, updated: 0 };
   for (const quality of qualities)
     for (const scene of scenes)
-      for await (const { name, file } of makePictures(context, { scene, quality, lights: lights ?? lightsOf(scene, quality) })) {
+      for await (const { name, file } of makePictures(context, { scene, quality, lights: lights ?? lightsOf(scene) })) {
         ++counts.made;
         const difference = await check(scratch, name, file);
         console.log(`${name}: ${difference ? described(difference) : "none is kept"}`);

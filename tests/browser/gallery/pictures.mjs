@@ -12,11 +12,17 @@ import { kSize, setUp, shotOf } from "./shots.mjs";
 export const kFile = { type: "image/webp", quality: 0.8 };
 export const kKept = fileURLToPath(new URL("kept", import.meta.url));
 export const kMade = join(repository, "build/gallery/pictures");
-/** Entries of the page's list of lights that are not presets. */
-const kNoPresets = ["automatic", "hour"];
+/** Entry of the page's list of lights that is not a preset. */
+const kNoPreset = "hour";
 
 export const nameOf = (quality, scene, light) => `${quality}/${scene}_${light.replaceAll(" ", "_")}`;
-export const keptPath = (name) => join(kKept, `${name}.webp`);
+/** Of a page before its first picture: the first views at high quality are kept there. */
+export const kPosters = join(repository, "web-client/src/posters");
+
+export function keptPath(name) {
+  const scene = /^high\/(\w+)_automatic$/.exec(name)?.[1];
+  return scene ? join(kPosters, `${scene}.webp`) : join(kKept, `${name}.webp`);
+}
 export const madePath = (name) => join(kMade, `${name}.webp`);
 /** Written where a picture differs. */
 export const differencePath = (name) => join(kMade, `${name}_difference.png`);
@@ -31,7 +37,7 @@ export async function* makePictures(context, { scene, quality, lights }) {
   const page = await DrivenPage.open(context, { scene, quality, size: kSize });
   try {
     await setUp(page, shotOf(scene));
-    const presets = (await page.lights()).filter((name) => !kNoPresets.includes(name));
+    const presets = (await page.lights()).filter((name) => name !== kNoPreset);
     for (const light of lights ?? presets) {
       if (!presets.includes(light)) throw new Error(`the page has no light "${light}", but ${presets.join(", ")}`);
       await page.light(light);

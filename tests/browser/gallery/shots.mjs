@@ -1,4 +1,4 @@
-// What the gallery shows: a picture per shipped scene and light preset. A scene that is not listed is shown at kDefault.
+// What the gallery shows: the first view of each shipped scene at a tick. A scene that is not listed is shown at kDefault.
 import { readdirSync } from "node:fs";
 
 import { repository } from "../server.mjs";
@@ -7,14 +7,13 @@ import { repository } from "../server.mjs";
  * @typedef {object} Shot
  * @property {number} tick the water shown
  * @property {number} [historyTicks] before it, for what the page keeps of them: kHistoryTicks unless it is longer
- * @property {{view?: string, eyeM?: number[], targetM?: number[]}} [camera] a view of the page (by default the first one), or a position
  */
 
 /** @type {Shot} */
 const kDefault = { tick: 180 };
 /** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
 const kShots = {
-  beach: { tick: 516, historyTicks: 300, camera: { eyeM: [-1, 3.4, 7.5], targetM: [5.5, 0, -1] } },
+  beach: { tick: 516, historyTicks: 300 },
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
@@ -22,18 +21,18 @@ const kShots = {
   breaking_wave_particles: { tick: 96 },
   breaking_wave_wave: { tick: 120 },
   dam_break: { tick: 84 },
-  flume: { tick: 900, camera: { eyeM: [1.5, 1.7, 4.2], targetM: [4.2, -0.1, 0] } },
-  flotsam: { tick: 300, camera: { eyeM: [2, 2.6, 8.5], targetM: [0, 0, 0] } },
+  flume: { tick: 900 },
+  flotsam: { tick: 300 },
   harbor: { tick: 330 },
-  island: { tick: 540, historyTicks: 300, camera: { eyeM: [9, 4, 13.5], targetM: [0.5, 0, 1] } },
-  kelvin: { tick: 840, camera: { view: "overview" } },
+  island: { tick: 540, historyTicks: 300 },
+  kelvin: { tick: 840 },
   open_water: { tick: 240 },
   particles_only: { tick: 60 },
   pool: { tick: 102 },
-  regatta: { tick: 300, camera: { view: "overview" } },
-  river_mouth: { tick: 780, historyTicks: 300, camera: { eyeM: [-6, 6, 14], targetM: [3, 0, 0] } },
+  regatta: { tick: 300 },
+  river_mouth: { tick: 780, historyTicks: 300 },
   ripple_tank: { tick: 540 },
-  rain_rings: { tick: 420, camera: { eyeM: [0.4, 2.2, 4.6], targetM: [0, 0, 0] } },
+  rain_rings: { tick: 420 },
   splash: { tick: 84 },
   splash_particles: { tick: 84 },
   splash_wave: { tick: 102 },
@@ -63,17 +62,15 @@ export function sceneOf(name) {
 
 export const shotOf = (scene) => kShots[scene] ?? kDefault;
 
-/** Brings a scene to the tick of its picture and places the camera. @param {import("./driven_page.mjs").DrivenPage} page */
-export async function setUp(page, { tick, camera, historyTicks = kHistoryTicks }) {
+/** Brings a scene to the tick of its picture. @param {import("./driven_page.mjs").DrivenPage} page */
+export async function setUp(page, { tick, historyTicks = kHistoryTicks }) {
   await page.skipTo(tick % kStride);
   await page.skipTo(Math.max(tick - historyTicks, tick % kStride));
   await page.showTo(tick, kStride);
-  if (camera) await page.look(camera);
 }
 
-/** At high quality, and in the test part `browser`, only these scenes are shown in every light; the others at noon. */
+/** These are shown in every light, the others in the light of their first view. */
 const kInEveryLight = ["harbor"];
 
 /** Returns the lights of a scene's pictures; undefined: all. */
-export const fewLightsOf = (scene) => (kInEveryLight.includes(scene) ? undefined : ["noon"]);
-export const lightsOf = (scene, quality) => (quality === "low" ? undefined : fewLightsOf(scene));
+export const lightsOf = (scene) => (kInEveryLight.includes(scene) ? undefined : ["automatic"]);

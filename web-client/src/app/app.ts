@@ -38,6 +38,7 @@ import { Display } from "./display";
 import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
+import { removePoster } from "./poster";
 import { SoundControls } from "./sound_controls";
 import { ViewAddress } from "./view_address";
 
@@ -122,6 +123,7 @@ export class App {
         return this.boats.update(atS);
       },
       drawn: (atS) => {
+        if (this.display.scene.shownTimeS !== undefined) removePoster();
         this.showTags(atS);
         this.looks.update(atS);
         this.viewAddress?.update(atS);

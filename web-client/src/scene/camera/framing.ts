@@ -86,6 +86,8 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
 
 /** In a tall free part, a scene's first view shows this share of its length, from so many times steeper. */
 const kFirstTall = { length: 0.55, steep: 1.5 };
+/** Depth of water that it shows, as a share of its length. */
+const kFirstDepth = 0.3;
 
 /** Returns the part of the water that a scene shows first, and the direction to the camera, in a free part of this shape. */
 export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { across: number; up: number }): { box: ViewedBox; backward: Vector3 } {
@@ -94,7 +96,9 @@ export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { acro
   const wideM = first.lengthM > 0 ? first.lengthM * (1 + (kFirstTall.length - 1) * tall) : Math.max(whole.sideM, whole.widthM ?? 0);
   const { headingRad, xM, zM } = first;
   const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.steep - 1) * tall));
-  const { minYM, maxYM } = box;
+  // A part of wide water is seen without its floor.
+  const minYM = Math.max(box.minYM, -kFirstDepth * wideM);
+  const { maxYM } = box;
   return {
     box: { sideM: first.depthM || wideM, widthM: wideM, minYM, maxYM, centreM: { x: xM, z: zM }, turnRad: headingRad },
     backward: new Vector3(-Math.cos(headingRad) * Math.cos(pitchRad), Math.sin(pitchRad), -Math.sin(headingRad) * Math.cos(pitchRad)),

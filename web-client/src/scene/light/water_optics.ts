@@ -29,7 +29,7 @@ const kExposure = 1.5;
 /** Backscattering by the bubbles of broken water, which have no colour (/m), and the share of that light which is seen. */
 const kBubblesPerM = 0.35;
 const kBubblesShare = 0.55;
-/** Light through a crest has gone this far in the water (m), and this share of it goes on to the eye. */
+/** Light through a crest has gone this far in the water (m), and this share of it continues to the eye. */
 const kCrestM = 0.8;
 const kCrestShare = 0.34;
 

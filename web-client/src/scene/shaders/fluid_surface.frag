@@ -90,7 +90,10 @@ void main() {
   // A single drop is a lens: it shows the sky. Foam makes it cloudy; among other particles it is a closed white layer.
   float alone = 1.0 - clamp(through.b / max(through.g, 1e-4), 0.0, 1.0);
   // Foam is white where the noise is above a threshold that falls with the foam, so that a thin sheet stays clear between its threads.
-  float lace = texture(u_noise, (world.xz + world.y * vec2(0.7, -0.4)) / (kLaceRadii * u_radius_m)).r;
+  // Seen along the axis that the surface faces most, so that it is stretched nowhere.
+  vec3 axes = normal * normal * normal * normal;
+  vec3 at = world / (kLaceRadii * u_radius_m);
+  float lace = dot(axes, vec3(texture(u_noise, at.zy).r, texture(u_noise, at.xz).r, texture(u_noise, at.xy).r)) / (axes.x + axes.y + axes.z);
   float strength = 0.85 * smoothstep(0.3, 1.0, foam);
   float threads = smoothstep(1.0 - strength, 1.5 - 0.7 * strength, lace + 0.1);
   float white = mix(threads * (0.5 + 0.4 * foam), 0.35 * foam, alone * raised);

@@ -15,18 +15,19 @@ const kTableReach = 0.35;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
+/** Height of the bar that holds the upper edges of a tank's glass, as a share of its size. */
+const kRimThickness = 0.014;
 /** Bays of a flume's frame along its length, for each of its sizes. */
 const kBayCount = 2;
 /** The size of a long channel is this many of its shorter sides: its glass and frame are not those of a wide tank. */
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kWood: Paint = [0.30, 0.16, 0.075, 0.55];
-const kWoodEdge: Paint = [0.22, 0.11, 0.05, 0.55];
+const kWood: Paint = [0.17, 0.105, 0.062, 0.55];
+const kWoodEdge: Paint = [0.12, 0.07, 0.04, 0.55];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 const kBase: Paint = [0.20, 0.22, 0.24, 0.1];
 const kGlassPaint: Paint = [1, 1, 1, 0];
-const kGlassEdge: Paint = [1, 1, 1, 1];
 
 interface TankSize {
   sideM: number;
@@ -49,13 +50,13 @@ export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "wate
   return { sideM, widthM, heightM: depthM + freeboardM, isFlume: greeting.setting === "flume" };
 }
 
-/** Four panes; their upper edges have the second paint. The floor of the tank is at y = 0. */
+/** Four panes. The floor of the tank is at y = 0. */
 export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferGeometry {
   const thickM = kGlassThickness * sizeM({ sideM, widthM });
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2, widthM / 2];
   const pane = (xM: number, zM: number, halfX: number, halfZ: number): void => {
-    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, kGlassPaint, kGlassEdge);
+    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, kGlassPaint, kGlassPaint);
   };
   pane(0, hz + thickM / 2, hx + thickM, thickM / 2);
   pane(0, -hz - thickM / 2, hx + thickM, thickM / 2);
@@ -64,7 +65,7 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
   return builder.build();
 }
 
-/** What carries the tank: a table, or the frame of a flume. */
+/** What carries the tank, and its rim: a table, or the frame of a flume. */
 export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize): BufferGeometry {
   const longM = sizeM({ sideM, widthM });
   const bayCount = Math.max(Math.round((kBayCount * Math.max(sideM, widthM)) / longM), 1);
@@ -80,6 +81,11 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
     const reachM = kTableReach * longM;
     const tableM = kTableThickness * longM;
     box(0, 0, -bedM - tableM, -bedM, hx + reachM, hz + reachM, kWoodEdge, kWood);
+    const rimM = kRimThickness * longM;
+    for (const side of [-1, 1]) {
+      box(0, side * (hz - thickM / 2), heightM - rimM, heightM, hx, thickM / 2, kSteel);
+      box(side * (hx - thickM / 2), 0, heightM - rimM, heightM, thickM / 2, hz, kSteel);
+    }
     const legM = 0.05 * longM;
     for (const x of [-1, 1])
       for (const z of [-1, 1]) box(x * (hx + reachM - 2 * legM), z * (hz + reachM - 2 * legM), -bedM - tableM - 0.9 * longM, -bedM - tableM, legM, legM, kWoodEdge);
