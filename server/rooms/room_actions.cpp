@@ -54,6 +54,7 @@ RoomActions::Outcome RoomActions::reset(const Command& command) {
   room_.schedule.setIdleDue({});
   room_.time.setSteps(0);
   room_.news.reset = true;
+  room_.news.reset_person_id = command.sender.person_id;
   boatsChanged();
   return {};
 }
@@ -64,6 +65,7 @@ RoomActions::Outcome RoomActions::setPaused(const Command& command) {
   if (auto refused = writeAhead(command)) return refused;
   room_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
   room_.news.state = true;
+  room_.news.state_person_id = command.sender.person_id;
   return {};
 }
 
@@ -71,6 +73,7 @@ RoomActions::Outcome RoomActions::setSpeed(const Command& command) {
   if (auto refused = writeAhead(command)) return refused;
   room_.time.setSpeed(command.message.set_speed().speed());
   room_.news.state = true;
+  room_.news.state_person_id = command.sender.person_id;
   return {};
 }
 

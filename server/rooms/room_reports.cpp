@@ -37,9 +37,9 @@ void RoomReports::tell() {
   const News news = std::exchange(room_.news, {});
   RoomOutlets& outlets = room_.outlets;
   if (news.state || !news.parameters.empty()) publishSnapshot();
-  if (news.state) outlets.timeChanged(room_.self, room_.time.isPaused(), room_.time.speed());
+  if (news.state) outlets.timeChanged(room_.self, room_.time.isPaused(), room_.time.speed(), news.state_person_id);
   for (const auto& [path, value] : news.parameters) outlets.parameterChanged(room_.self, path, value);
-  if (news.reset) outlets.wasReset(room_.self);
+  if (news.reset) outlets.wasReset(room_.self, news.reset_person_id);
   if (!news.recovered.empty()) outlets.hasRecovered(room_.self, news.recovered);
   if (!news.fidelity.empty()) outlets.fidelityChanged(room_.self, news.fidelity);
   if (news.boats) tellBoats();

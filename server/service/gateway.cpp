@@ -95,8 +95,8 @@ void Gateway::sceneChanged(const rooms::Room& room) {
   if (cluster_.audience) cluster_.audience->sceneChanged(room);
 }
 
-void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed) {
-  tell(room, topic::kRoomState, wire::roomState(paused, speed));
+void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) {
+  tell(room, topic::kRoomState, wire::roomState(paused, speed, person_id));
 }
 
 void Gateway::parameterChanged(const rooms::Room& room, const std::string& path, double value) {
@@ -123,8 +123,9 @@ void Gateway::gameChanged(const rooms::Room& room, const v1::Game& game) {
   tell(room, topic::kGame, wire::game(game));
 }
 
-void Gateway::wasReset(const rooms::Room& room) {
-  tell(room, topic::kReset, wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "the scene has started again"));
+void Gateway::wasReset(const rooms::Room& room, std::uint32_t person_id) {
+  tell(room, topic::kReset,
+       wire::roomEvent(v1::ROOM_EVENT_KIND_RESET, room.tick(), "the scene has started again", person_id));
 }
 
 void Gateway::hasRecovered(const rooms::Room& room, const std::string& how) {

@@ -45,10 +45,11 @@ core::SharedBytes parameterChanged(std::string_view path, double value, std::uin
   return messageWith(&v1::ServerMessage::mutable_parameter_changed, std::move(out));
 }
 
-core::SharedBytes roomState(bool paused, double speed) {
+core::SharedBytes roomState(bool paused, double speed, std::uint32_t person_id) {
   v1::RoomState out;
   out.set_paused(paused);
   out.set_speed(speed);
+  out.set_person_id(person_id);
   return messageWith(&v1::ServerMessage::mutable_room_state, std::move(out));
 }
 
@@ -56,11 +57,13 @@ core::SharedBytes boatList(const v1::BoatList& boats) {
   return messageWith(&v1::ServerMessage::mutable_boat_list, boats);
 }
 
-core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text) {
+core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text,
+                            std::uint32_t person_id) {
   v1::RoomEvent out;
   out.set_kind(kind);
   out.set_tick(tick);
   out.set_message(std::string(text));
+  out.set_person_id(person_id);
   return messageWith(&v1::ServerMessage::mutable_room_event, std::move(out));
 }
 

@@ -11,6 +11,7 @@ import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { focusLight } from "./caustics.mjs";
+import { unfolded } from "./panel.mjs";
 import { brightnessAt, colourAt, measure, measureBody, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
@@ -139,7 +140,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok(latency_ms >= 0 && latency_ms < WAIT_MS, `latency ${latency_ms} ms`);
     const particle_count = await shown(page, "particles");
     assert.ok(particle_count > 500 && particle_count < 2000, `${particle_count} particles in a scene that asks for 1024`);
-    assert.match(await page.getByTestId("passes").innerText(), /\d/);
+    assert.match(await page.getByTestId("passes").textContent(), /\d/);
     assert.equal((await statsOf(page)).malformedCount, 0);
   });
 
@@ -169,13 +170,13 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
       await stillWater(page);
       await acknowledged(page, () => page.getByTestId(button).click());
       await waitFor(page, `the surface to move after "${button}"`, (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
-      assert.match(await page.getByTestId("last-ack").innerText(), /\d/);
+      assert.match(await page.getByTestId("last-ack").textContent(), /\d/);
     }
   });
 
   step("makes a swell from another side", async () => {
     await stillWater(page);
-    await page.getByTestId("wave-side").selectOption({ label: "far side (−z)" });
+    await (await unfolded(page.getByTestId("wave-side"))).selectOption({ label: "far side: wall" });
     await page.getByTestId("wave-shape").selectOption({ label: "swell" });
     await acknowledged(page, () => page.getByTestId("wave").click());
     await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
@@ -226,7 +227,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     assert.ok(await other.getByTestId("step").isDisabled(), "a running room can be stepped");
     await waitFor(other, "time to continue", (stats) => stats.simTime > resumed.simTime);
 
-    for (const target of [page, other]) await target.locator("#parameters-box > summary").click();
+    for (const target of [page, other]) await unfolded(target.locator("#parameters"));
     const slider = (target) => target.getByRole("slider", { name: /viscosity/i });
     assert.equal(await slider(other).inputValue(), await slider(page).inputValue());
     await acknowledged(page, () => slider(page).fill("55"));
@@ -239,7 +240,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
   });
 
   step("shows a coarser level when chosen, and the full level again", async () => {
-    await page.getByTestId("detail").selectOption("coarse");
+    await (await unfolded(page.getByTestId("detail"))).selectOption("coarse");
     const coarse = await waitFor(page, "a coarse surface", (stats) => stats.surfaceResolutionCount === 128);
     // A busy machine may have had the coarse level before, for its slow link.
     await waitFor(page, "the coarse water to move on", (stats) => stats.level === "coarse" && stats.levelLimitedBy === "choice" && stats.simTime > coarse.simTime);

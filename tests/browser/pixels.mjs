@@ -3,7 +3,7 @@
 /** Returns a PNG of the middle of the canvas, which no panel covers. */
 export async function shootWater(page) {
   const box = await page.locator("canvas").first().boundingBox();
-  const clip = { x: box.x + box.width * 0.3, y: box.y + box.height * 0.25, width: box.width * 0.4, height: box.height * 0.5 };
+  const clip = { x: box.x + box.width * 0.3, y: box.y + box.height * 0.43, width: box.width * 0.4, height: box.height * 0.32 };
   return page.screenshot({ clip, timeout: 120_000 });
 }
 

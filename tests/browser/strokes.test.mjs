@@ -5,6 +5,7 @@ import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { plugGamepad } from "./gamepad.mjs";
+import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 
@@ -99,7 +100,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("gives the left button back to the view if that is chosen, and keeps the choice", async () => {
-    await desk.getByTestId("drag").selectOption("turn");
+    await (await unfolded(desk.getByTestId("drag"))).selectOption("turn");
     await desk.getByTestId("view-above").click();
     await waitFor(desk, "the view", ({ view }) => view === "above");
     await sleep(1200);
@@ -121,8 +122,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     await desk.waitForFunction(() => document.querySelector(".tool-preview path")?.getAttribute("d").split("M").length === 4, undefined, { timeout: WAIT_MS });
     const wave = waitFor(phone, "the wave in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.03);
     await desk.mouse.up();
-    await waitFor(desk, "the wave to be taken", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
-    assert.match(await desk.getByTestId("toast").textContent(), /Paddle: applied/);
+    const taken = await waitFor(desk, "the wave to be taken", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
+    assert.equal(taken.lastCommand.case, "breakingWave");
     await wave;
     await outline.waitFor({ state: "detached", timeout: WAIT_MS });
   });
@@ -165,15 +166,14 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     const acked = async (what, act) => {
       const { lastAck } = await waitForStill(desk);
       await act();
-      await waitFor(desk, what, (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
-      return desk.getByTestId("toast").textContent();
+      return (await waitFor(desk, what, (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0))).lastCommand;
     };
     await desk.getByTestId("tool-finger").click();
     await desk.locator("#view").focus();
     const middle = await acked("the splash of a key", () => desk.keyboard.press("Enter"));
-    assert.match(middle, /Splash at/);
+    assert.equal(middle.case, "splash");
     await desk.keyboard.press("3");
-    assert.match(await acked("the paddle of a key", () => desk.keyboard.press("Enter")), /Paddle: applied/);
+    assert.equal((await acked("the paddle of a key", () => desk.keyboard.press("Enter"))).case, "breakingWave");
 
     const press = await plugGamepad(desk);
     await press(4);
@@ -185,8 +185,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     await sleep(500);
     await desk.evaluate(() => (window.pad.axes[0] = 0));
     const moved = await acked("the splash of the gamepad", () => press(0));
-    assert.match(moved, /Splash at/);
-    assert.notEqual(moved.match(/at ([-\d.]+)/)[1], middle.match(/at ([-\d.]+)/)[1], "the cursor moved");
+    assert.equal(moved.case, "splash");
+    assert.ok(Math.abs(moved.value.xM - middle.value.xM) > 0.1, "the cursor moved");
     await desk.evaluate(() => (navigator.getGamepads = () => []));
   });
 

@@ -124,7 +124,7 @@ TEST_F(WaveCommands, CommandWithoutAnActionIsRejected) {
   EXPECT_TRUE(one.apply(splash()));
 }
 
-TEST_F(WaveCommands, PauseAndResumeAreSentToAllClients) {
+TEST_F(WaveCommands, PauseAndResumeAreSentToAllClientsWithThePersonWhoCausedThem) {
   ScriptedClient one = client();
   ScriptedClient two = client();
   ASSERT_TRUE(one.apply(setPaused(true)));
@@ -133,12 +133,14 @@ TEST_F(WaveCommands, PauseAndResumeAreSentToAllClients) {
     ASSERT_TRUE(state);
     EXPECT_TRUE(state->room_state().paused());
     EXPECT_EQ(state->room_state().speed(), 1.0);
+    EXPECT_EQ(state->room_state().person_id(), one.welcome().person_id());
   }
   ASSERT_TRUE(two.apply(setPaused(false)));
   for (ScriptedClient* each : {&one, &two}) {
     const auto state = each->waitFor(v1::ServerMessage::kRoomState);
     ASSERT_TRUE(state);
     EXPECT_FALSE(state->room_state().paused());
+    EXPECT_EQ(state->room_state().person_id(), two.welcome().person_id());
   }
 }
 

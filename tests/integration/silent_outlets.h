@@ -7,14 +7,14 @@ namespace spindrift::test {
 
 struct SilentOutlets : rooms::RoomOutlets {
   void sceneChanged(const rooms::Room&) override {}
-  void timeChanged(const rooms::Room&, bool, double) override {}
+  void timeChanged(const rooms::Room&, bool, double, std::uint32_t) override {}
   void parameterChanged(const rooms::Room&, const std::string&, double) override {}
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
   void strokesChanged(const rooms::Room&, const v1::Strokes&) override {}
   void lessonChanged(const rooms::Room&, const v1::Lesson&) override {}
   void gameChanged(const rooms::Room&, const v1::Game&) override {}
-  void wasReset(const rooms::Room&) override {}
+  void wasReset(const rooms::Room&, std::uint32_t) override {}
   void fidelityChanged(const rooms::Room&, const std::string&) override {}
   void hasRecovered(const rooms::Room&, const std::string&) override {}
   void closed(const rooms::Room&) override {}

@@ -9,7 +9,7 @@ import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
 import type { MadeRenderer } from "../scene/drawing/renderer";
-import { BoatPanel, kHelmLabel } from "../ui/boat_panel";
+import { BoatPanel } from "../ui/boat_panel";
 import { BoatTags } from "../ui/boat_tags";
 import { CourseTags } from "../ui/course_tags";
 import { addDetailRow } from "../ui/detail_row";
@@ -19,15 +19,15 @@ import { EffectsPanel } from "../ui/effects_panel";
 import { nextMarkOf } from "../ui/game_texts";
 import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
-import { kHoldLabel } from "../ui/hold_sender";
 import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
 import { addLightRows, lightOf } from "../ui/light_rows";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
 import { QualityRow } from "../ui/quality_row";
+import { RoomNews } from "../ui/room_news";
 import { RoomPanel } from "../ui/room_panel";
-import { kStrokeLabel } from "../ui/stroke_sender";
+import { kTexts } from "../ui/texts";
 import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
@@ -38,18 +38,12 @@ import { Display } from "./display";
 import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
+import { PictureControls } from "./picture_controls";
 import { removePoster } from "./poster";
 import { SoundControls } from "./sound_controls";
 import { ViewAddress } from "./view_address";
 
-/** Shown where the server sends no text. */
-const kRoomEventTexts = { recovered: "The water was put back to its last good state.", reset: "The scene was started again.", fidelity: "The water continues at another fidelity.", other: "Something happened in the room." };
-
 const kNextMarkColor = "#ffe14d";
-const kNotNowText = "The lesson does not allow this at present.";
-
-/** Labels of commands that are sent many times per second, whose answers are not reported unless they are refusals. */
-const kQuietLabels = [kHelmLabel, kStrokeLabel, kHoldLabel];
 
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {
@@ -68,6 +62,7 @@ export class App {
   readonly room = new RoomPanel(this.commands.send);
   readonly haptics = new Haptics();
   readonly sound: SoundControls;
+  private readonly pictures: PictureControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
   private readonly viewAddress: ViewAddress | undefined;
@@ -81,6 +76,12 @@ export class App {
 
   private readonly hud = new Hud();
   private readonly toast = new Toast(byId("toast"));
+  private readonly news = new RoomNews({
+    say: (text, tone) => this.toast.show(text, tone),
+    nameOf: (personId) => this.lessons.personOf(personId)?.name,
+    ownId: () => this.lessons.ownId,
+    isChanging: () => this.room.isChanging,
+  });
   private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
@@ -128,11 +129,13 @@ export class App {
         this.looks.update(atS);
         this.viewAddress?.update(atS);
         this.sound.update();
+        this.pictures.drawn();
         this.haptics.follow(this.display.scene, this.entered, this.boats.mineId);
       },
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
+    this.pictures = new PictureControls(this.display, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     // A projector's camera moves by itself.
@@ -217,22 +220,25 @@ export class App {
         this.lastAck = { commandId, appliedTick };
         this.hud.acked(commandId, appliedTick);
         for (const listener of this.answerListeners) listener.ack(commandId, boatId);
-        const label = this.commands.takeLabel(commandId);
-        if (!kQuietLabels.includes(label)) this.toast.show(`${label}: applied at tick ${appliedTick}`, "good");
+        this.commands.takeLabel(commandId);
       },
       reject: ({ reason, message, ...reject }) => {
         const commandId = Number(reject.commandId);
         for (const listener of this.answerListeners) listener.reject(commandId, message, reason);
         const label = this.commands.takeLabel(commandId);
         // What the lesson forbids is a rule, no failure of a command.
-        this.toast.show(reason === "NOT_NOW" ? message || kNotNowText : `${label}: ${message}`, "bad");
+        this.toast.show(reason === "NOT_NOW" ? message || kTexts.notNow : kTexts.failed(label, message), "bad");
       },
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
         this.display.scene.setParameter(path, value);
         if (path === "wave.depth_m" && this.entered?.hasBed) this.ground.ask(this.entered.room);
       },
-      roomState: ({ paused, speed }) => this.room.roomState(paused, speed),
+      roomState: (state) => {
+        this.room.roomState(state.paused, state.speed);
+        this.hud.paused(state.paused);
+        this.news.state(state);
+      },
       people: ({ people, unlistedCount }) => {
         this.people.setPeople(people, unlistedCount);
         this.boats.setPeople(people);
@@ -252,11 +258,8 @@ export class App {
         this.boats.setBoats(boats);
         this.tags.setBoats(boats);
       },
-      draining: ({ draining }) => this.toast.show(draining.goTo === "" ? "the server restarts, reconnecting" : "moving to another server, reconnecting", "warn"),
-      roomEvent: ({ event, message }) => {
-        if (event === "reset" && this.entered?.repeats) return;
-        this.toast.show(message || kRoomEventTexts[event], event === "recovered" || event === "fidelity" ? "warn" : "good");
-      },
+      draining: ({ draining }) => this.toast.show(draining.goTo === "" ? kTexts.restarts : kTexts.moves, "warn"),
+      roomEvent: (event) => this.news.event(event),
       clock: ({ leadS }) => this.display.scene.clock.sync(leadS + performance.timeOrigin / 1000),
       stats: ({ stats, supersededCount }) => {
         this.link = stats;
@@ -278,7 +281,10 @@ export class App {
     setText(byId("description"), greeting.description);
     document.title = `${greeting.title} – Spindrift`;
     this.hud.enter(greeting);
+    this.hud.paused(greeting.paused);
+    this.news.enter(greeting);
     this.room.enter(greeting);
+    this.pictures.enter(greeting);
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
     this.marks.enter(greeting.course);

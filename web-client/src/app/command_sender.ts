@@ -3,6 +3,8 @@ import type { CommandAction } from "../net/messages";
 import type { WaterClient } from "../net/water_client";
 
 export class CommandSender {
+  /** The newest one, for tests. */
+  last: CommandAction | undefined;
   private readonly labels = new Map<number, string>();
 
   constructor(private readonly client: WaterClient) {}
@@ -11,6 +13,7 @@ export class CommandSender {
   readonly send = (action: CommandAction | undefined, label: string): number => {
     if (!action) return 0;
     const commandId = this.client.command(action);
+    this.last = action;
     this.labels.set(commandId, label);
     return commandId;
   };

@@ -159,6 +159,16 @@ export class Display {
     return Object.fromEntries([...sumsMs].map(([name, sumMs]) => [name, sumMs / picturesCount]));
   }
 
+  /** Draws a picture with all pixels of the screen for `read`, which may read the canvas until it returns. */
+  drawInFull(read: (canvas: HTMLCanvasElement) => void): void {
+    this.renderer.setPixelRatio(window.devicePixelRatio || 1);
+    this.scene.render(nowS());
+    read(this.canvas);
+    this.resize();
+    // A canvas is empty after it has changed its size.
+    this.scene.render(nowS());
+  }
+
   /** Draws one picture at the time of the pictures' clock. */
   draw(): void {
     const now = nowS();

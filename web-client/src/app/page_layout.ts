@@ -1,40 +1,60 @@
-// The panel: open or closed, and which part of the canvas it leaves free.
+// The panel: open or closed, and which part of the canvas it leaves free. On narrow screens it is a sheet at the lower edge, of which the
+// handle and what one does most stay when it is closed.
 import type { PixelRect } from "../scene/camera/framing";
 import { byId } from "../ui/dom";
+import { Sheet } from "./sheet";
 
 /** As in style.css: below this width the panel is a sheet at the bottom. */
 const kNarrowPx = 760;
+/** In a lower window the panel would cover most of the water, so it is closed at first. */
+const kLowPx = 480;
+
+const isNarrow = (): boolean => window.innerWidth <= kNarrowPx;
 
 export class PageLayout {
   private readonly toggle = byId("panel-toggle");
+  private readonly panel = byId("panel");
+  private readonly sheet: Sheet;
 
   /** `changed`: the free part of the canvas may have changed. */
   constructor(private readonly changed: () => void) {
+    this.sheet = new Sheet(this.toggle, this.panel, {
+      isSheet: isNarrow,
+      isOpen: () => this.isPanelOpen,
+      settle: (isOpen) => {
+        this.setPanelOpen(isOpen);
+        this.changed();
+      },
+    });
     this.toggle.addEventListener("click", () => {
       this.setPanelOpen(!this.isPanelOpen);
       this.changed();
     });
-    this.setPanelOpen(window.innerWidth > kNarrowPx);
+    this.setPanelOpen(!isNarrow() && window.innerHeight > kLowPx);
+    // What floats over the sheet keeps its distance; the height follows from what the scene and the role allow.
+    new ResizeObserver(() => {
+      document.documentElement.style.setProperty("--sheet", `${this.panel.offsetHeight}px`);
+      if (isNarrow() && !this.sheet.isDragged) this.changed();
+    }).observe(this.panel);
   }
 
   /** The part that card and panel leave free: beside and below them, on narrow screens between them. */
   freePart(): PixelRect {
-    const isNarrow = window.innerWidth <= kNarrowPx;
-    const panel = byId("panel").getBoundingClientRect();
+    const panel = this.panel.getBoundingClientRect();
     const card = byId("card").getBoundingClientRect();
+    const isShown = panel.height > 0;
     return {
       leftPx: 0,
       // The far side of the water looks narrow, so the card's corner may overlap the free part a little.
-      topPx: isNarrow ? card.bottom : 0.7 * card.bottom,
-      rightPx: this.isPanelOpen && !isNarrow ? panel.left : window.innerWidth,
-      bottomPx: this.isPanelOpen && isNarrow ? panel.top : window.innerHeight,
+      topPx: isNarrow() ? card.bottom : 0.7 * card.bottom,
+      rightPx: isShown && !isNarrow() ? panel.left : window.innerWidth,
+      bottomPx: isShown && isNarrow() ? panel.top : window.innerHeight,
     };
   }
 
   /** The parts of the page that card, panel and the buttons beside it cover. */
   covered(): PixelRect[] {
-    const elements = ["card", "panel-toggle", "sound-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
-    return elements.map((id) => {
+    return ["card", "actions", "panel"].map((id) => {
       const { left, top, right, bottom } = byId(id).getBoundingClientRect();
       return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };
     });

@@ -7,7 +7,6 @@ import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from
 import { floaterLabel } from "../ui/floater_rows";
 import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
 import { kTapMs, TapDetector, type PointerSample } from "../ui/tap";
-import { formatBy } from "../ui/dom";
 import { lessonToolOf } from "../ui/lesson_state";
 import type { Outline } from "../ui/tool_preview";
 import { heldRatio, kTapStrokeS, paddleWave, paddleWidthM, strokeSize, type StrokeSize, type Tool, type ToolScale, type WaterPlace } from "../ui/tools";
@@ -19,8 +18,6 @@ import { rayAt } from "./pointer_ray";
 /** Two fingers that come down within this time are a gesture of the camera. */
 const kTogetherMs = 150;
 const kOutlineColor = "#ffffff";
-/** In water narrower than this a place is said to the centimetre. */
-const kFineSideM = 3;
 
 /** A pointer that began on the water. */
 interface Hand {
@@ -200,8 +197,8 @@ export class PointerHands {
 
   private splash(place: WaterPlace, scale: ToolScale | undefined, by: PointerEvent): void {
     if (this.app.mayDraw) this.app.haptics.feel("splash", by);
-    const stepM = (this.app.entered?.waterExtents.sideM ?? 0) < kFineSideM ? 0.01 : 0.1;
-    this.app.commands.send(this.app.effects.splashAt(place, scale), `Splash at ${formatBy(stepM, place.xM)}, ${formatBy(stepM, place.zM)} m`);
+    this.app.commands.send(this.app.effects.splashAt(place, scale), "Splash");
+    this.app.tools.wasUsed();
   }
 
   private letGo(event: PointerEvent, isCancelled = false): void {

@@ -45,7 +45,7 @@ export function openProjector(app: App): void {
 function wakeControls(): void {
   let timer = 0;
   const rest = (): void => {
-    if (document.querySelector("#panel:hover, #tools:hover, #panel :focus-visible")) timer = window.setTimeout(rest, kAwakeMs);
+    if (document.querySelector("#panel:hover, #actions:hover, #tools:hover, #panel :focus-visible")) timer = window.setTimeout(rest, kAwakeMs);
     else document.body.classList.remove("awake");
   };
   const wake = (): void => {

@@ -45,6 +45,7 @@ function stats(app: App) {
     surfaceTimeS: surface?.timeS ?? null,
     shownTimeS: scene.shownTimeS ?? null,
     lastAck: app.lastAck,
+    lastCommand: app.commands.last ?? null,
     minElevationM: range?.minM ?? null,
     maxElevationM: range?.maxM ?? null,
     connectionState: describeState(app.state),

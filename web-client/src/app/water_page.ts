@@ -34,7 +34,7 @@ function openOperatorPanel(app: App): void {
     if (isAsked || app.role !== "operator") return;
     isAsked = true;
     void import("../class/operator_panel").then(({ OperatorPanel }) => {
-      byId("people-box").before(new OperatorPanel(app.lessons, () => app.entered, app.commands.send).element);
+      byId("room-box").after(new OperatorPanel(app.lessons, () => app.entered, app.commands.send).element);
     });
   });
 }

@@ -29,12 +29,12 @@ const kReaders = {
   reject: ({ commandId, reason, field, message }) => ({ commandId, reason: RejectReason[reason] ?? `${reason}`, field, message }),
   parameterChanged: ({ path, value, appliedTick }) =>
     Number.isFinite(value) ? { path, value, appliedTick } : malformed(`parameter ${path} is ${value}`),
-  roomState: ({ paused, speed }) => ({ paused, speed }),
+  roomState: ({ paused, speed, personId }) => ({ paused, speed, personId }),
   boatList: (list) => {
     const boats = readBoatList(list);
     return typeof boats === "string" ? malformed(boats) : { boats };
   },
-  roomEvent: ({ kind, tick, message }) => ({ event: roomEventName(kind), tick, message }),
+  roomEvent: ({ kind, tick, message, personId }) => ({ event: roomEventName(kind), tick, message, personId }),
   welcome: (welcome) => ({ welcome: readWelcome(welcome) }),
   people: (people) => ({ people: readPeople(people), unlistedCount: people.unlistedCount }),
   strokes: (strokes) => readStrokes(strokes),

@@ -15,7 +15,7 @@ import { spawnPlace } from "./spawn_place";
 /** At most 20 helm commands per second. */
 const kHelmEveryMs = 50;
 /** Label of the helm's commands. */
-export const kHelmLabel = "Helm";
+const kHelmLabel = "Helm";
 /** Length of a boat whose hull is not known yet. */
 const kUnknownLengthM = 2;
 
@@ -87,7 +87,7 @@ export class BoatPanel {
   enter(greeting: GreetingInfo): void {
     this.greeting = greeting;
     this.limits = boatLimits(greeting);
-    this.root.hidden = !this.limits;
+    this.root.hidden = this.spawn.hidden = !this.limits;
     if (this.limits) this.showRows(this.limits);
     this.setBoats(this.limits ? greeting.boats : []);
     this.setLive(true);
@@ -268,6 +268,7 @@ export class BoatPanel {
     this.mine.disabled = !isOn || open.length === 0;
     this.spawn.disabled = !isOn;
     this.remove.disabled = !hasMine;
+    byId("helm").hidden = this.remove.hidden = this.mineId === 0;
     if (!this.rows) return;
     this.rows.throttle.disabled = this.rows.rudder.disabled = !hasMine;
     this.rows.length.disabled = !isOn;

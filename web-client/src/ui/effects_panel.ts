@@ -1,11 +1,14 @@
 // The effect sliders, the buttons for a splash and a wave, and the commands that they send.
 import type { GreetingInfo } from "../codec/greeting";
+import type { SideName } from "../codec/scene_info";
 import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { byId } from "./dom";
 import { effectLimits, keptValue, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";
+import { sidesOf } from "./side_names";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 import { splashOf, type ToolScale, type WaterPlace } from "./tools";
 
 type EffectKey = keyof EffectLimits;
@@ -18,15 +21,9 @@ const kHelp: Record<EffectKey, string> = {
   waveDirectionDeg: "Direction in which the wave travels: 0 is +x, 90 is +z.",
 };
 /** The server decides. */
-const kOpenSide: Choice = { value: String(Side.UNSPECIFIED), label: "the open side" };
-const kSides: readonly Choice[] = [
-  kOpenSide,
-  { value: String(Side.PLUS_X), label: "right side (+x)" },
-  { value: String(Side.MINUS_X), label: "left side (−x)" },
-  { value: String(Side.PLUS_Z), label: "near side (+z)" },
-  { value: String(Side.MINUS_Z), label: "far side (−z)" },
-  { value: String(Side.DIRECTION), label: "a direction" },
-];
+const kOpenSide: Choice = { value: String(Side.UNSPECIFIED), label: kTexts.openSide };
+const kDirection: Choice = { value: String(Side.DIRECTION), label: kTexts.direction };
+const kSides: Record<SideName, Side> = { "+x": Side.PLUS_X, "-x": Side.MINUS_X, "+z": Side.PLUS_Z, "-z": Side.MINUS_Z };
 const kShapes: readonly Choice[] = [
   { value: String(WaveShape.BREAKING), label: "breaking" },
   { value: String(WaveShape.SWELL), label: "swell" },
@@ -40,7 +37,7 @@ export class EffectsPanel {
   private readonly shape = new SelectRow("wave-shape", "Wave shape", "Breaking: a steep front. Swell: a symmetric crest.", () => {});
 
   constructor(private readonly root: HTMLElement) {
-    this.side.setChoices(kSides, kOpenSide.value);
+    this.side.setChoices([kOpenSide], kOpenSide.value);
     this.shape.setChoices(kShapes, kShapes[0]!.value);
   }
 
@@ -53,6 +50,8 @@ export class EffectsPanel {
       this.values = undefined;
       return;
     }
+    const sides = sidesOf(greeting).map(({ side, what, where }) => ({ value: String(kSides[side]), label: kTexts.side(what, where) }));
+    this.side.setChoices([kOpenSide, ...sides, kDirection], this.side.value);
     const before = this.values;
     this.values = { splashRadiusM: 0, splashDepthM: 0, waveAmplitudeM: 0, waveLengthM: 0, waveDirectionDeg: 0 };
     for (const key of kKeys) {

@@ -12,9 +12,10 @@ const kHelp = "How finely the water is simulated, for everybody in the room. The
 
 export class FidelityRow {
   readonly element: HTMLElement;
+  /** A note where the machine cannot keep up; empty and hidden where it can. */
+  readonly pace = make("p", { class: "hint trouble", "data-testid": "pace", role: "status", hidden: "" });
   private readonly row: SelectRow;
   private readonly cost = make("p", { class: "hint", "data-testid": "fidelity-cost" });
-  private readonly pace = make("p", { class: "hint trouble", "data-testid": "pace", role: "status", hidden: "" });
   private readonly table = make("table", { "data-testid": "fidelity-table" });
   private readonly costs = make("details", { class: "costs" }, [make("summary", {}, ["What each level costs"]), this.table]);
   private readonly watch = new PaceWatch();
@@ -34,7 +35,7 @@ export class FidelityRow {
       kFidelities.map(({ name }) => ({ value: name, label: name })),
       this.level,
     );
-    this.element = make("div", {}, [this.row.element, this.cost, this.pace, this.costs]);
+    this.element = make("div", {}, [this.row.element, this.cost, this.costs]);
   }
 
   enter(greeting: GreetingInfo): void {
@@ -42,7 +43,6 @@ export class FidelityRow {
     this.level = greeting.fidelity;
     this.levels = greeting.fidelityLevels;
     this.speed = greeting.speed;
-    this.changeId = 0;
     this.watch.forget();
     this.showPace("");
     // A scene that the server does not list cannot be loaded again at another level.
@@ -67,13 +67,20 @@ export class FidelityRow {
 
   /** The greeting of the new water comes before its ack. */
   ack(commandId: number): void {
-    if (commandId === this.changeId) this.show();
+    if (commandId !== this.changeId) return;
+    this.changeId = 0;
+    this.show();
   }
 
   reject(commandId: number, message: string): void {
     if (commandId !== this.changeId) return;
+    this.changeId = 0;
     this.show();
     setText(this.cost, message);
+  }
+
+  get isChanging(): boolean {
+    return this.changeId !== 0;
   }
 
   private show(): void {

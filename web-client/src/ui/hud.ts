@@ -4,6 +4,7 @@ import type { DiagnosticsInfo } from "../codec/parse";
 import type { ConnectionState, LinkStats } from "../net/messages";
 import { byId, make, setText } from "./dom";
 import { showRooms } from "./room_links";
+import { kTexts } from "./texts";
 
 export function describeState(state: ConnectionState): string {
   switch (state.name) {
@@ -40,6 +41,8 @@ export class Hud {
   private readonly lastAck = byId("last-ack");
   private readonly passes = byId("passes");
   private readonly health = byId("health");
+  private shown: ConnectionState = { name: "connecting" };
+  private isPaused = false;
 
   /** Shows only the rows that this room has values for. */
   enter(greeting: GreetingInfo): void {
@@ -93,15 +96,27 @@ export class Hud {
   }
 
   connection(state: ConnectionState): void {
-    setText(this.state, describeState(state));
-    this.state.dataset["state"] = state.name;
-    this.state.title = state.name === "retrying" ? state.why : "";
+    this.shown = state;
+    this.showState();
     this.retry.hidden = state.name !== "retrying" && state.name !== "refused";
     showRooms(byId("other-rooms"), state.name === "refused" ? state.rooms : [], location.href);
   }
 
+  paused(isPaused: boolean): void {
+    this.isPaused = isPaused;
+    this.showState();
+  }
+
   acked(commandId: number, appliedTick: number): void {
     setText(this.lastAck, `command ${commandId} at tick ${appliedTick}`);
+  }
+
+  private showState(): void {
+    const { shown: state, isPaused } = this;
+    const isStill = state.name === "live" && isPaused;
+    setText(this.state, isStill ? kTexts.paused : describeState(state));
+    this.state.dataset["state"] = isStill ? "paused" : state.name;
+    this.state.title = state.name === "retrying" ? state.why : "";
   }
 
   private writePasses(d: DiagnosticsInfo): void {

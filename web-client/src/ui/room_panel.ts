@@ -45,7 +45,9 @@ export class RoomPanel {
       this.opening.hidden = false;
     });
     this.fidelity = new FidelityRow(send);
-    byId("room").append(this.scenes.element, this.opening, this.fidelity.element, this.speedRow.element);
+    byId("room").append(this.scenes.element, this.opening, this.fidelity.pace);
+    byId("speed-row").append(this.speedRow.element);
+    byId("fidelity-row").append(this.fidelity.element);
   }
 
   enter(greeting: GreetingInfo): void {
@@ -66,6 +68,7 @@ export class RoomPanel {
   /** `isAllowed`: the role of this page may change the room. */
   setAllowed(isAllowed: boolean): void {
     this.isAllowed = isAllowed;
+    byId("room-box").hidden = !isAllowed;
     this.refresh();
   }
 
@@ -94,7 +97,7 @@ export class RoomPanel {
   ack(commandId: number): void {
     this.speed.ack(commandId);
     this.fidelity.ack(commandId);
-    if (commandId === this.changeId) this.opening.hidden = true;
+    if (commandId === this.changeId) this.changed();
   }
 
   reject(commandId: number, message: string): void {
@@ -102,6 +105,16 @@ export class RoomPanel {
     this.fidelity.reject(commandId, message);
     if (commandId !== this.changeId) return;
     this.scenes.value = this.sceneName;
+    this.changed();
+  }
+
+  /** This page waits for the answer to its own change of scene or fidelity. */
+  get isChanging(): boolean {
+    return this.changeId !== 0 || this.fidelity.isChanging;
+  }
+
+  private changed(): void {
+    this.changeId = 0;
     this.opening.hidden = true;
   }
 }

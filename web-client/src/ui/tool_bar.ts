@@ -3,13 +3,12 @@
 import { byId, isTyping, make, setText } from "./dom";
 import { keepChoice, keptChoice } from "./kept";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 import { kTools, type Tool, type ToolName, type ToolScale } from "./tools";
 
 const kToolKey = "tool";
 const kHintKey = "has-drawn";
 const kHintS = 12;
-/** Of the finger, in scenes with objects. */
-const kMovesObjects = "Drag an object to move it; the wheel or a second finger turns it.";
 const kSizeRange = { label: "Tool size", unit: "%", min: 40, max: 250, step: 5 };
 const kStrengthRange = { label: "Tool strength", unit: "%", min: 20, max: 100, step: 5 };
 
@@ -117,7 +116,9 @@ export class ToolBar {
   }
 
   private get does(): string {
-    return this.current.name === "finger" && this.hasFloaters ? `${this.current.does} ${kMovesObjects}` : this.current.does;
+    if (this.current.name !== "finger" || !this.hasFloaters) return this.current.does;
+    const isTouch = window.matchMedia("(pointer: coarse)").matches;
+    return `${this.current.does} ${isTouch ? kTexts.movesObjectsByTouch : kTexts.movesObjectsByMouse}`;
   }
 
   private showRows(): void {

@@ -33,6 +33,8 @@ struct News {
   bool state = false;  ///< pause or speed
   bool boats = false;
   bool reset = false;
+  std::uint32_t state_person_id = 0;  ///< who changed pause or speed last; 0: nobody in the room
+  std::uint32_t reset_person_id = 0;
   bool lesson = false;
   std::map<std::string, double> parameters{};  ///< current values by path
   std::string recovered{};                     ///< one line for people, after the device failed

@@ -22,7 +22,8 @@ class RoomOutlets {
 
   /// The room's scene was replaced; the snapshot shows the new scene.
   virtual void sceneChanged(const Room& room) = 0;
-  virtual void timeChanged(const Room& room, bool paused, double speed) = 0;
+  /// `person_id`: who paused the room or changed its speed; 0: nobody in the room. The same below.
+  virtual void timeChanged(const Room& room, bool paused, double speed, std::uint32_t person_id) = 0;
   virtual void parameterChanged(const Room& room, const std::string& path, double value) = 0;
   virtual void boatsChanged(const Room& room, const v1::BoatList& boats) = 0;
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;
@@ -32,7 +33,7 @@ class RoomOutlets {
   /// The game as it stands, up to 5 times per second while it runs.
   virtual void gameChanged(const Room& room, const v1::Game& game) = 0;
   /// A client reset the scene to its start.
-  virtual void wasReset(const Room& room) = 0;
+  virtual void wasReset(const Room& room, std::uint32_t person_id) = 0;
   /// The watchdog or a new device restored the water; `how` is one line for people.
   virtual void hasRecovered(const Room& room, const std::string& how) = 0;
   /// The same water continues at another fidelity, after sceneChanged(); `how` is one line for people.

@@ -48,14 +48,14 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   // RoomOutlets interface
   /// Sends a new greeting to all sessions of the room; their subscriptions stay valid.
   void sceneChanged(const rooms::Room& room) override;
-  void timeChanged(const rooms::Room& room, bool paused, double speed) override;
+  void timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
   void strokesChanged(const rooms::Room& room, const v1::Strokes& strokes) override;
   void lessonChanged(const rooms::Room& room, const v1::Lesson& lesson) override;
   void gameChanged(const rooms::Room& room, const v1::Game& game) override;
-  void wasReset(const rooms::Room& room) override;
+  void wasReset(const rooms::Room& room, std::uint32_t person_id) override;
   void hasRecovered(const rooms::Room& room, const std::string& how) override;
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;

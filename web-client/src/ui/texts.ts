@@ -1,0 +1,48 @@
+// Texts of the page for people, in one table, so that a translation replaces this file.
+import type { SideWhat, SideWhere } from "./side_names";
+
+const kSides: Record<SideWhat, string> = { beach: "beach", sea: "open sea", quay: "quay", wall: "wall", end: "open end" };
+
+export const kTexts = {
+  // The card
+  paused: "paused",
+
+  // What others did, as a line over the water
+  somebody: "Somebody",
+  pausedBy: (name: string) => `${name} paused the water.`,
+  resumedBy: (name: string) => `${name} lets the water run again.`,
+  speedBy: (name: string, speed: number) => `${name} set the speed to ${speed} ×.`,
+  startedAgainBy: (name: string) => `${name} started the scene again.`,
+  otherScene: (title: string) => `The scene is now ${title}.`,
+
+  // What the server does by itself
+  restarts: "The server restarts; this page connects again by itself.",
+  moves: "The water moves to another server; this page follows by itself.",
+
+  // What failed
+  notNow: "The lesson does not allow this at present.",
+  failed: (what: string, why: string) => `${what}: ${why}`,
+
+  // The hint of the first visit
+  movesObjectsByMouse: "Drag an object to move it; the wheel turns it.",
+  movesObjectsByTouch: "Drag an object to move it; a second finger turns it.",
+
+  // Picture, film, fullscreen
+  actions: "Picture and sound",
+  fullscreen: "Fullscreen",
+  leaveFullscreen: "Leave fullscreen",
+  picture: "Save a picture",
+  film: (longestS: number) => `Film the water (at most ${longestS} s)`,
+  endFilm: "End the film and save it",
+  fullscreenFailed: (why: string) => `Fullscreen was refused by the browser (${why}).`,
+  pictureFailed: (why: string) => `The picture was not saved (${why}); try again.`,
+  filmNeedsHttps: "Browsers encode films only on pages opened by https:// or from this machine.",
+  filmHasNoCodec: "This browser encodes neither H.264, VP9 nor VP8; try a current Chrome, Edge, Firefox or Safari.",
+  filmFailed: (why: string) => `The film was not saved (${why}); try again.`,
+
+  // Sides of the water
+  /** `where`: as seen from the first view; undefined for the only side of its kind. */
+  side: (what: SideWhat, where: SideWhere | undefined) => (where ? `${where} side: ${kSides[what]}` : kSides[what]),
+  openSide: "the open side",
+  direction: "a direction",
+};
