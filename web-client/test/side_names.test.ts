@@ -19,4 +19,9 @@ describe("names of the sides of the water", () => {
     expect(named({ wave: wave(sides), beaches: [], setting: "flume" })).toEqual(["open end", "left side: wall", "near side: wall", "far side: wall"]);
     expect(named({ wave: undefined, beaches: [], setting: "glassTank" })[0]).toBe("right side: wall");
   });
+
+  it("follow the direction in which the scene is seen first", () => {
+    const firstView = { xM: 0, zM: 0, lengthM: 0, depthM: 0, headingRad: (170 * Math.PI) / 180, pitchRad: 0.3, hour: 12 };
+    expect(named({ wave: undefined, beaches: [], setting: "pool", firstView })).toEqual(["near side: wall", "far side: wall", "left side: wall", "right side: wall"]);
+  });
 });

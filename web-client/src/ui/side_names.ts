@@ -11,7 +11,7 @@ const kRound: readonly SideName[] = ["+x", "+z", "-x", "-z"];
 const kWhere: readonly SideWhere[] = ["far", "right", "near", "left"];
 const kUsualHeadingRad = -Math.PI / 2;
 
-type Surrounded = Pick<GreetingInfo, "wave" | "beaches" | "setting" | "firstView">;
+type Surrounded = Pick<GreetingInfo, "wave" | "beaches" | "setting"> & { firstView?: GreetingInfo["firstView"] };
 
 function whatIsAt(side: SideName, { wave, beaches, setting }: Surrounded): SideWhat {
   if (beaches.some((beach) => beach.side === side)) return "beach";
