@@ -157,7 +157,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const box = await page.locator("canvas").first().boundingBox();
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
     const clicked = await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
-    assert.equal(clicked.view, "above");
+    assert.equal(clicked.view, "start");
     await newestIsDrawn(page);
     const picture = await measure(page, before_click, await shootWater(page));
     // A picture of this run for the report.
@@ -184,7 +184,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
 
   step("hides the boat controls in a scene without boats, and switches views", async () => {
     for (const id of ["boats-box", "view-boat"]) assert.ok(await page.locator(`#${id}`).isHidden(), `#${id} shows in a scene without boats`);
-    for (const view of ["view-overview", "view-side", "view-above"]) {
+    for (const view of ["view-overview", "view-side", "view-start"]) {
       await page.getByTestId(view).click();
       assert.equal(await page.getByTestId(view).getAttribute("aria-pressed"), "true");
     }
@@ -212,9 +212,9 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     }
     const [sky, floor] = await brightnessAt(page, await page.screenshot({ timeout: 120_000 }), pixels);
     assert.ok(sky > 1.2 * floor, `brightness ${sky.toFixed(0)} in the window, ${floor.toFixed(0)} outside it`);
-    await page.getByTestId("view-above").click();
+    await page.getByTestId("view-start").click();
     await page.emulateMedia({ reducedMotion: null });
-    assert.equal((await statsOf(page)).view, "above");
+    assert.equal((await statsOf(page)).view, "start");
   });
 
   step("pauses and resumes the room for every page, and moves the other page's slider", async () => {
@@ -416,7 +416,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     const tank = await openPage("tank", "particles");
     await waitFor(tank, "the particles to rest", (stats) => stats.simTime > 1);
     await acknowledged(tank, () => tank.getByTestId("pause").click());
-    for (const view of ["view-overview", "view-above"]) {
+    for (const view of ["view-overview", "view-start"]) {
       await tank.getByTestId(view).click();
       await waitFor(tank, `the camera to arrive at ${view}`, (stats) => `view-${stats.view}` === view);
       // The camera moves for a second of drawn time, however long a picture takes.

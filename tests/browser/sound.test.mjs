@@ -167,8 +167,8 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     const { sound } = await waitFor(desk, "the sound", () => true);
     await press(9);
     await waitFor(desk, "the sound to change", (stats) => stats.sound.isOn !== sound.isOn);
-    await desk.getByTestId("view-above").click();
-    await waitFor(desk, "the view", (stats) => stats.view === "above");
+    await desk.getByTestId("view-start").click();
+    await waitFor(desk, "the view", (stats) => stats.view === "start");
     await sleep(1200);
     // A press of a slow page is a long one, with which a finger would draw.
     await desk.getByTestId("tool-splash").click();
@@ -214,8 +214,8 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await press(1);
     assert.equal(await chosen(), null);
     await desk.evaluate(() => (navigator.getGamepads = () => []));
-    await desk.getByTestId("view-above").click();
-    await waitFor(desk, "the view", (stats) => stats.view === "above");
+    await desk.getByTestId("view-start").click();
+    await waitFor(desk, "the view", (stats) => stats.view === "start");
     await sleep(1200);
   });
 

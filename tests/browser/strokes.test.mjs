@@ -82,15 +82,15 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("turns the view with the right button, and with the left one where the water ends", async () => {
     await waitForStill(desk);
-    await desk.getByTestId("view-above").click();
-    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await desk.getByTestId("view-start").click();
+    await waitFor(desk, "the view", ({ view }) => view === "start");
     await sleep(1200);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]], "right");
     await desk.mouse.up({ button: "right" });
     const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
     assert.equal(turned.dents, 0);
-    await desk.getByTestId("view-above").click();
-    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await desk.getByTestId("view-start").click();
+    await waitFor(desk, "the view", ({ view }) => view === "start");
     await sleep(1200);
     await desk.mouse.move(12, 300);
     await desk.mouse.down();
@@ -101,8 +101,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("gives the left button back to the view if that is chosen, and keeps the choice", async () => {
     await (await unfolded(desk.getByTestId("drag"))).selectOption("turn");
-    await desk.getByTestId("view-above").click();
-    await waitFor(desk, "the view", ({ view }) => view === "above");
+    await desk.getByTestId("view-start").click();
+    await waitFor(desk, "the view", ({ view }) => view === "start");
     await sleep(1200);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]]);
     await desk.mouse.up();

@@ -62,9 +62,9 @@ describe.each([true, false])("a view, with reduced motion %s", (isStill) => {
 
   it("stays after a click, also of an unsteady hand", () => {
     drag([0, 0]);
-    expect(views.view).toBe("above");
+    expect(views.view).toBe("start");
     drag([4, -3]);
-    expect(views.view).toBe("above");
+    expect(views.view).toBe("start");
     expect(leftCount).toBe(0);
   });
 
@@ -99,7 +99,7 @@ describe.each([true, false])("a view, with reduced motion %s", (isStill) => {
   });
 
   it("stays while the page moves the camera: a click on the way to a view", () => {
-    for (const name of ["side", "overview", "above"] as const) {
+    for (const name of ["side", "overview", "start"] as const) {
       views.go(name, nowS);
       pictures(5);
       drag([0, 0]);
@@ -112,7 +112,7 @@ describe.each([true, false])("a view, with reduced motion %s", (isStill) => {
     views.go("boat", nowS);
     pictures(600, kBoat);
     const behind = camera.position.clone();
-    views.go("above", nowS);
+    views.go("start", nowS);
     pictures(120);
     views.go("boat", nowS);
     drag([0, 0], kBoat);

@@ -172,7 +172,7 @@ export class DrivenPage {
     );
   }
 
-  /** Places the camera at one of the page's views ("above", "side", "overview"), or anywhere, metres. */
+  /** Places the camera at one of the page's views ("start", "side", "overview"), or anywhere, metres. */
   async look({ view, eyeM, targetM }) {
     if (!view) return this.#page.evaluate(([eye, target]) => window.spindrift.stepped.look(eye, target), [eyeM, targetM]);
     await this.#resize(true);

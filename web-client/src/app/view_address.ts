@@ -8,7 +8,7 @@ import { setAddressParameter } from "./address";
 type Place = [number, number, number];
 type AddressView = { view: ViewName } | { eyeM: Place; targetM: Place };
 
-/** Views that a page can begin with; the boat's needs a boat, and "above" is the first one anyway. */
+/** Views that a page can begin with; the boat's needs a boat, and "start" is the first one anyway. */
 const kFirstViews: readonly ViewName[] = ["side", "overview", "below"];
 const kFarthestM = 1e4;
 /** The camera has to rest for so long before the address says where it is. */

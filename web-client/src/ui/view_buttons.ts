@@ -2,7 +2,7 @@
 import type { CameraViews, ViewName } from "../scene/camera/camera_views";
 import { byId } from "./dom";
 
-const kViewNames: readonly ViewName[] = ["above", "side", "overview", "below", "boat"];
+const kViewNames: readonly ViewName[] = ["start", "side", "overview", "below", "boat"];
 
 export class ViewButtons {
   private readonly boat = byId<HTMLButtonElement>("view-boat");

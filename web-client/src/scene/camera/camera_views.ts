@@ -7,12 +7,12 @@ import { CameraHand } from "./camera_hand";
 import { diveView, keepClear, type DiveWater } from "./dive";
 import { firstView, focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
-export type ViewName = "above" | "side" | "boat" | "overview" | "below";
+export type ViewName = "start" | "side" | "boat" | "overview" | "below";
 type FixedView = Exclude<ViewName, "boat">;
 
 /** Direction from the water to the camera. The distance follows from the box to be seen. */
 const kBackward: Record<Exclude<FixedView, "below">, Vector3> = {
-  above: new Vector3(0.43, 0.50, 1.22),
+  start: new Vector3(0.43, 0.50, 1.22),
   side: new Vector3(0.20, 0.13, 1.30),
   overview: new Vector3(-0.30, 1.25, 0.80),
 };
@@ -58,7 +58,7 @@ export class CameraViews {
   private widthPx = 1;
   private heightPx = 1;
   /** The view shown or travelled to; undefined after the user moved the camera. */
-  private framed: ViewName | undefined = "above";
+  private framed: ViewName | undefined = "start";
   /** In the boat's view: the smoothed heading, and whether the user has turned the camera since. */
   private following: { headingRad: number; byHand: boolean; lastS: number } | undefined;
   private readonly scratchM = new Vector3();
@@ -88,7 +88,7 @@ export class CameraViews {
     this.extent = extent;
     this.water = water;
     this.controls.maxPolarAngle = water ? Math.PI - kSteepestRad : Math.PI / 2 - kLowestRad;
-    this.jump("above");
+    this.jump("start");
   }
 
   /** Takes the water's height once it is known. Frames the box again unless the user has turned the camera. */
@@ -178,7 +178,7 @@ export class CameraViews {
     this.turned();
   }
 
-  /** Returns where the camera shows a disc of the water, from the direction of the view from above; one as large as the water is that view. */
+  /** Returns where the camera shows a disc of the water, from the direction of the first view; one as large as the water is that view. */
   frame({ xM, zM, radiusM }: { xM: number; zM: number; radiusM: number }): Placement {
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
     const whole = focusBox(this.extent, tangents);
@@ -192,7 +192,7 @@ export class CameraViews {
       // The bed does not matter for a part of the water.
       minYM: Math.max(whole.minYM, -0.25 * radiusM),
     };
-    return frameBox(box, this.backwardOf("above", tangents), tangents);
+    return frameBox(box, this.backwardOf("start", tangents), tangents);
   }
 
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
@@ -283,9 +283,9 @@ export class CameraViews {
   /** Direction from the water to the camera. */
   private backwardOf(name: Exclude<FixedView, "below">, tangents: { across: number; up: number }): Vector3 {
     const { extent } = this;
-    if (name === "above" && extent.first) return firstView(extent, extent.first, tangents).backward;
+    if (name === "start" && extent.first) return firstView(extent, extent.first, tangents).backward;
     const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
-    if (name === "above") backward.y *= raisedBy(extent, tangents);
+    if (name === "start") backward.y *= raisedBy(extent, tangents);
     if (name === "side") backward.y *= extent.sideRaised ?? 1;
     return backward;
   }
@@ -296,12 +296,13 @@ export class CameraViews {
       this.controls.minDistance = water.nearM;
       return diveView(water, kBelowAhead);
     }
-    if (name === "below") return this.placed("above");
+    if (name === "below") return this.placed("start");
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
-    const box = name === "above" && extent.first ? firstView(extent, extent.first, tangents).box : focusBox(extent, tangents);
+    const box = name === "start" && extent.first ? firstView(extent, extent.first, tangents).box : focusBox(extent, tangents);
     const placement = frameBox(box, this.backwardOf(name, tangents), tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
-    this.controls.minDistance = 0.25 * extent.sideM;
+    // A scene may be seen first from as near as it likes.
+    this.controls.minDistance = Math.min(0.25 * extent.sideM, 0.5 * distanceM);
     this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);
     return placement;
   }

@@ -27,9 +27,9 @@ export interface ViewedBox {
   centreM?: { x: number; z: number };
   /** Angle about the y axis by which the box's sides are turned, from +x toward +z; 0 if left out. */
   turnRad?: number;
-  /** What the scene shows first, instead of the view from above. */
+  /** What the scene shows first, instead of what suits its setting. */
   first?: FirstViewInfo;
-  /** How much higher than usual the view from above looks down in a wide and in a tall free part; the framing's own limits if left out. */
+  /** How much higher than usual the first view looks down in a wide and in a tall free part; the framing's own limits if left out. */
   raised?: { wide: number; tall: number };
   /** How much higher than usual the view from the side looks down, because a rim hides the water from below; 1 if left out. */
   sideRaised?: number;
@@ -68,7 +68,7 @@ function tallness(tangents: { across: number; up: number }): number {
   return clamp((kWideRatio - tangents.across / tangents.up) / (kWideRatio - kTallRatio), 0, 1);
 }
 
-/** Returns the factor by which a view from above is raised in a free part of this shape: a higher camera fills more of a tall one. */
+/** Returns the factor by which a first view is raised in a free part of this shape: a higher camera fills more of a tall one. */
 export function raisedBy(box: ViewedBox, tangents: { across: number; up: number }): number {
   const { wide, tall } = box.raised ?? kRaised;
   return wide + (tall - wide) * tallness(tangents);
