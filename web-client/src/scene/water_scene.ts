@@ -215,14 +215,17 @@ export class WaterScene {
     return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
   }
 
-  /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particle frame. */
+  /** Returns the box that a view shows: the water with room for waves, or the resting particles once a frame tells where the floor is. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, widthM, wave } = this.greeting;
+    const { sideM, widthM, wave, waterExtents } = this.greeting;
     const view = viewOf(this.greeting);
     if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * Math.sqrt(sideM * widthM) };
     const frame = this.frames.particles.newest();
-    return frame && { ...view, sideM, widthM, minYM: frame.minM[1] - frame.radiusM, maxYM: frame.maxM[1] + frame.radiusM };
+    if (!frame) return undefined;
+    // Whatever splashes high at present: the lowest particles lie on the floor.
+    const floorM = frame.minM[1] - frame.radiusM;
+    return { ...view, sideM, widthM, minYM: floorM, maxYM: floorM + waterExtents.depthM };
   }
 
   /** Returns the water into which the camera may dive; undefined: none is deep enough. */
