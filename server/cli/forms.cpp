@@ -117,6 +117,10 @@ CLI::Validator isOrigin() {
   return checkedBy(net::checkOrigin, true);
 }
 
+CLI::Validator isParentOrigin() {
+  return checkedBy(net::checkParentOrigin, true);
+}
+
 CLI::Validator isUrl() {
   return {[](std::string& text) {
             const auto url = net::ClientUrl::parse(text);

@@ -24,6 +24,8 @@ CLI::Validator isNetwork();
 /// Accepts an Origin as browsers send it, or "*" for any: net::checkOrigin(). Removes blanks at its ends; use with
 /// transform().
 CLI::Validator isOrigin();
+/// The same for the Origin of a page that embeds the water: net::checkParentOrigin().
+CLI::Validator isParentOrigin();
 /// ws://HOST[:PORT][/PATH] or wss://HOST[:PORT][/PATH].
 CLI::Validator isUrl();
 /// The same without a path.

@@ -118,6 +118,7 @@ void endThisProcess() {
 net::ServerOptions networkOptions(const FrontOptions& options) {
   net::ServerOptions out;
   out.allowed_origins = options.origins;
+  out.embedding_origins = options.parents;
   out.address = options.address;
   out.port = options.port;
   out.thread_count = options.thread_count;

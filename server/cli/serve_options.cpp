@@ -87,6 +87,12 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
           "',', or repeated")
       ->transform(isOrigin())
       ->delimiter(',');
+  command
+      .add_option("--embed", options.parents,
+                  "Origin of pages that may show the water in a frame, https://HOST; several with ',', or repeated "
+                  "(default: none)")
+      ->transform(isParentOrigin())
+      ->delimiter(',');
 }
 
 void addClusterOptions(CLI::App& command, FrontOptions& options, bool is_required) {

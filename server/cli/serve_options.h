@@ -39,6 +39,7 @@ struct FrontOptions {
   double person_commands_per_s = 200.0;
   std::string audit_file;            ///< empty: no audit log
   std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
+  std::vector<std::string> parents;  ///< Origins of pages that may embed the water
   std::string nats_url;              ///< empty: the process is alone
   std::string nats_ca_file;          ///< empty: the system's certificates
   std::string cluster = "spindrift";

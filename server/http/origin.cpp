@@ -85,6 +85,20 @@ core::Result<void> checkOrigin(const std::string& text) {
       text, "browsers send the scheme of the page, its host, and a port other than the scheme's own; write " + meant);
 }
 
+core::Result<void> checkParentOrigin(const std::string& text) {
+  if (text == "null" || text.find('*') != std::string::npos) {
+    return core::Error{core::ErrorCode::kInvalidInput,
+                       "'" + text +
+                           "' names no page, and a page that embeds the water acts with its visitors' rights: " +
+                           "list the Origin of each, such as https://school.example"};
+  }
+  if (auto checked = checkOrigin(text); !checked) return checked;
+  const std::string_view host = hostOf(text);
+  if (host.empty()) return wrongOrigin(text, "pages that embed the water are at http:// or https://");
+  if (host.starts_with('[')) return wrongOrigin(text, "browsers take no IPv6 address in a frame policy; name the host");
+  return {};
+}
+
 bool isOriginListed(std::string_view origin, std::span<const std::string> allowed) {
   return std::ranges::any_of(allowed, [&](const std::string& known) { return known == "*" || iequals(known, origin); });
 }

@@ -1,4 +1,3 @@
-#include <array>
 #include <optional>
 
 #include <spindrift/http/request.h>
@@ -12,6 +11,9 @@ namespace http = boost::beast::http;
 namespace {
 
 constexpr std::string_view kApiRoot = "/api/";
+/// The web component that shows this server's water in other pages. Browsers load a module of another origin only with
+/// the headers below.
+constexpr std::string_view kElementPath = "/element.js";
 
 bool isApplicationPath(std::string_view path) {
   return path.starts_with(kApiRoot) || path == "/healthz" || path == "/readyz" || path == "/metrics";
@@ -54,7 +56,15 @@ bool matchesEtag(std::string_view list, std::string_view etag) {
   return false;
 }
 
-Reply fileReply(const Request& request, const std::string& path, StaticFiles& files) {
+/// Returns whether the page without panels was asked for, which other pages may embed.
+bool isEmbeddedPage(const RequestTarget& target) {
+  if (target.path != "/") return false;
+  const auto values = queryValues(target.query, "embed");
+  return values && !values->empty();
+}
+
+Reply fileReply(const Request& request, const RequestTarget& target, StaticFiles& files) {
+  const std::string& path = target.path;
   const std::shared_ptr<const StaticFile> file = files.find(path, listOf(request, http::field::accept_encoding));
   if (!file && (path == "/" || path == "/pad")) {
     return textReply(503, "The web client is not built: run ./dev build, then start the server again with --web-root.");
@@ -63,6 +73,11 @@ Reply fileReply(const Request& request, const std::string& path, StaticFiles& fi
   Reply reply;
   reply.headers.emplace_back("ETag", file->etag);
   reply.headers.emplace_back("Vary", "Accept-Encoding");
+  reply.is_embeddable = isEmbeddedPage(target);
+  if (path == kElementPath) {
+    reply.headers.emplace_back("Access-Control-Allow-Origin", "*");
+    reply.headers.emplace_back("Cross-Origin-Resource-Policy", "cross-origin");
+  }
   reply.headers.emplace_back("Cache-Control", file->immutable ? "public, max-age=31536000, immutable" : "no-cache");
   if (matchesEtag(listOf(request, http::field::if_none_match), file->etag)) {
     reply.status = 304;
@@ -149,7 +164,7 @@ std::variant<Reply, RequestTarget> routeRequest(const Request& request, StaticFi
   constexpr std::string_view kAllowed = "GET, HEAD, OPTIONS";
   if (method == "OPTIONS") return optionsReply(kAllowed);
   if (method != "GET" && method != "HEAD") return methodNotAllowed(method, kAllowed);
-  return fileReply(request, target->path, files);
+  return fileReply(request, *target, files);
 }
 
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
@@ -161,19 +176,21 @@ Reply applicationReply(std::string_view path, std::optional<HttpReply> answer) {
           .headers = std::move(answer->headers)};
 }
 
-std::span<const std::pair<std::string_view, std::string_view>> securityHeaders() {
-  static constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kHeaders{{
+std::vector<std::pair<std::string_view, std::string>> securityHeaders(std::span<const std::string> parents) {
+  std::string ancestors;
+  for (const std::string& parent : parents) ancestors += " " + parent;
+  std::vector<std::pair<std::string_view, std::string>> out{
       {"Content-Security-Policy",
        "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; style-src 'self' 'unsafe-inline'; img-src 'self' "
-       "data: blob:; "
-       "worker-src 'self' blob:; connect-src 'self' ws: wss:; frame-ancestors 'none'; base-uri 'none'; form-action "
-       "'none'"},
+       "data: blob:; worker-src 'self' blob:; connect-src 'self' ws: wss:; frame-ancestors" +
+           (parents.empty() ? " 'none'" : ancestors) + "; base-uri 'none'; form-action 'none'"},
       {"X-Content-Type-Options", "nosniff"},
       {"Referrer-Policy", "no-referrer"},
       {"Cross-Origin-Opener-Policy", "same-origin"},
-      {"X-Frame-Options", "DENY"},
-  }};
-  return kHeaders;
+  };
+  // It cannot name origins.
+  if (parents.empty()) out.emplace_back("X-Frame-Options", "DENY");
+  return out;
 }
 
 }  // namespace spindrift::net

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -60,9 +61,12 @@ std::string nameOf(const asio::ip::tcp::endpoint& peer) {
 }
 
 template <typename Fields>
-void fillHead(Fields& response, const Reply& reply, bool keep_alive) {
+void fillHead(Fields& response, const Reply& reply, bool keep_alive, const ServerOptions& options) {
   response.set(http::field::server, "Spindrift");
-  for (const auto& [name, value] : securityHeaders()) response.set(name, value);
+  const std::span<const std::string> parents = options.embedding_origins;
+  for (const auto& [name, value] : securityHeaders(reply.is_embeddable ? parents : parents.first(0))) {
+    response.set(name, value);
+  }
   for (const auto& [name, value] : reply.headers) response.set(name, value);
   // RFC 9110 section 8.6: no length and no type for statuses that never have content.
   if (reply.status != 304 && reply.status != 204) {
@@ -363,12 +367,12 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
   boost::system::error_code error;
   if (head_only || reply.status == 304) {
     http::response<http::empty_body> response(status, version);
-    fillHead(response, reply, keep_alive);
+    fillHead(response, reply, keep_alive, context_.options);
     std::tie(error, std::ignore) = co_await http::async_write(stream_, response, kToken);
   } else {
     http::response<http::span_body<const char>> response(status, version);
     response.body() = beast::span<const char>(reply.body->data(), reply.body->size());
-    fillHead(response, reply, keep_alive);
+    fillHead(response, reply, keep_alive, context_.options);
     std::tie(error, std::ignore) = co_await http::async_write(stream_, response, kToken);
   }
   is_sending_ = false;

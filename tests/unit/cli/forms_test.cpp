@@ -71,6 +71,21 @@ TEST_F(Forms, InvalidOriginIsRefusedWithARemedy) {
   EXPECT_THAT(fault("--origin", ""), HasSubstr("write SCHEME://HOST"));
 }
 
+TEST_F(Forms, PagesThatEmbedTheWaterAreNamedOneByOne) {
+  for (const char* const origin : {"https://school.example", "http://localhost:5173", "http://127.0.0.1:8000"})
+    EXPECT_EQ(fault("--embed", origin), "") << origin;
+  EXPECT_THAT(CommandLine({"--embed", "https://a.example, https://b.example"}).options.parents,
+              ElementsAre("https://a.example", "https://b.example"));
+  for (const char* const many : {"*", "null", "https://*.school.example"})
+    EXPECT_THAT(fault("--embed", many), AllOf(HasSubstr(many), HasSubstr("list the Origin of each"))) << many;
+  EXPECT_THAT(fault("--embed", "https://school.example/page"), HasSubstr("write https://school.example"));
+  EXPECT_THAT(fault("--embed", "capacitor://localhost"), HasSubstr("at http:// or https://"));
+  EXPECT_THAT(fault("--embed", "http://[::1]:8000"), HasSubstr("name the host"));
+  // It would begin another directive of the Content-Security-Policy.
+  EXPECT_NE(fault("--embed", "https://a.example;script-src"), "");
+  EXPECT_NE(fault("--embed", "x;script-src://a.example"), "");
+}
+
 TEST_F(Forms, AnAddressToListenOnIsAnIpAddress) {
   for (const char* const address : {"127.0.0.1", "0.0.0.0", "::", "::1", "2001:db8::1", "fe80::1%lo"})
     EXPECT_EQ(fault("--address", address), "") << address;

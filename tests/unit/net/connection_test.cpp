@@ -46,6 +46,57 @@ TEST_F(ConnectionTest, ServesThePageWithItsHeaders) {
   EXPECT_EQ(answer.headers.at("x-frame-options"), "DENY");
 }
 
+TEST_F(ConnectionTest, LetsListedPagesEmbedThePageWithoutPanelsAndNothingElse) {
+  ServerOptions listed = options();
+  listed.embedding_origins = {"https://school.example", "http://localhost:5173"};
+  const TestServer served(listed);
+  const auto policy = [&](const std::string& target) {
+    return httpRequest(served.server->port(), "GET", target).headers.at("content-security-policy");
+  };
+  const auto isDenied = [&](const std::string& target) {
+    return httpRequest(served.server->port(), "GET", target).headers.contains("x-frame-options");
+  };
+  for (const std::string target : {"/?embed", "/?embed=", "/?room=pool&embed&view=side"}) {
+    EXPECT_NE(policy(target).find("; frame-ancestors https://school.example http://localhost:5173; base-uri 'none';"),
+              std::string::npos)
+        << target << ": " << policy(target);
+    EXPECT_FALSE(isDenied(target)) << target;
+  }
+  for (const std::string target :
+       {"/", "/?room=embed", "/?embedded", "/pad?embed", "/index.html?embed", "/api/echo?embed", "/nothing?embed"}) {
+    EXPECT_NE(policy(target).find("; frame-ancestors 'none';"), std::string::npos) << target;
+    EXPECT_TRUE(isDenied(target)) << target;
+  }
+  const std::string etag = httpRequest(served.server->port(), "GET", "/?embed").headers.at("etag");
+  const HttpAnswer cached = httpRequest(served.server->port(), "GET", "/?embed", "If-None-Match: " + etag + "\r\n");
+  EXPECT_EQ(cached.status, 304U);
+  EXPECT_NE(cached.headers.at("content-security-policy").find("https://school.example"), std::string::npos)
+      << "a browser takes over the headers of a 304";
+}
+
+TEST_F(ConnectionTest, LetsNobodyEmbedThePageByDefault) {
+  const TestServer served(options());
+  const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/?embed");
+  EXPECT_NE(answer.headers.at("content-security-policy").find("frame-ancestors 'none'"), std::string::npos);
+  EXPECT_EQ(answer.headers.at("x-frame-options"), "DENY");
+}
+
+TEST_F(ConnectionTest, LetsEveryPageLoadTheElementAndNoOtherFile) {
+  folder.write("element.js", "export {};");
+  const TestServer served(options());
+  const HttpAnswer element = httpRequest(served.server->port(), "GET", "/element.js");
+  EXPECT_EQ(element.status, 200U);
+  EXPECT_EQ(element.headers.at("content-type"), "text/javascript; charset=utf-8");
+  EXPECT_EQ(element.headers.at("access-control-allow-origin"), "*");
+  EXPECT_EQ(element.headers.at("cross-origin-resource-policy"), "cross-origin");
+  EXPECT_EQ(element.headers.at("cache-control"), "no-cache");
+  for (const std::string target : {"/", "/?embed", "/assets/main-abc.js"}) {
+    const HttpAnswer other = httpRequest(served.server->port(), "GET", target);
+    EXPECT_FALSE(other.headers.contains("access-control-allow-origin")) << target;
+    EXPECT_FALSE(other.headers.contains("cross-origin-resource-policy")) << target;
+  }
+}
+
 TEST_F(ConnectionTest, ServesALargeFileWhole) {
   const TestServer served(options());
   const HttpAnswer answer = httpRequest(served.server->port(), "GET", "/assets/main-abc.js");

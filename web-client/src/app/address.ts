@@ -14,14 +14,21 @@ export function isProjectorAddress({ search }: Pick<PageAddress, "search">): boo
   return new URLSearchParams(search).has("class");
 }
 
+/** ?embed: another page shows this one in a frame. */
+export function isEmbeddedAddress({ search }: Pick<PageAddress, "search">): boolean {
+  return new URLSearchParams(search).has("embed");
+}
+
 /** Browsers refuse pages that change their address more often than 100 times in 30 s. */
 const kAddressEveryMs = 400;
 const changes = new Map<string, string | undefined>();
 let writtenMs = -kAddressEveryMs;
 let writing: number | undefined;
 
-/** `value` undefined: the default, which the address leaves out. Changes in quick succession are written together. */
+/** `value` undefined: the default, which the address leaves out. Changes in quick succession are written together. The address in a frame
+ *  belongs to the page around it and stays. */
 export function setAddressParameter(name: string, value: string | undefined): void {
+  if (isEmbeddedAddress(location)) return;
   changes.set(name, value);
   const waitMs = writtenMs + kAddressEveryMs - performance.now();
   if (waitMs <= 0) writeAddress();

@@ -32,7 +32,7 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
+import { isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Haptics } from "./haptics";
@@ -72,10 +72,11 @@ export class App {
   link: LinkStats | undefined;
   supersededCount = 0;
   simTimeS = 0;
+  simTick = 0;
   lastAck: { commandId: number; appliedTick: number } | null = null;
 
   private readonly hud = new Hud();
-  private readonly toast = new Toast(byId("toast"));
+  private readonly toast = new Toast(byId("toast"), !isEmbeddedAddress(location));
   private readonly news = new RoomNews({
     say: (text, tone) => this.toast.show(text, tone),
     nameOf: (personId) => this.lessons.personOf(personId)?.name,
@@ -100,7 +101,8 @@ export class App {
     (message) => this.toast.show(message, "bad"),
   );
   private readonly url = socketUrl(location.href);
-  private readonly identities = new IdentityStore(sessionStorageIfAny(), this.url);
+  /** All frames of a page share its store: what one is given would be the others', too. */
+  private readonly identities = new IdentityStore(isEmbeddedAddress(location) ? undefined : sessionStorageIfAny(), this.url);
   private identity = this.identities.load(takeLinkToken(location, history));
   /** The last greeting. */
   entered: GreetingInfo | undefined;
@@ -207,6 +209,7 @@ export class App {
       },
       frame: ({ frame }) => {
         this.simTimeS = frame.timeS;
+        this.simTick = Number(frame.tick);
         this.display.take(frame);
         this.sound.take(frame.layer);
       },

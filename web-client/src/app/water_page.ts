@@ -1,8 +1,9 @@
 // The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class.
 import { makeRenderer } from "../scene/drawing/renderer";
 import { byId } from "../ui/dom";
+import { makeEmbedButton } from "../ui/embed_button";
 import { showNotice } from "../ui/notice";
-import { isProjectorAddress } from "./address";
+import { isEmbeddedAddress, isProjectorAddress } from "./address";
 import { App } from "./app";
 import { connectInput } from "./input";
 import { wantsSteppedPictures } from "./stepped_pictures";
@@ -18,7 +19,9 @@ export function openWaterPage(): void {
   }
   const app = new App(made);
   connectInput(app);
-  if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
+  if (isEmbeddedAddress(location)) void import("./embedded_page").then(({ openEmbeddedPage }) => openEmbeddedPage(app));
+  else if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
+  byId("light-rows").after(makeEmbedButton(() => location.href));
   openOperatorPanel(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);

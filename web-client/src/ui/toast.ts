@@ -7,9 +7,14 @@ const kShownLongMs = 8000;
 export class Toast {
   private timer: number | undefined;
 
-  constructor(private readonly element: HTMLElement) {}
+  /** `showsGood`: results that are as wanted, too. */
+  constructor(
+    private readonly element: HTMLElement,
+    private readonly showsGood: boolean,
+  ) {}
 
   show(text: string, tone: "good" | "warn" | "bad"): void {
+    if (tone === "good" && !this.showsGood) return;
     setText(this.element, text);
     this.element.dataset["tone"] = tone;
     this.element.classList.add("shown");

@@ -87,6 +87,12 @@ export class ToolBar {
     if (next && !this.bar.hidden) this.choose(next, true);
   }
 
+  /** Chooses a tool as the page begins, by its name; an unknown one is ignored. */
+  begin(name: string): void {
+    const tool = kTools.find((each) => each.name === name);
+    if (tool) this.choose(tool.name, false);
+  }
+
   /** The tool was used: no hint is needed any more. */
   wasUsed(): void {
     this.hint.hidden = true;

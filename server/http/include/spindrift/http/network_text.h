@@ -23,6 +23,11 @@ core::Result<void> checkListenAddress(const std::string& text);
 /// a scheme, a pattern.
 core::Result<void> checkOrigin(const std::string& text);
 
+/// Checks the Origin of a page that may embed the water: http://HOST[:PORT] or https://HOST[:PORT], as in
+/// checkOrigin(). kInvalidInput also for "*" and "null", which name no page, and for an IPv6 address, which a frame
+/// policy cannot name (Content Security Policy Level 3, section 2.3.1).
+core::Result<void> checkParentOrigin(const std::string& text);
+
 /// Returns whether `allowed` contains this Origin ("*" = any).
 bool isOriginListed(std::string_view origin, std::span<const std::string> allowed);
 

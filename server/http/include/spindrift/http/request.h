@@ -32,6 +32,7 @@ struct Reply {
   std::shared_ptr<const std::string> body = std::make_shared<const std::string>();  ///< never null; empty for 304
   /// In addition to Content-Type and the security headers.
   std::vector<std::pair<std::string, std::string>> headers{};
+  bool is_embeddable = false;  ///< the page of `?embed`: other pages that the server lists may show it in a frame
 };
 
 /// Returns one plain line of text (the newline is added here), not cached.
@@ -100,9 +101,9 @@ HttpRequest questionOf(const Request& request, RequestTarget target, const std::
 /// Converts the application's answer to a reply; nullopt is 404.
 Reply applicationReply(std::string_view path, std::optional<HttpReply> answer);
 
-/// Headers of every response, the WebSocket handshake included: they restrict what the page may load and forbid
-/// framing.
-std::span<const std::pair<std::string_view, std::string_view>> securityHeaders();
+/// Returns the headers of every response, the WebSocket handshake included: they restrict what the page may load, and
+/// which pages may show it in a frame. `parents`: the origins of those pages (checkParentOrigin()); none: nobody may.
+std::vector<std::pair<std::string_view, std::string>> securityHeaders(std::span<const std::string> parents = {});
 
 /// The room of an upgrade, or the refusal.
 struct UpgradeDecision {

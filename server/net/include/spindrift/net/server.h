@@ -240,6 +240,8 @@ struct ServerOptions {
   /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are not browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
+  /// Origins whose pages may show `/?embed` in a frame (checkParentOrigin()). No page may show anything else in one.
+  std::vector<std::string> embedding_origins{};
   /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits
   /// and logs, is the one in X-Forwarded-For; from any other peer that header is ignored.
   std::vector<std::string> trusted_proxies{};
