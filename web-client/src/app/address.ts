@@ -28,6 +28,13 @@ export function setAddressParameter(name: string, value: string | undefined): vo
   else writing ??= window.setTimeout(writeAddress, waitMs);
 }
 
+/** Returns the page's address with the changes that waited. */
+export function currentAddress(): string {
+  window.clearTimeout(writing);
+  if (changes.size > 0) writeAddress();
+  return location.href;
+}
+
 function writeAddress(): void {
   writing = undefined;
   writtenMs = performance.now();

@@ -32,7 +32,7 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
+import { currentAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Haptics } from "./haptics";
@@ -162,6 +162,17 @@ export class App {
 
   get role(): RoleName {
     return this.lessons.role;
+  }
+
+  /** Empty without one. */
+  get token(): string {
+    return this.identity.token;
+  }
+
+  /** The page's address with all that was chosen up to now. */
+  get address(): string {
+    this.viewAddress?.writeNow(nowS());
+    return currentAddress();
   }
 
   /** `isDrawing`: at display rate. */

@@ -33,7 +33,7 @@ export class PageLayout {
 
   /** The parts of the page that card, panel and the buttons beside it cover. */
   covered(): PixelRect[] {
-    const elements = ["card", "panel-toggle", "sound-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
+    const elements = ["card", "panel-toggle", "sound-toggle", "share-toggle", ...(this.isPanelOpen ? ["panel"] : [])];
     return elements.map((id) => {
       const { left, top, right, bottom } = byId(id).getBoundingClientRect();
       return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };

@@ -5,6 +5,7 @@ import { showNotice } from "../ui/notice";
 import { isProjectorAddress } from "./address";
 import { App } from "./app";
 import { connectInput } from "./input";
+import { makeShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
 import { installTestHooks } from "./test_hooks";
 
@@ -19,6 +20,7 @@ export function openWaterPage(): void {
   const app = new App(made);
   connectInput(app);
   if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
+  byId("sound-toggle").after(makeShareButton(app));
   openOperatorPanel(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
