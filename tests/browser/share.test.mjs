@@ -1,6 +1,8 @@
 // Links: the Share card, and what a link shows elsewhere.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
+import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
 import { chromium } from "playwright-core";
@@ -117,5 +119,103 @@ describe("a shared link", { skip, concurrency: 1 }, () => {
     await page.getByTestId("share-close").tap();
     assert.ok(await page.getByTestId("share-card").isHidden());
     await context.close();
+  });
+});
+
+describe("a link with a scene", { skip, concurrency: 1 }, () => {
+  const kOperator = "operator-of-the-test";
+  let folder;
+  let server;
+  let browser;
+
+  before(async () => {
+    folder = mkdtempSync(join(tmpdir(), "spindrift-links-"));
+    writeFileSync(join(folder, "tokens"), `operator ${kOperator}\n`);
+    server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--tokens-file", join(folder, "tokens"), "--max-rooms", "3"]);
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+  }, slow);
+  after(async () => {
+    await browser?.close();
+    await server?.stop("SIGTERM");
+    rmSync(folder, { recursive: true });
+  });
+
+  const ask = async (path, token = "") => (await fetch(`${server.url}api/v1/${path}`, { headers: token ? { Authorization: `Bearer ${token}` } : {} })).json();
+  const depthOf = async (room) => (await ask(`rooms/${room}/parameters`)).parameters.find(({ path }) => path === "wave.depth_m").value;
+  const roomsNow = async () => (await ask("rooms")).rooms.map(({ name }) => name);
+  async function open(address) {
+    const page = await browser.newPage({ viewport: { width: 800, height: 500 } });
+    await page.goto(address, { timeout: WAIT_MS });
+    return page;
+  }
+  const state = (page, wanted) => page.waitForFunction((text) => document.querySelector("[data-testid=state]").textContent.includes(text), wanted, { timeout: 2 * WAIT_MS });
+
+  it("says to a guest why no room is opened, and which rooms exist", slow, async () => {
+    const page = await open(`${server.url}?quality=minimal&scene=still_pool`);
+    await state(page, "refused: there is no room still_pool: opening a room takes the role of operator");
+    assert.deepEqual(await page.getByTestId("other-rooms").locator("a").allInnerTexts(), ["main"]);
+    assert.equal(new URL(await page.getByRole("link", { name: "main" }).getAttribute("href")).search, "?quality=minimal&room=main");
+    assert.deepEqual(await roomsNow(), ["main"]);
+    await page.close();
+  });
+
+  it("opens the room for an operator, and leads all others into it", slow, async () => {
+    const link = `${server.url}?quality=minimal&scene=still_pool&set=wave.depth_m:1.25`;
+    const operator = await open(`${link}#token=${kOperator}`);
+    await state(operator, "live");
+    const [, room] = await roomsNow();
+    assert.match(room, /^still_pool-[0-9a-f]{8}$/);
+    assert.equal(await depthOf(room), 1.25);
+    assert.deepEqual((await ask(`rooms/${room}/changes`)).parameters.map(({ path, value }) => [path, value]), [["wave.depth_m", 1.25]]);
+    const guest = await open(link);
+    await state(guest, "live");
+    assert.equal((await ask(`rooms/${room}`)).session_count, 2);
+
+    // A link with other values to a room that exists changes nothing, even for an operator.
+    const again = await open(`${server.url}?quality=minimal&room=${room}&scene=still_pool&set=wave.depth_m:0.5#token=${kOperator}`);
+    await state(again, "live");
+    assert.equal(await depthOf(room), 1.25);
+    for (const page of [operator, guest, again]) await page.close();
+  });
+
+  it("holds what an operator changes, and opens no room beyond the limit or with impossible values", slow, async () => {
+    const page = await open(`${server.url}?quality=minimal#token=${kOperator}`);
+    await state(page, "live");
+    const answer = await fetch(`${server.url}api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json", Authorization: `Bearer ${kOperator}` }, body: JSON.stringify({ set_parameter: { path: "wave.depth_m", value: 1.25 } }) });
+    assert.equal(answer.status, 200);
+    await page.waitForURL(/set=wave\.depth_m:1\.25/, { timeout: WAIT_MS });
+    const { searchParams } = new URL(page.url());
+    assert.deepEqual([searchParams.get("room"), searchParams.get("scene"), searchParams.get("set")], ["main", "browser_test", "wave.depth_m:1.25"]);
+    assert.ok(!page.url().includes("token"), page.url());
+    await page.close();
+
+    const wrong = await open(`${server.url}?quality=minimal&scene=pool&set=wave.depth_m:-1#token=${kOperator}`);
+    await state(wrong, "wave.depth_m");
+    await state(wrong, "refused: there is no room pool-");
+    await wrong.close();
+  });
+
+  it("gives the role that an operator chose for it", slow, async () => {
+    const operator = await open(`${server.url}?quality=minimal#token=${kOperator}`);
+    await state(operator, "live");
+    await operator.getByTestId("share").click();
+    await operator.getByTestId("share-target").selectOption("roles");
+    await operator.getByTestId("share-role").waitFor({ timeout: 2 * WAIT_MS });
+    const links = {};
+    for (const role of ["operator", "player", "viewer"]) {
+      await operator.getByTestId("share-role").selectOption(role);
+      links[role] = await operator.getByTestId("share-link").inputValue();
+      assert.ok(new URL(links[role]).hash.startsWith("#token=") && !new URL(links[role]).search.includes("token"), links[role]);
+    }
+    await operator.close();
+    for (const role of ["operator", "player", "viewer"]) {
+      const page = await open(links[role]);
+      await page.waitForFunction((wanted) => window.spindrift?.stats().role === wanted && window.spindrift.stats().connectionState === "live", role, { timeout: WAIT_MS });
+      await page.close();
+    }
+
+    const late = await open(`${server.url}?quality=minimal&scene=pool#token=${kOperator}`);
+    await state(late, "refused: there is no room pool: the limit of 3 rooms is reached");
+    await late.close();
   });
 });

@@ -5,6 +5,7 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
+import { wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
@@ -109,6 +110,8 @@ export class App {
   outline: () => Outline | undefined = () => undefined;
   /** Turns what is held, positive from +x toward +z; false if nothing is. */
   turnHeld: (angleRad: number) => boolean = () => false;
+  /** Called when the room has another value of a parameter; set by changed_values.ts. */
+  parameterChanged: () => void = () => {};
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
 
@@ -179,7 +182,7 @@ export class App {
   start(isDrawing: boolean): void {
     this.hud.connection(this.state);
     this.display.start(isDrawing);
-    this.client.start(this.url, this.identity);
+    this.client.start(this.url, this.identity, wishOf(location.search));
   }
 
   /** Stores the identity for a reload; with the resume key only while no page uses it. */
@@ -239,6 +242,7 @@ export class App {
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
         this.display.scene.setParameter(path, value);
+        this.parameterChanged();
         if (path === "wave.depth_m" && this.entered?.hasBed) this.ground.ask(this.entered.room);
       },
       roomState: ({ paused, speed }) => this.room.roomState(paused, speed),

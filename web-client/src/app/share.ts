@@ -1,5 +1,7 @@
 // The Share button and what its card needs of the page. The card is loaded when it is opened.
 import { askJoinAddresses } from "../net/join_addresses";
+import { openRoomWithTokens, requestChanges } from "../net/room_requests";
+import type { ParameterValue } from "../net/room_address";
 import { make } from "../ui/dom";
 import type { ShareSource } from "../ui/share_card";
 import type { App } from "./app";
@@ -9,9 +11,15 @@ const kIcon = '<svg viewBox="0 0 24 24" aria-hidden="true"><circle cx="6" cy="12
 export function makeShareButton(app: App): HTMLButtonElement {
   const button = make("button", { id: "share-toggle", class: "glass", type: "button", "data-testid": "share", "aria-label": "Share", title: "A link to what you see, also as a QR code", "aria-haspopup": "dialog" });
   button.innerHTML = kIcon;
+  const sceneNow = (): string | undefined => (app.entered?.scenes.includes(app.entered.sceneName) ? app.entered.sceneName : undefined);
+  const changes = (): Promise<ParameterValue[]> => requestChanges(app.entered?.room ?? "", app.token);
   const source: ShareSource = {
     address: () => app.address,
+    scene: sceneNow,
+    mayOpen: () => app.role === "operator",
     joinAddresses: () => askJoinAddresses(app.token),
+    changes,
+    openForRoles: async () => openRoomWithTokens(freshName(sceneNow() ?? ""), { scene: sceneNow() ?? "", parameters: await changes() }, app.token),
   };
   const load = (): Promise<{ open(): void }> => import("../ui/share_card").then(({ ShareCard }) => new ShareCard(source));
   let card: ReturnType<typeof load> | undefined;
@@ -23,4 +31,9 @@ export function makeShareButton(app: App): HTMLButtonElement {
     });
   });
   return button;
+}
+
+/** Returns a name that no room has, of at most 32 characters. */
+function freshName(scene: string): string {
+  return `${scene.slice(0, 23)}-${crypto.getRandomValues(new Uint32Array(1))[0]!.toString(16).padStart(8, "0")}`;
 }

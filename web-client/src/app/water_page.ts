@@ -4,6 +4,7 @@ import { byId } from "../ui/dom";
 import { showNotice } from "../ui/notice";
 import { isProjectorAddress } from "./address";
 import { App } from "./app";
+import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
 import { makeShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
@@ -21,6 +22,7 @@ export function openWaterPage(): void {
   connectInput(app);
   if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
   byId("sound-toggle").after(makeShareButton(app));
+  keepChangesInAddress(app);
   openOperatorPanel(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);

@@ -1,5 +1,6 @@
 // How to join: the address of the pad in large letters, and as a QR code. Large while nobody is in, in a corner while people play.
 import { askJoinAddresses } from "../net/join_addresses";
+import { roomOf } from "../net/room_address";
 import { make, setText } from "../ui/dom";
 import { drawQrCode } from "../ui/qr_code";
 
@@ -12,7 +13,7 @@ export async function joinAddresses(search: string, token: string): Promise<stri
 
 /** Returns the address of the pad of the room that the projector shows. */
 export function withRoom(address: string, search: string): string {
-  const room = new URLSearchParams(search).get("room");
+  const room = roomOf(search);
   const url = new URL(address);
   if (room) url.searchParams.set("room", room);
   return url.href;
