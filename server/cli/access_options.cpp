@@ -6,14 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include <fmt/format.h>
-
 #include <spindrift/access/base64url.h>
 #include <spindrift/access/digest.h>
 #include <spindrift/access/jwt.h>
 #include <spindrift/core/files.h>
 #include <spindrift/http/network_text.h>
-#include <spindrift/net/pad_urls.h>
 
 namespace spindrift::cli {
 namespace {
@@ -61,11 +58,6 @@ bool hasTokens(const FrontOptions& options) {
          !options.jwt_key_set.empty();
 }
 
-std::string pageUrl(const FrontOptions& options, const std::string& host, std::uint16_t port) {
-  return fmt::format("{}://{}:{}/", options.tls_cert_file.empty() ? "http" : "https",
-                     host.find(':') != std::string::npos ? "[" + host + "]" : host, port);
-}
-
 }  // namespace
 
 bool isReachable(const FrontOptions& options) {
@@ -77,19 +69,6 @@ void makeOperatorToken(FrontOptions& options) {
   // A class has guests of its own role, and nevertheless needs an operator.
   const bool is_wanted = options.is_class || (isReachable(options) && options.guest_role.empty());
   if (is_wanted && !hasTokens(options)) options.operator_token = access::toBase64Url(access::randomBytes(kTokenBytes));
-}
-
-std::string readyText(const FrontOptions& options, std::uint16_t port) {
-  std::string out = "Spindrift is ready: " + pageUrl(options, options.address, port) + "\n";
-  // No browser opens the address that stands for all of a machine's.
-  const bool is_any = options.address == "0.0.0.0" || options.address == "::";
-  const std::string here = pageUrl(options, is_any ? "localhost" : options.address, port);
-  const std::string token = options.operator_token.empty() ? "" : "#token=" + options.operator_token;
-  if (!options.is_class) return token.empty() ? out : out + "Link of the operator: " + here + token + "\n";
-  out += "Projector: " + here + "?class" + token + "\n";
-  const auto pads = net::padUrls({options.address, port, !options.tls_cert_file.empty(), options.public_url});
-  if (pads.empty()) return out + "Phones cannot reach this machine: connect it to a network, or give --public-url\n";
-  return out + "Phones: " + pads.front() + "\n";
 }
 
 core::Result<access::Access> loadAccess(const FrontOptions& options) {

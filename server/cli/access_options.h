@@ -2,7 +2,6 @@
 // can reach and for which no roles are configured.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 #include <spindrift/access/access.h>
@@ -24,10 +23,5 @@ void makeOperatorToken(FrontOptions& options);
 /// clients without a token. Errors name the option or the file and the line, never a token or a secret. May be called
 /// again to read changed files.
 core::Result<access::Access> loadAccess(const FrontOptions& options);
-
-/// Returns the lines for standard output at the start: the URL of the page, and if makeOperatorToken() made a token, a
-/// link with it; for a class the addresses of the projector and of phones instead. Browsers do not send the fragment of
-/// a link to anybody.
-std::string readyText(const FrontOptions& options, std::uint16_t port);
 
 }  // namespace spindrift::cli

@@ -16,6 +16,8 @@
 
 #include "access_options.h"
 #include "config_file.h"
+#include "ready_text.h"
+#include "terminal_qr.h"
 
 namespace spindrift::cli {
 namespace {
@@ -55,6 +57,10 @@ void drain(const FrontOptions& options, const StopSignals& signals, const Runnin
 
 void sayReady(const FrontOptions& options, std::uint16_t port) {
   std::fputs(readyText(options, port).c_str(), stdout);
+  if (const std::string url = phoneUrl(options, port); !url.empty()) {
+    const TerminalQr code = terminalQr(url);
+    if (showsQrCodes(STDOUT_FILENO, code.columns_count)) std::fputs(code.lines.c_str(), stdout);
+  }
   std::fflush(stdout);
   if (options.operator_token.empty() || options.is_class) return;
   spdlog::info(

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <utility>
 
 #include <google/protobuf/descriptor.h>
@@ -135,6 +136,16 @@ std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene)
   std::vector<v1::ParameterDescription> out;
   forEachLive(scene, [&](const Message& part, const FieldDescriptor& field, const std::string& path) {
     if (!hasNoEffect(scene, path)) out.push_back(describe(*parameterOptions(field), path, numberOf(part, field)));
+  });
+  return out;
+}
+
+std::vector<v1::ParameterDescription> changedParameters(const v1::Scene& file, const v1::Scene& now) {
+  std::vector<v1::ParameterDescription> out = describeParameters(now);
+  const std::vector<v1::ParameterDescription> before = describeParameters(file);
+  std::erase_if(out, [&](const v1::ParameterDescription& one) {
+    const auto same = std::ranges::find(before, one.path(), &v1::ParameterDescription::path);
+    return same != before.end() && same->value() == one.value();
   });
   return out;
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 #include <string_view>
 #include <utility>
 
@@ -12,6 +11,8 @@
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
 
+#include "rest_replies.h"
+
 namespace spindrift::service {
 namespace {
 
@@ -19,42 +20,6 @@ using core::ErrorCode;
 using net::HttpReply;
 
 constexpr std::string_view kRoot = "/api/v1/";
-
-HttpReply json(unsigned status, const google::protobuf::Message& message) {
-  return {.status = status, .content_type = "application/json", .body = wire::toJson(message) + "\n"};
-}
-
-HttpReply problem(unsigned status, std::string line) {
-  v1::Problem out;
-  out.set_message(std::move(line));
-  return json(status, out);
-}
-
-/// RFC 9110 section 15.5.6: Allow lists the supported methods.
-HttpReply wrongMethod(const std::string& allowed) {
-  HttpReply out = problem(405, "the method is not allowed here: use " + allowed);
-  out.headers.emplace_back("Allow", allowed);
-  return out;
-}
-
-/// RFC 9110 section 15.5.2: WWW-Authenticate names the scheme.
-HttpReply unauthorized(std::string line) {
-  HttpReply out = problem(401, std::move(line));
-  out.headers.emplace_back("WWW-Authenticate", "Bearer");
-  return out;
-}
-
-HttpReply bodyIsNotEmpty() {
-  return problem(400, "this request has an empty body: send Content-Length: 0");
-}
-
-HttpReply text(unsigned status, std::string body) {
-  return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(body)};
-}
-
-unsigned statusOf(const core::Error& error) {
-  return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
-}
 
 HttpReply rejected(const wire::CommandRejection& rejection) {
   v1::CommandAnswer out;
@@ -70,14 +35,6 @@ std::vector<std::string> split(std::string_view path) {
     path = slash == std::string_view::npos ? std::string_view() : path.substr(slash + 1);
   }
   return out;
-}
-
-/// RFC 9110 section 8.3.1: media type names are not case-sensitive, and parameters may follow.
-bool isJson(std::string_view content_type) {
-  std::string name(content_type.substr(0, content_type.find(';')));
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
-  name.erase(name.find_last_not_of(" \t") + 1);
-  return name == "application/json";
 }
 
 }  // namespace
@@ -173,57 +130,6 @@ core::Result<access::Grant> RestApi::resolve(const std::string& authorization) c
   return access_.resolve(*token, of_rooms, std::chrono::system_clock::now());
 }
 
-void RestApi::rooms(const Call& call, net::HttpResponder respond) {
-  if (call.request.method == "POST") return createRoom(call, std::move(respond));
-  if (call.request.method != "GET") return respond(wrongMethod("GET, POST"));
-  v1::RoomList out;
-  for (const auto& room : rooms_->rooms()) {
-    if (call.grant.allows(room->name())) fillRoomInfo(*room, *out.add_rooms());
-  }
-  respond(json(200, out));
-}
-
-void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
-  if (!call.isOperator()) return respond(problem(403, "opening a room takes the role of operator"));
-  if (is_draining_) {
-    HttpReply out = problem(503, "the server is about to end: it opens no more rooms");
-    out.headers.emplace_back("Retry-After", "5");
-    return respond(std::move(out));
-  }
-  if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
-  const core::ByteView body = call.request.body;
-  const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
-  if (!wanted) return respond(problem(400, wanted.error().message));
-  if (!core::isRoomName(wanted->name())) {
-    return respond(problem(422, "name: a room's name has " + std::string(core::kRoomNameRule)));
-  }
-  if (!call.grant.allows(wanted->name())) return respond(problem(403, access::otherRoom(wanted->name())));
-  auto tokens = makeTokens(*wanted);
-  if (!tokens) return respond(problem(422, tokens.error().message));
-  if (!rooms_->rules().scenes.has(wanted->scene())) {
-    return respond(problem(404, "scene: there is no scene of that name; /api/v1/scenes lists all"));
-  }
-  if (!v1::Fidelity_IsValid(wanted->fidelity())) return respond(problem(422, "fidelity: no level of that number"));
-  const auto fidelity =
-      wanted->fidelity() == v1::FIDELITY_UNSPECIFIED ? std::nullopt : std::optional(wanted->fidelity());
-  auto scene = rooms_->rules().scenes.load(wanted->scene(), fidelity);
-  if (!scene) return respond(problem(500, "scene: " + core::firstLine(scene.error().message)));
-  const auto done = [this, wanted = *wanted, who = call.details(wanted->name()), role = call.grant.role,
-                     shown = std::move(tokens->shown),
-                     respond = std::move(respond)](const core::Result<void>& opened) mutable {
-    const std::string error = opened ? "" : core::firstLine(opened.error().message);
-    access_.audit().request("room_opened", who, role, wire::toJson(wanted), error);
-    if (!opened) return respond(problem(statusOf(opened.error()), error));
-    v1::RoomInfo out;
-    if (const auto room = rooms_->find(wanted.name())) fillRoomInfo(*room, out);
-    out.mutable_tokens()->Swap(&shown);
-    respond(json(201, out));
-  };
-  rooms::RoomSetup setup{.name = wanted->name(), .scene = *std::move(scene), .access = std::move(tokens->kept)};
-  if (cluster_.cluster) return cluster_.cluster->openRoom(std::move(setup), done);
-  rooms_->openRoom(std::move(setup), done);
-}
-
 void RestApi::room(const Call& call, net::HttpResponder respond) {
   if (!call.grant.allows(call.path[1]) && core::isRoomName(call.path[1]))
     return respond(problem(403, access::otherRoom(call.path[1])));
@@ -253,7 +159,8 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     if (method != "POST") return respond(wrongMethod("POST"));
     return snapshot(call, *room, respond);
   }
-  if (part != "scene" && part != "parameters" && part != "people" && part != "ground") return respond(std::nullopt);
+  if (part != "scene" && part != "parameters" && part != "changes" && part != "people" && part != "ground")
+    return respond(std::nullopt);
   if (method != "GET") return respond(wrongMethod("GET"));
   if (part == "ground") {
     const auto ground = ground_.of(room);
@@ -262,9 +169,14 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
   }
   if (part == "scene") return respond(json(200, scene::forClients(room->snapshot()->scene)));
   if (part == "people") return respond(json(200, room->roster().people()));
+  const auto snapshot = room->snapshot();
   v1::ParameterList out;
-  for (v1::ParameterDescription& known : scene::describeParameters(room->snapshot()->scene)) {
-    *out.add_parameters() = std::move(known);
+  if (part == "changes") {
+    const auto file = rooms_->rules().scenes.load(snapshot->scene.name(), snapshot->scene.fidelity());
+    if (!file) return respond(problem(404, "the scene's file: " + core::firstLine(file.error().message)));
+    for (auto& changed : scene::changedParameters(*file, snapshot->scene)) *out.add_parameters() = std::move(changed);
+  } else {
+    for (auto& known : scene::describeParameters(snapshot->scene)) *out.add_parameters() = std::move(known);
   }
   respond(json(200, out));
 }
@@ -319,18 +231,6 @@ void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
 }
 
-void RestApi::closeRoom(const Call& call, net::HttpResponder respond) {
-  if (!call.isOperator()) return respond(problem(403, "closing a room takes the role of operator"));
-  const auto report = [this, who = call.details(call.path[1]), role = call.grant.role](const std::string& error) {
-    access_.audit().request("room_closed", who, role, "", error);
-  };
-  rooms_->closeRoom(call.path[1], dismiss_, [report, respond = std::move(respond)](const core::Result<void>& closed) {
-    report(closed ? "" : closed.error().message);
-    if (!closed) return respond(problem(statusOf(closed.error()), closed.error().message));
-    respond(HttpReply{.status = 204, .content_type = "application/json", .body = ""});
-  });
-}
-
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {
   // A form on a foreign page cannot send this content type (protection against cross-site requests).
   if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
@@ -377,23 +277,6 @@ void RestApi::commandRejected(const rooms::Command& command, const wire::Command
   counters_.rejected(rejection.reason());
   access_.audit().rejected(command, rejection);
   if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
-}
-
-void RestApi::fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const {
-  const auto snapshot = room.snapshot();
-  const auto vitals = room.vitals();
-  out.set_name(room.name());
-  out.set_scene(snapshot->scene.name());
-  out.set_title(snapshot->scene.title());
-  out.set_paused(snapshot->paused);
-  out.set_speed(snapshot->speed);
-  out.set_asleep(vitals->asleep);
-  out.set_tick(vitals->tick);
-  out.set_time_s(vitals->time_s);
-  out.set_real_time_factor(vitals->diagnostics.real_time_factor);
-  out.set_session_count(static_cast<std::uint32_t>(room.demand()->sessionCount()));
-  out.set_boat_count(static_cast<std::uint32_t>(snapshot->boats.boats_size()));
-  out.set_fidelity(snapshot->scene.fidelity());
 }
 
 }  // namespace spindrift::service

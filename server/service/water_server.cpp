@@ -1,4 +1,4 @@
-#include <spindrift/net/pad_urls.h>
+#include <spindrift/net/page_urls.h>
 #include <spindrift/service/water_server.h>
 
 namespace spindrift::service {

@@ -234,14 +234,15 @@ describe("a page of another origin", { skip, concurrency: 1 }, () => {
     await until("the end of the pause", () => statsOf(water), (stats) => !stats.paused);
   });
 
-  it("embeds the view by the code that the button Embed gives", slow, async () => {
+  it("embeds the view by the code that the card of Share gives", slow, async () => {
     await open(`${server.url}?quality=minimal&room=second&view=side#token=${kTokens.player}`);
-    await page.getByTestId("embed").click();
-    const code = await page.getByTestId("embed-code").inputValue();
+    await page.getByTestId("share").click();
+    await page.getByTestId("share-target").selectOption("embed");
+    const code = await page.getByTestId("share-link").inputValue();
     assert.ok(!code.includes(kTokens.player), code);
-    await page.getByTestId("embed-copy").click();
-    await until("the note", () => page.getByTestId("embed-note").textContent(), (text) => /copied|by hand/.test(text));
-    await page.getByTestId("embed-close").click();
+    await page.getByTestId("share-copy").click();
+    await until("the note", () => page.getByTestId("share-note").textContent(), (text) => /copied|by hand/.test(text));
+    await page.getByTestId("share-close").click();
     listed.pages.set("/code", code);
     await open(`${listed.url}/code`);
     const water = await frameOf("second");

@@ -4,6 +4,7 @@ import { takeLinkToken } from "../src/app/address";
 import { viewOf } from "../src/app/view_address";
 import { IdentityStore } from "../src/net/identity_store";
 import { lightOf } from "../src/ui/light_rows";
+import { addressAt, linkWith } from "../src/ui/share_link";
 
 /** Returns the token of a link and the address afterwards. */
 function opened(href: string): { token: string | undefined; address: string } {
@@ -50,5 +51,19 @@ describe("the view of an address", () => {
     expect(lightOf("?light=golden-hour")).toBe("golden hour");
     expect(lightOf("?light=17.5")).toBe(17.5);
     for (const search of ["", "?light=", "?light=25", "?light=-1", "?light=NaN", "?light=toString"]) expect(lightOf(search), search).toBe("automatic");
+  });
+});
+
+describe("a shared link", () => {
+  it("has the address in the network and keeps what was chosen, without a fragment", () => {
+    expect(addressAt("http://192.168.1.20:8080/pad", "http://localhost:8080/?room=lab&light=17.5#x")).toBe("http://192.168.1.20:8080/?room=lab&light=17.5");
+    expect(addressAt("https://water.example/sea/pad", "http://127.0.0.1/")).toBe("https://water.example/sea/");
+  });
+
+  it("leads to this room, to one like it, or to a new one with a token, which is in the fragment", () => {
+    const page = "http://h/?room=lab&light=17.5&set=a.b:1#x";
+    expect(linkWith(page, {}, "")).toBe("http://h/?room=lab&light=17.5&set=a.b:1");
+    expect(linkWith(page, { room: undefined, scene: "pool", set: "a.b:2,c.d:3" }, "")).toBe("http://h/?light=17.5&set=a.b:2,c.d:3&scene=pool");
+    expect(linkWith(page, { room: "pool-1", scene: undefined, set: undefined }, "t+/=")).toBe("http://h/?room=pool-1&light=17.5#token=t%2B%2F%3D");
   });
 });

@@ -90,6 +90,8 @@ export class Rig {
   /** What REST says about the room, and how often it was asked. */
   missing: MissingRoom | undefined;
   askedCount = 0;
+  /** Answers the wish to open the room; undefined: the page's address has no scene. */
+  whyNotOpened: (() => Promise<string | undefined>) | undefined;
   /** Time that the next message takes to read: the clock advances by this after it is next read. */
   slowReadMs = 0;
 
@@ -114,6 +116,7 @@ export class Rig {
       setTimer: (callback, ms) => this.time.setTimer(callback, ms),
       clearTimer: (timer) => this.time.clearTimer(timer),
     };
+    Object.defineProperty(world, "openRoom", { get: () => this.whyNotOpened });
     const sink: ConnectionSink = {
       event: (event) => this.events.push(event),
       frame: (frame) => this.frames.push(frame),

@@ -53,6 +53,39 @@ describe("a connection to a missing room", () => {
     expect(rig.state.name).toBe("live");
   });
 
+  it("opens it if the page's address has a scene, and enters it then", async () => {
+    const rig = new Rig();
+    rig.missing = { name: "pool", rooms: ["main"] };
+    let opened: (whyNot: string | undefined) => void = () => {};
+    rig.whyNotOpened = () => new Promise((done) => (opened = done));
+    rig.socket.drop();
+    await settled();
+    expect(rig.state).toEqual({ name: "opening", room: "pool" });
+    rig.time.advance(60_000);
+    expect(rig.sockets, "no attempt meanwhile").toHaveLength(1);
+    opened(undefined);
+    await settled();
+    expect(rig.sockets).toHaveLength(2);
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    expect(rig.state.name).toBe("live");
+
+    rig.socket.drop(4404, "the room was closed");
+    rig.time.advance(2000);
+    rig.socket.drop();
+    await settled();
+    expect(rig.state, "what was closed on purpose stays closed").toEqual({ name: "refused", reason: "there is no room pool", rooms: ["main"] });
+  });
+
+  it("says why it may not open it, and what rooms there are", async () => {
+    const rig = new Rig();
+    rig.missing = { name: "pool", rooms: ["main"] };
+    rig.whyNotOpened = () => Promise.resolve("the limit of 8 rooms is reached");
+    rig.socket.drop();
+    await settled();
+    expect(rig.state).toEqual({ name: "refused", reason: "there is no room pool: the limit of 8 rooms is reached", rooms: ["main"] });
+  });
+
   it("is retried until it is known to be missing", async () => {
     const rig = new Rig();
     rig.socket.drop();

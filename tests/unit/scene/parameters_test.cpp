@@ -50,6 +50,17 @@ void forEachNumber(const Descriptor& type, const std::function<void(const FieldD
   }
 }
 
+TEST(Parameters, ChangedAreThoseWithAnotherValueThanInTheFile) {
+  const v1::Scene file = fullScene();
+  v1::Scene now = file;
+  EXPECT_TRUE(changedParameters(file, now).empty());
+  ASSERT_FALSE(setParameter(now, "wave.depth_m", file.wave().depth_m() + 0.25));
+  const auto changed = changedParameters(file, now);
+  ASSERT_EQ(changed.size(), 1U);
+  EXPECT_EQ(changed[0].path(), "wave.depth_m");
+  EXPECT_EQ(changed[0].value(), file.wave().depth_m() + 0.25);
+}
+
 TEST(Parameters, EveryNumberOfASceneHasLabelRangeStepAndADefaultWithin) {
   int count = 0;
   forEachNumber(*v1::Scene::descriptor(), [&](const FieldDescriptor& field) {

@@ -1,5 +1,7 @@
 // The page's address holds what was chosen by hand, so that a reload and a copied address keep it.
 
+import { setParameters } from "../ui/share_link";
+
 const kTokenField = "token=";
 
 type PageAddress = Pick<Location, "pathname" | "search">;
@@ -35,14 +37,18 @@ export function setAddressParameter(name: string, value: string | undefined): vo
   else writing ??= window.setTimeout(writeAddress, waitMs);
 }
 
+/** Returns the page's address with the changes that waited. */
+export function currentAddress(): string {
+  window.clearTimeout(writing);
+  if (changes.size > 0) writeAddress();
+  return location.href;
+}
+
 function writeAddress(): void {
   writing = undefined;
   writtenMs = performance.now();
   const url = new URL(location.href);
-  for (const [name, value] of changes) {
-    if (value === undefined) url.searchParams.delete(name);
-    else url.searchParams.set(name, value);
-  }
+  setParameters(url, changes);
   changes.clear();
   history.replaceState(null, "", url);
 }

@@ -5,6 +5,7 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
+import { wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
@@ -22,6 +23,7 @@ import { FloaterRows } from "../ui/floater_rows";
 import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
 import { addLightRows, lightOf } from "../ui/light_rows";
+import { PageActions } from "../ui/page_actions";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
 import { QualityRow } from "../ui/quality_row";
@@ -32,7 +34,7 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
+import { currentAddress, isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Haptics } from "./haptics";
@@ -62,6 +64,8 @@ export class App {
   readonly room = new RoomPanel(this.commands.send);
   readonly haptics = new Haptics();
   readonly sound: SoundControls;
+  /** The buttons beside the panel. */
+  readonly actions = new PageActions();
   private readonly pictures: PictureControls;
   readonly boats: BoatPanel;
   readonly viewButtons: ViewButtons;
@@ -113,6 +117,8 @@ export class App {
   outline: () => Outline | undefined = () => undefined;
   /** Turns what is held, positive from +x toward +z; false if nothing is. */
   turnHeld: (angleRad: number) => boolean = () => false;
+  /** Called when the room has another value of a parameter; set by changed_values.ts. */
+  parameterChanged: () => void = () => {};
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
 
@@ -137,7 +143,7 @@ export class App {
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
-    this.pictures = new PictureControls(this.display, (why) => this.toast.show(why, "bad"));
+    this.pictures = new PictureControls(this.display, this.actions, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
     // A projector's camera moves by itself.
@@ -171,11 +177,22 @@ export class App {
     return this.lessons.role;
   }
 
+  /** Empty without one. */
+  get token(): string {
+    return this.identity.token;
+  }
+
+  /** The page's address with all that was chosen up to now. */
+  get address(): string {
+    this.viewAddress?.writeNow(nowS());
+    return currentAddress();
+  }
+
   /** `isDrawing`: at display rate. */
   start(isDrawing: boolean): void {
     this.hud.connection(this.state);
     this.display.start(isDrawing);
-    this.client.start(this.url, this.identity);
+    this.client.start(this.url, this.identity, wishOf(location.search));
   }
 
   /** Stores the identity for a reload; with the resume key only while no page uses it. */
@@ -235,6 +252,7 @@ export class App {
       parameterChanged: ({ path, value }) => {
         this.parameters.setServerValue(path, value);
         this.display.scene.setParameter(path, value);
+        this.parameterChanged();
         if (path === "wave.depth_m" && this.entered?.hasBed) this.ground.ask(this.entered.room);
       },
       roomState: (state) => {

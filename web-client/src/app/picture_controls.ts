@@ -1,6 +1,6 @@
 // Fullscreen, and the picture of the canvas as a file: one as PNG, or a film. What encodes films is loaded when the first one begins.
 import type { GreetingInfo } from "../codec/greeting";
-import { PageActions, type ActionButton } from "../ui/page_actions";
+import type { ActionButton, PageActions } from "../ui/page_actions";
 import { kTexts } from "../ui/texts";
 import type { Display } from "./display";
 import type { Film } from "./film";
@@ -10,7 +10,6 @@ import { fileName, saveFile } from "./saved_file";
 const kFilmLongestS = 60;
 
 export class PictureControls {
-  private readonly actions = new PageActions();
   private readonly filmButton: ActionButton;
   private sceneName = "";
   private wantsPicture = false;
@@ -20,6 +19,7 @@ export class PictureControls {
   /** `failed`: shows why something did not work. */
   constructor(
     private readonly display: Display,
+    private readonly actions: PageActions,
     private readonly failed: (why: string) => void,
   ) {
     this.addFullscreen();

@@ -3,6 +3,7 @@
 import type { Vector3 } from "three";
 
 import type { CameraViews, ViewName } from "../scene/camera/camera_views";
+import { clamp } from "../scene/maths/interpolate";
 import { setAddressParameter } from "./address";
 
 type Place = [number, number, number];
@@ -25,6 +26,11 @@ export function viewOf(search: string): AddressView | undefined {
   }
   const view = kFirstViews.find((name) => name === parameters.get("view"));
   return view && { view };
+}
+
+/** Returns the decimals that move a picture by less than a pixel: a ten-thousandth of the distance. */
+function decimalsAt(distanceM: number): number {
+  return clamp(Math.ceil(4 - Math.log10(Math.max(distanceM, 0.01))), 0, 6);
 }
 
 export class ViewAddress {
@@ -52,16 +58,30 @@ export class ViewAddress {
   update(nowS: number): void {
     if (nowS < this.nextS) return;
     this.nextS = nowS + kLookEveryS;
+    this.look(nowS);
+    if (nowS - this.seenSinceS >= kRestS) this.write();
+  }
+
+  /** Writes where the camera is now, at rest or not. */
+  writeNow(nowS: number): void {
+    this.look(nowS);
+    this.write();
+  }
+
+  private look(nowS: number): void {
     const { view, targetM } = this.views;
-    const now = view ?? [...this.eyeM, ...targetM].map((each) => Number(each.toFixed(2))).join(",");
-    if (now !== this.seen) {
-      this.isWritten = this.seen === "" && view !== undefined;
-      this.seen = now;
-      this.seenSinceS = nowS;
-    }
-    if (this.isWritten || nowS - this.seenSinceS < kRestS) return;
+    const now = view ?? [...this.eyeM, ...targetM].map((each) => Number(each.toFixed(decimalsAt(this.eyeM.distanceTo(targetM))))).join(",");
+    if (now === this.seen) return;
+    this.isWritten = this.seen === "" && view !== undefined;
+    this.seen = now;
+    this.seenSinceS = nowS;
+  }
+
+  private write(): void {
+    if (this.isWritten) return;
     this.isWritten = true;
+    const { view } = this.views;
     setAddressParameter("view", view !== undefined && kFirstViews.includes(view) ? view : undefined);
-    setAddressParameter("camera", view === undefined ? now : undefined);
+    setAddressParameter("camera", view === undefined ? this.seen : undefined);
   }
 }

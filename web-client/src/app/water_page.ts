@@ -1,11 +1,12 @@
 // The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class.
 import { makeRenderer } from "../scene/drawing/renderer";
 import { byId } from "../ui/dom";
-import { makeEmbedButton } from "../ui/embed_button";
 import { showNotice } from "../ui/notice";
 import { isEmbeddedAddress, isProjectorAddress } from "./address";
 import { App } from "./app";
+import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
+import { addShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
 import { installTestHooks } from "./test_hooks";
 
@@ -21,7 +22,8 @@ export function openWaterPage(): void {
   connectInput(app);
   if (isEmbeddedAddress(location)) void import("./embedded_page").then(({ openEmbeddedPage }) => openEmbeddedPage(app));
   else if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
-  byId("light-rows").after(makeEmbedButton(() => location.href));
+  addShareButton(app);
+  keepChangesInAddress(app);
   openOperatorPanel(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);

@@ -1,23 +1,19 @@
 // How to join: the address of the pad in large letters, and as a QR code. Large while nobody is in, in a corner while people play.
-import { generate } from "lean-qr";
-
+import { askJoinAddresses } from "../net/join_addresses";
+import { roomOf } from "../net/room_address";
 import { make, setText } from "../ui/dom";
-
-/** Modules of the quiet zone that readers of QR codes need. */
-const kQuietModules = 4;
+import { drawQrCode } from "../ui/qr_code";
 
 /** Returns the addresses of the pad as this server's network has them. Throws an Error with a line for people. */
-export async function joinAddresses(search: string): Promise<string[]> {
-  const answer = await fetch("api/v1/join");
-  if (!answer.ok) throw new Error(`The server does not say how to join (${answer.status}): start it with --class`);
-  const { urls }: { urls?: unknown } = await answer.json();
-  if (!Array.isArray(urls) || urls.length === 0) throw new Error("Phones cannot reach this server: it listens on this machine only, or has no network. Start it with --class, or give its address with --public-url");
-  return urls.map((url) => withRoom(String(url), search));
+export async function joinAddresses(search: string, token: string): Promise<string[]> {
+  const urls = await askJoinAddresses(token);
+  if (urls.length === 0) throw new Error("Phones cannot reach this server: it listens on this machine only, or has no network. Start it with --class, or give its address with --public-url");
+  return urls.map((url) => withRoom(url, search));
 }
 
 /** Returns the address of the pad of the room that the projector shows. */
 export function withRoom(address: string, search: string): string {
-  const room = new URLSearchParams(search).get("room");
+  const room = roomOf(search);
   const url = new URL(address);
   if (room) url.searchParams.set("room", room);
   return url.href;
@@ -79,7 +75,7 @@ export class JoinCard {
   private draw(): void {
     const address = this.addresses[this.shown];
     if (address === undefined) return;
-    generate(address).toCanvas(this.canvas, { pad: kQuietModules, on: [0, 0, 0], off: [255, 255, 255] });
+    drawQrCode(this.canvas, address);
     this.canvas.dataset["address"] = address;
     setText(this.address, spokenAddress(address));
     setText(this.more, this.addresses.length > 1 ? `address ${this.shown + 1} of ${this.addresses.length}` : "");

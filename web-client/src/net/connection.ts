@@ -5,14 +5,15 @@ import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 import type { PlainFrame } from "../codec/frame_types";
 import { FrameUnpacker } from "../codec/frame_unpacker";
 import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
-import { coarserLevel, kFinestLevel, kLayerNames, kLayers, wireLevel, type LayerName, type LevelName } from "../codec/layers";
+import { kFinestLevel, kLayerNames, kLayers, wireLevel, type LayerName } from "../codec/layers";
 import { parse, type DrainingInfo } from "../codec/parse";
 import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
 import type { ConnectionSink, ConnectionWorld, SocketLike } from "./connection_world";
 import { LinkMeter } from "./link_meter";
-import { LoadGovernor } from "./load_governor";
-import type { CommandAction, ConnectionCalls, ConnectionState, DetailChoice, Identity, LinkStats } from "./messages";
+import { LoadGovernor, shownLevel } from "./load_governor";
+import type { CommandAction, ConnectionCalls, ConnectionState, DetailChoice, Identity } from "./messages";
+import type { MissingRoom } from "./missing_room";
 import { planMove, type MovePlan } from "./move_plan";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
@@ -85,6 +86,7 @@ export class Connection implements ConnectionCalls {
     if (this.tickTimer !== undefined) this.world.clearTimer(this.tickTimer);
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     this.tickTimer = this.retryTimer = undefined;
+    this.state = { name: "connecting" };
     this.dropSocket();
     this.failPending("the page closed the connection");
   }
@@ -315,7 +317,7 @@ export class Connection implements ConnectionCalls {
 
   private tick(): void {
     const nowMs = this.world.nowMs();
-    this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...this.currentLevel() } });
+    this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...shownLevel(this.detail, this.governor.level, this.linkLevel) } });
     if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
     for (const commandId of this.pending.takeOverdue(nowMs))
       this.rejectHere(commandId, `no answer for ${kAnswerTimeoutMs / 1000} s`);
@@ -323,14 +325,6 @@ export class Connection implements ConnectionCalls {
     if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no message from the server for ${kSilenceMs / 1000} s`);
     const pingEveryMs = this.pingCount < kFirstPings ? 0 : kPingEveryMs;
     if (this.state.name === "live" && nowMs - this.lastPingMs >= pingEveryMs) this.ping();
-  }
-
-  private currentLevel(): Pick<LinkStats, "level" | "levelLimitedBy"> {
-    const isAuto = this.detail === "auto";
-    const level: LevelName = this.detail === "auto" ? coarserLevel(this.governor.level, this.linkLevel) : this.detail;
-    if (level === kFinestLevel) return { level, levelLimitedBy: "none" };
-    if (!isAuto) return { level, levelLimitedBy: "choice" };
-    return { level, levelLimitedBy: level === this.linkLevel ? "link" : "device" };
   }
 
   private lost(why: string): void {
@@ -348,13 +342,22 @@ export class Connection implements ConnectionCalls {
     this.retryTimer = this.world.setTimer(() => this.connect(), inS * 1000);
   }
 
-  /** Tries no more to enter a room that does not exist. */
+  /** Opens a missing room if the page's address says of which scene. One that this page was in was closed on purpose: it stays closed. */
   private async askForRoom(): Promise<void> {
     const attempt = this.failedCount;
     const missing = await this.world.findMissingRoom(this.url, this.identity.token);
     if (!missing || this.state.name !== "retrying" || this.failedCount !== attempt) return;
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
-    this.refuse(`there is no room ${missing.name}`, missing.rooms);
+    if (this.world.openRoom && this.liveSinceMs === 0) void this.openRoom(missing);
+    else this.refuse(`there is no room ${missing.name}`, missing.rooms);
+  }
+
+  private async openRoom({ name, rooms }: MissingRoom): Promise<void> {
+    this.setState({ name: "opening", room: name });
+    const whyNot = await this.world.openRoom!(this.url, this.identity.token);
+    if (this.state.name !== "opening") return;
+    if (whyNot === undefined) this.connect();
+    else this.refuse(`there is no room ${name}: ${whyNot}`, rooms);
   }
 
   private refuse(reason: string, rooms: string[] = []): void {

@@ -19,6 +19,8 @@ export interface ConnectionWorld {
   openSocket(url: string, subprotocol: string): SocketLike;
   /** Resolves to the room of a socket that did not open, if it does not exist. Does not reject. */
   findMissingRoom(socketUrl: string, token: string): Promise<MissingRoom | undefined>;
+  /** Opens the room of such a socket. Resolves to undefined when the room exists, otherwise to the reason. Absent: the page's address has no scene. Does not reject. */
+  openRoom?(socketUrl: string, token: string): Promise<string | undefined>;
   /** Unix time in the browser, so that the page can convert what is derived from it. */
   nowMs(): number;
   /** In [0, 1). */

@@ -1,6 +1,7 @@
 // Chooses the level of detail that this device can unpack in time, by the share of time that the worker spends on messages. The
 // server adapts to the link, from the frames that wait in its outbox.
-import { kLevels, type LevelName } from "../codec/layers";
+import { coarserLevel, kFinestLevel, kLevels, type LevelName } from "../codec/layers";
+import type { DetailChoice, LinkStats } from "./messages";
 
 const kTooBusy = 0.6;
 /** A level has up to four times the samples of the next coarser one. */
@@ -8,6 +9,14 @@ const kIdle = 0.12;
 const kBusyNotes = 4;
 const kFirstIdleNotes = 20;
 const kMaxIdleNotes = 240;
+
+/** Returns the level that is sent, and what keeps it from the finest one. */
+export function shownLevel(detail: DetailChoice, deviceLevel: LevelName, linkLevel: LevelName): Pick<LinkStats, "level" | "levelLimitedBy"> {
+  const level = detail === "auto" ? coarserLevel(deviceLevel, linkLevel) : detail;
+  if (level === kFinestLevel) return { level, levelLimitedBy: "none" };
+  if (detail !== "auto") return { level, levelLimitedBy: "choice" };
+  return { level, levelLimitedBy: level === linkLevel ? "link" : "device" };
+}
 
 export class LoadGovernor {
   private at = kLevels.length - 1;

@@ -8,6 +8,7 @@ import type { FrameLayer, LayerName, LevelName } from "../codec/layers";
 import type { Malformed } from "../codec/malformed";
 import type { ParsedMessage } from "../codec/parse";
 import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
+import type { RoomWish } from "./room_address";
 
 /** A command's action as plain data: one member of the oneof in wire.proto. */
 export type CommandAction = Exclude<
@@ -26,6 +27,8 @@ export interface Identity {
 
 export type ConnectionState =
   | { name: "connecting" }
+  /** The page's room does not exist yet. */
+  | { name: "opening"; room: string }
   | { name: "live" }
   | { name: "retrying"; inS: number; why: string }
   /** `rooms`: those that there are, if the page's room does not exist. */
@@ -100,5 +103,5 @@ type Call = { [K in keyof ConnectionCalls]: { kind: "call"; name: K; args: Param
 
 export type WorkerRequest =
   | Call
-  | { kind: "start"; url: string; identity: Identity }
+  | { kind: "start"; url: string; identity: Identity; wish: RoomWish | undefined }
   | { kind: "release"; layer: FrameLayer; buffer: ArrayBuffer };

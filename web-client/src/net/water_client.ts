@@ -1,5 +1,6 @@
 // The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
 import type { CommandAction, ConnectionCalls, Frame, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
+import { roomOf, type RoomWish } from "./room_address";
 
 /** Starts the worker; the page calls it once. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
@@ -16,8 +17,9 @@ export class WaterClient {
     worker.onmessage = ({ data }: MessageEvent<PageEvent>) => (handlers[data.kind] as (event: PageEvent) => void)(data);
   }
 
-  start(url: string, identity: Identity): void {
-    this.post({ kind: "start", url, identity });
+  /** `wish`: opens the room if it does not exist. */
+  start(url: string, identity: Identity, wish?: RoomWish): void {
+    this.post({ kind: "start", url, identity, wish });
   }
 
   /** Calls a method of the connection. */
@@ -42,9 +44,9 @@ export class WaterClient {
   }
 }
 
-/** Returns the address of the socket beside the page: ws, or ws/ROOM for the page's ?room=ROOM; wss for an https page. */
+/** Returns the address of the socket beside the page: ws, or ws/ROOM for the room of the page's address; wss for an https page. */
 export function socketUrl(page: string): string {
-  const room = new URL(page).searchParams.get("room");
+  const room = roomOf(new URL(page).search);
   const url = new URL(room ? `ws/${encodeURIComponent(room)}` : "ws", page);
   url.protocol = url.protocol === "https:" ? "wss:" : "ws:";
   return url.href;

@@ -7,6 +7,8 @@ import type { ConnectionWorld, SocketLike } from "./connection_world";
 import { FrameHandover } from "./handover";
 import type { ConnectionEvent, Frame, Identity, PageEvent, WorkerRequest } from "./messages";
 import { findMissingRoom } from "./missing_room";
+import { openRoom } from "./open_room";
+import type { RoomWish } from "./room_address";
 
 /** The page's ring holds five; one more may be on its way. */
 const kMaxFramesUnderWay = 6;
@@ -40,11 +42,13 @@ const world: ConnectionWorld = {
 
 let connection: Connection | undefined;
 
-function start(url: string, identity: Identity): void {
+function start(url: string, identity: Identity, wish: RoomWish | undefined): void {
   connection?.stop();
   const fault = readerFault();
   if (fault) return post({ kind: "state", state: { name: "refused", reason: fault, rooms: [] } });
-  connection = new Connection(url, world, {
+  const wait = (ms: number): Promise<void> => new Promise((done) => self.setTimeout(done, ms));
+  const withWish: ConnectionWorld = wish ? { ...world, openRoom: (socketUrl, token) => openRoom(socketUrl, token, wish, (address, init) => self.fetch(address, init), wait) } : world;
+  connection = new Connection(url, withWish, {
     event: passOn,
     frame: ({ kind, header, payload }) => {
       const buffer = handovers[kind].takeBuffer(payload.length);
@@ -68,7 +72,7 @@ function passOn(event: ConnectionEvent): void {
 self.addEventListener("message", ({ data: request }: MessageEvent<WorkerRequest>) => {
   switch (request.kind) {
     case "start":
-      return start(request.url, request.identity);
+      return start(request.url, request.identity, request.wish);
     case "release":
       return handovers[request.layer].release(request.buffer);
     case "call":

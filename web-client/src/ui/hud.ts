@@ -10,6 +10,8 @@ export function describeState(state: ConnectionState): string {
   switch (state.name) {
     case "connecting":
       return "connecting";
+    case "opening":
+      return `opening the room ${state.room}`;
     case "live":
       return "live";
     case "retrying":

@@ -9,6 +9,7 @@ export function showRooms(list: HTMLElement, rooms: readonly string[], page: str
 
 function addressOfRoom(page: string, room: string): string {
   const url = new URL(page);
+  for (const name of ["scene", "set"]) url.searchParams.delete(name);
   url.searchParams.set("room", room);
   return url.href;
 }

@@ -28,7 +28,8 @@ export const kTexts = {
   movesObjectsByTouch: "Drag an object to move it; a second finger turns it.",
 
   // Picture, film, fullscreen
-  actions: "Picture and sound",
+  actions: "Picture, sound and link",
+  share: "Share a link to what you see, also as a QR code",
   fullscreen: "Fullscreen",
   leaveFullscreen: "Leave fullscreen",
   picture: "Save a picture",

@@ -16,6 +16,9 @@ namespace spindrift::scene {
 /// that need no restart, in the order of the proto file. Numbers of events are not included.
 std::vector<v1::ParameterDescription> describeParameters(const v1::Scene& scene);
 
+/// Returns those of describeParameters(now) whose values differ from those in `file`, the same scene as it was read.
+std::vector<v1::ParameterDescription> changedParameters(const v1::Scene& file, const v1::Scene& now);
+
 /// Checks whether `value` may be set at `path` ("particles.viscosity_pas"); nullopt = yes. The path is the
 /// requested one, cleaned and shortened for display. Reasons: UNKNOWN_PARAMETER,
 /// ABSENT_PART, NEEDS_RESTART, NOT_FINITE, OUT_OF_RANGE (also for a count that is not whole, or a conflict with the

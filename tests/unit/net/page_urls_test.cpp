@@ -1,8 +1,8 @@
-// Addresses that phones are told.
+// Addresses that other devices are told.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <spindrift/net/pad_urls.h>
+#include <spindrift/net/page_urls.h>
 
 namespace spindrift::net {
 namespace {
@@ -14,6 +14,13 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::StartsWith;
+
+TEST(PageUrls, AreThoseOfThePadsWithoutTheirPath) {
+  EXPECT_THAT(pageUrls({.address = "192.0.2.7", .port = 9000}), ElementsAre("http://192.0.2.7:9000/"));
+  EXPECT_THAT(pageUrls({.address = "127.0.0.1", .port = 1, .public_url = "https://water.example/sea"}),
+              ElementsAre("https://water.example/sea/"));
+  EXPECT_THAT(pageUrls({.address = "::1", .port = 8080}), IsEmpty());
+}
 
 TEST(PadUrls, AreEmptyOnTheLoopback) {
   EXPECT_THAT(padUrls({.address = "127.0.0.1", .port = 8080}), IsEmpty());

@@ -8,12 +8,12 @@
 #include <netinet/in.h>
 
 #include <spindrift/http/network_text.h>
-#include <spindrift/net/pad_urls.h>
+#include <spindrift/net/page_urls.h>
 
 namespace spindrift::net {
 namespace {
 
-/// Returns the text of an address that phones may use; empty for others.
+/// Returns the text of an address that other devices may use; empty for others.
 std::string textOf(const sockaddr* address) {
   std::array<char, INET6_ADDRSTRLEN> text{};
   if (address->sa_family == AF_INET) {
@@ -52,10 +52,10 @@ std::vector<std::string> addressesOfInterfaces() {
 
 }  // namespace
 
-std::vector<std::string> padUrls(const PageAddress& page) {
+std::vector<std::string> pageUrls(const PageAddress& page) {
   if (!page.public_url.empty()) {
     const std::size_t end = page.public_url.find_last_not_of('/');
-    return {page.public_url.substr(0, end + 1) + "/pad"};
+    return {page.public_url.substr(0, end + 1) + "/"};
   }
   if (isLoopback(page.address)) return {};
   const bool is_any = page.address == "0.0.0.0" || page.address == "::";
@@ -63,8 +63,14 @@ std::vector<std::string> padUrls(const PageAddress& page) {
   for (const std::string& address : is_any ? addressesOfInterfaces() : std::vector<std::string>{page.address}) {
     if (page.address == "0.0.0.0" && isIpv6(address)) continue;
     out.push_back((page.is_tls ? "https://" : "http://") + (isIpv6(address) ? "[" + address + "]" : address) + ":" +
-                  std::to_string(page.port) + "/pad");
+                  std::to_string(page.port) + "/");
   }
+  return out;
+}
+
+std::vector<std::string> padUrls(const PageAddress& page) {
+  std::vector<std::string> out = pageUrls(page);
+  for (std::string& url : out) url += "pad";
   return out;
 }
 
