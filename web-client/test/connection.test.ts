@@ -61,7 +61,7 @@ describe("the connection", () => {
     rig.connection.command(1, { case: "spawnBoat", value: {} });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 5n, boatId: 3 } });
     expect(rig.eventsOf("boatList")).toEqual([{ kind: "boatList", boats: [boat] }]);
-    expect(rig.eventsOf("roomEvent")).toEqual([{ kind: "roomEvent", event: "recovered", tick: 4n, message: "the water was put back" }]);
+    expect(rig.eventsOf("roomEvent")).toEqual([{ kind: "roomEvent", event: "recovered", tick: 4n, personId: 0, message: "the water was put back" }]);
     expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 5n, boatId: 3 }]);
   });
 

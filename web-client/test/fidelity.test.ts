@@ -19,7 +19,7 @@ describe("the fidelity", () => {
 
   it("has an event of its own kind when it changes", () => {
     const event = encode({ case: "roomEvent", value: { kind: RoomEventKind.FIDELITY, tick: 3n, message: "now draft" } });
-    expect(parse(event)).toEqual({ kind: "roomEvent", event: "fidelity", tick: 3n, message: "now draft" });
+    expect(parse(event)).toEqual({ kind: "roomEvent", event: "fidelity", tick: 3n, personId: 0, message: "now draft" });
   });
 });
 

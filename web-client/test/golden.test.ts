@@ -179,7 +179,7 @@ describe("golden bytes", () => {
   it.each(cases.filter((c) => c.kind === "room_event"))("reads the event of $file", (golden) => {
     expect(parse(read(golden.file))).toEqual({
       kind: "roomEvent", event: (golden["event"] as string).replace("ROOM_EVENT_KIND_", "").toLowerCase(),
-      tick: BigInt(golden["tick"] as string), message: golden["message"],
+      tick: BigInt(golden["tick"] as string), message: golden["message"], personId: golden["person_id"] ?? 0,
     });
   });
 

@@ -215,7 +215,7 @@ export class WaterScene {
     return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
   }
 
-  /** Returns the box that a view shows: the water with room for waves, or the resting particles once a frame tells where the floor is. */
+  /** Returns the box that a view shows: the water with room for waves, or the resting particles, as soon as a frame tells where the floor is. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
     const { sideM, widthM, wave, waterExtents } = this.greeting;
