@@ -201,6 +201,7 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
     await state(operator, "live");
     await operator.getByTestId("share").click();
     await operator.getByTestId("share-target").selectOption("roles");
+    await operator.getByRole("button", { name: "Open the room" }).click();
     await operator.getByTestId("share-role").waitFor({ timeout: 4 * WAIT_MS });
     const links = {};
     for (const role of ["operator", "player", "viewer"]) {

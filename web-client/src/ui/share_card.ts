@@ -51,7 +51,7 @@ export class ShareCard {
   private made: RoomWithTokens | undefined;
   private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": "QR code of the link" });
   private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": "Link" });
-  private readonly targetRow = new SelectRow("share-target", "Leads to", "Where the link leads.", (value) => void this.choose(value as Target));
+  private readonly targetRow = new SelectRow("share-target", "Leads to", "Where the link leads.", (value) => this.choose(value as Target));
   private readonly roleRow = new SelectRow("share-role", "For", "The role of those who open the link.", (value) => {
     this.role = value as RoleName;
     this.show();
@@ -75,7 +75,7 @@ export class ShareCard {
   constructor(private readonly source: ShareSource) {
     this.sendButton.hidden = typeof navigator.share !== "function";
     this.roleRow.setChoices(Object.entries(kRoles).map(([value, label]) => ({ value, label })), this.role);
-    this.copyButton.addEventListener("click", () => void this.copy());
+    this.copyButton.addEventListener("click", () => void (this.isReady ? this.copy() : this.openForRoles()));
     this.sendButton.addEventListener("click", () => void this.send());
     this.closeButton.addEventListener("click", () => this.dialog.close());
     this.link.addEventListener("focus", () => this.link.select());
@@ -107,24 +107,34 @@ export class ShareCard {
     this.show();
   }
 
-  private async choose(target: Target): Promise<void> {
+  /** False: the room of the link has to be opened first. */
+  private get isReady(): boolean {
+    return this.target !== "roles" || this.made !== undefined;
+  }
+
+  private choose(target: Target): void {
     this.target = target;
     this.show();
-    if (target !== "roles" || this.made) return;
+  }
+
+  private async openForRoles(): Promise<void> {
+    this.copyButton.disabled = true;
     this.tell("Opening the room: this takes some seconds.");
     try {
       this.made = await this.source.openForRoles();
       this.show();
     } catch (error) {
+      this.copyButton.disabled = false;
       if (this.target === "roles") this.tell(`The room could not be opened: ${error instanceof Error ? error.message : String(error)}`);
     }
   }
 
   private show(): void {
-    const { target, made } = this;
-    const isReady = target !== "roles" || made !== undefined;
+    const { target, isReady } = this;
     this.roleRow.element.hidden = target !== "roles" || !isReady;
-    this.copyButton.disabled = this.sendButton.disabled = !isReady;
+    setText(this.copyButton, isReady ? "Copy" : "Open the room");
+    this.copyButton.disabled = false;
+    this.sendButton.disabled = !isReady;
     const link = isReady ? this.linkNow() : "";
     this.link.value = this.qr.dataset["address"] = link;
     const isDrawn = link !== "" && link.length <= kQrMaxLength && target !== "embed";
