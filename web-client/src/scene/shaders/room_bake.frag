@@ -35,7 +35,7 @@ void main() {
     }
   } else {
     float high = (at.y - kLow.y) / (kHigh.y - kLow.y);
-    light = mix(vec3(0.085, 0.105, 0.125), vec3(0.25, 0.30, 0.34), smoothstep(0.0, 0.9, high)) * u_room_light;
+    light = mix(vec3(0.050, 0.066, 0.086), vec3(0.15, 0.19, 0.23), smoothstep(0.0, 0.9, high)) * u_room_light;
     vec2 along = way == t.z ? vec2(at.x * sign(-direction.z), high) : vec2(at.z * sign(direction.x), high);
     bool has_window = way == t.z ? direction.z < 0.0 : direction.x < 0.0;
     if (has_window) {
