@@ -1,4 +1,4 @@
-// Bakes a lit room into one face of the cube: a wooden floor, dark walls, high windows on the sun's side, and lamps under the ceiling.
+// Bakes a lit room into one face of the cube: a grey floor, blue walls, high windows on the sun's side, and lamps under the ceiling.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;    // of walls, floor and ceiling, relative to noon
@@ -29,13 +29,13 @@ void main() {
       light = vec3(0.16, 0.17, 0.18) * u_room_light + vec3(4.2, 4.1, 3.8) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
     } else {
       float plank = fract(at.z * 9.0);
-      light = mix(vec3(0.060, 0.045, 0.034), vec3(0.070, 0.053, 0.040), smoothstep(0.0, 0.1, plank)) * u_room_light;
+      light = mix(vec3(0.11, 0.115, 0.12), vec3(0.125, 0.13, 0.135), smoothstep(0.0, 0.1, plank)) * u_room_light;
       // The window's light on the floor.
       light += vec3(0.07, 0.068, 0.06) * u_window_light * within(at.xz, vec2(-0.75, -0.85), vec2(0.25, -0.1), 0.25);
     }
   } else {
     float high = (at.y - kLow.y) / (kHigh.y - kLow.y);
-    light = mix(vec3(0.050, 0.066, 0.086), vec3(0.15, 0.19, 0.23), smoothstep(0.0, 0.9, high)) * u_room_light;
+    light = mix(vec3(0.10, 0.17, 0.23), vec3(0.30, 0.43, 0.52), smoothstep(0.1, 0.8, high)) * u_room_light;
     vec2 along = way == t.z ? vec2(at.x * sign(-direction.z), high) : vec2(at.z * sign(direction.x), high);
     bool has_window = way == t.z ? direction.z < 0.0 : direction.x < 0.0;
     if (has_window) {

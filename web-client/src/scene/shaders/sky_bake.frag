@@ -56,10 +56,10 @@ void main() {
   float edge = clamp(0.5 + 2.6 * (dense - cloud(at + 0.16 * sunward)), 0.0, 1.0);
   vec3 lit = mix(u_cloud, u_cloud_lit, clamp(pow(toward_sun, 3.0) + 0.75 * edge * (1.0 - heavy), 0.0, 1.0));
   lit *= mix(mix(0.72, 1.12, edge), 0.45 + 1.1 * smoothstep(0.25, 0.75, dense), heavy);
-  float cover = smoothstep(0.52 - 0.62 * heavy, 0.66 - 0.16 * heavy, dense) * smoothstep(0.0, 0.06, up);
+  float cover = smoothstep(0.48 - 0.58 * heavy, 0.76 - 0.26 * heavy, dense) * smoothstep(0.0, 0.06, up);
   // Thin high clouds between them.
   cover = max(cover, 0.35 * (1.0 - heavy) * smoothstep(0.4, 0.9, cloud(plane * vec2(0.2, 0.9) + 11.0)) * smoothstep(0.1, 0.4, up));
-  cover *= mix(0.9, 0.95, heavy);
+  cover *= mix(0.8, 0.95, heavy);
   // Air lies between the eye and the low ones.
   sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.16, up), 1.0, heavy)), cover);
   vec3 ground = u_ambient_up * vec3(0.95, 0.79, 0.66);

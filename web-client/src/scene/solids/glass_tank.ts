@@ -17,14 +17,16 @@ const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
 /** Height of the bar that holds the upper edges of a tank's glass, as a share of its size. */
 const kRimThickness = 0.014;
+/** Thickness of a flume's beams and posts, in its widths: thin, because one looks between them. */
+const kBeamWidths = 0.025;
 /** Bays of a flume's frame along its length, for each of its sizes. */
 const kBayCount = 2;
 /** The size of a long channel is this many of its shorter sides: its glass and frame are not those of a wide tank. */
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kWood: Paint = [0.17, 0.105, 0.062, 0.55];
-const kWoodEdge: Paint = [0.12, 0.07, 0.04, 0.55];
+const kWood: Paint = [0.40, 0.39, 0.36, 0.35];
+const kWoodEdge: Paint = [0.24, 0.235, 0.22, 0.35];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 const kBase: Paint = [0.20, 0.22, 0.24, 0.1];
 const kGlassPaint: Paint = [1, 1, 1, 0];
@@ -91,7 +93,7 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
       for (const z of [-1, 1]) box(x * (hx + reachM - 2 * legM), z * (hz + reachM - 2 * legM), -bedM - tableM - 0.9 * longM, -bedM - tableM, legM, legM, kWoodEdge);
     return builder.build();
   }
-  const beamM = 0.013 * longM;
+  const beamM = kBeamWidths * Math.min(sideM, widthM);
   const isAlongX = sideM >= widthM;
   box(0, 0, -bedM - 2.5 * beamM, -bedM, hx + beamM, hz + beamM, kSteel);
   for (let bay = 0; bay <= bayCount; ++bay) {
