@@ -11,7 +11,8 @@ describe("names of the sides of the water", () => {
   it("say what is there, and where only if there are several", () => {
     const sides = { "+x": "closed", "-x": "open", "+z": "closed", "-z": "open" } as const;
     const beaches = [{ side: "+x", widthM: 6, shoreDepthM: 0 }] as const;
-    expect(named({ wave: wave(sides), beaches: [...beaches], setting: "openSea" })).toEqual(["beach", "left side: open sea", "quay", "far side: open sea"]);
+    expect(named({ wave: wave(sides), beaches: [...beaches], setting: "openSea" })).toEqual(["beach", "left side: open sea", "rocky shore", "far side: open sea"]);
+    expect(named({ wave: wave(sides), beaches: [], setting: "openSea" })[0]).toBe("right side: quay");
   });
 
   it("are walls in a basin, and ends where a flume lets waves out", () => {

@@ -2,7 +2,7 @@
 import type { GreetingInfo } from "../codec/greeting";
 import { kSideNames, type SideName } from "../codec/scene_info";
 
-export type SideWhat = "beach" | "sea" | "quay" | "wall" | "end";
+export type SideWhat = "beach" | "sea" | "rocks" | "quay" | "wall" | "end";
 /** As seen from the first view. */
 export type SideWhere = "left" | "right" | "near" | "far";
 
@@ -16,7 +16,7 @@ type Surrounded = Pick<GreetingInfo, "wave" | "beaches" | "setting"> & { firstVi
 function whatIsAt(side: SideName, { wave, beaches, setting }: Surrounded): SideWhat {
   if (beaches.some((beach) => beach.side === side)) return "beach";
   const isClosed = wave === undefined || wave.sides[side] === "closed";
-  if (setting === "openSea") return isClosed ? "quay" : "sea";
+  if (setting === "openSea") return !isClosed ? "sea" : beaches.length > 0 ? "rocks" : "quay";
   return isClosed ? "wall" : "end";
 }
 

@@ -1,7 +1,7 @@
 // Texts of the page for people, in one table, so that a translation replaces this file.
 import type { SideWhat, SideWhere } from "./side_names";
 
-const kSides: Record<SideWhat, string> = { beach: "beach", sea: "open sea", quay: "quay", wall: "wall", end: "open end" };
+const kSides: Record<SideWhat, string> = { beach: "beach", sea: "open sea", rocks: "rocky shore", quay: "quay", wall: "wall", end: "open end" };
 
 export const kTexts = {
   // The card

@@ -1,5 +1,5 @@
 // The ground of an open sea: the bed under the square and around it, beaches that continue along the coast, dunes and hills behind them, and
-// quays at closed sides without a beach. Pure.
+// at closed sides without a beach quays, or rocky shores where the scene has a beach elsewhere. Pure.
 import type { BufferGeometry } from "three";
 
 import { kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
@@ -40,6 +40,7 @@ const kGrass: Paint = [0.17, 0.185, 0.085, 1.0];
 const kFarGrass: Paint = [0.085, 0.125, 0.075, 0.6];
 const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
 const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
+const kCliff: Paint = [0.22, 0.2, 0.18, 1.0];
 
 /** Gentle rolling in -1..1: sines with no common period. */
 function rolling(x: number, z: number): number {
@@ -53,6 +54,11 @@ function isShore({ bed }: Coast, side: SideName): boolean {
   const { sideM, widthM } = bed;
   const depthsM = kSideSamples.map((share) => (side[1] === "x" ? depthAtM(bed, (sign * sideM) / 2, share * widthM) : depthAtM(bed, share * sideM, (sign * widthM) / 2)));
   return depthsM.every((depthM) => isShoreDepth(bed, depthM));
+}
+
+/** Returns whether closed sides are rocky shores: beside a beach, quays look like those of a canal. */
+function isWild({ bed }: Coast): boolean {
+  return bed.beaches.length > 0;
 }
 
 export function quayHeightM(bed: Bed): number {
@@ -77,7 +83,8 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
       const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
       heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
     } else if (outM > 1e-9 || pastQuay) {
-      heightM = Math.max(heightM, quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
+      const uneven = isWild(coast) ? 1 + 0.55 * rolling((31 * xM) / sideM, (31 * zM) / sideM) : 1;
+      heightM = Math.max(heightM, uneven * quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
     }
   }
   return heightM;
@@ -95,6 +102,7 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
     const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));
     const patchy = 0.06 * rolling((23 * xM) / sideM, (23 * zM) / sideM);
     if (isShore(coast, side)) paint = mixPaint(paint, grass, smoothstep(0.16, 0.42, out + patchy) * smoothstep(0.4, 0.8, yM / (kDuneSides * sideM)));
+    else if (yM > 0 && isWild(coast)) paint = mixPaint(kCliff, grass, smoothstep(0.02, 0.3, out + patchy));
     else if (yM > 0) paint = mixPaint(kPaving, grass, smoothstep(kPavingSides, kPavingSides + 0.01, out));
   }
   return paint;
@@ -164,6 +172,6 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): v
     };
     const low = ordered.map((t) => at(t, false));
     const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
-    builder.grid([low, high], kQuayWall);
+    builder.grid([low, high], isWild(coast) ? kCliff : kQuayWall);
   }
 }
