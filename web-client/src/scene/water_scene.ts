@@ -215,17 +215,16 @@ export class WaterScene {
     return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
   }
 
-  /** Returns the box that a view shows: the water with room for waves, or the resting particles, as soon as a frame tells where the floor is. */
+  /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particles; a scene's first view is that of resting water. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, widthM, wave, waterExtents } = this.greeting;
+    const { sideM, widthM, wave, waterExtents, firstView } = this.greeting;
     const view = viewOf(this.greeting);
     if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * Math.sqrt(sideM * widthM) };
     const frame = this.frames.particles.newest();
     if (!frame) return undefined;
-    // Whatever splashes high at present: the lowest particles lie on the floor.
     const floorM = frame.minM[1] - frame.radiusM;
-    return { ...view, sideM, widthM, minYM: floorM, maxYM: floorM + waterExtents.depthM };
+    return { ...view, sideM, widthM, minYM: floorM, maxYM: firstView ? floorM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
   }
 
   /** Returns the water into which the camera may dive; undefined: none is deep enough. */

@@ -26,7 +26,7 @@ void main() {
   if (way == t.y) {
     if (direction.y > 0.0) {
       vec2 lamp = abs(fract(at.xz * vec2(1.0, 1.5)) - 0.5);
-      light = vec3(0.16, 0.17, 0.18) * u_room_light + vec3(4.2, 4.1, 3.8) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
+      light = vec3(0.16, 0.17, 0.18) * u_room_light + vec3(1.8, 1.75, 1.6) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
     } else {
       float plank = fract(at.z * 9.0);
       light = mix(vec3(0.11, 0.115, 0.12), vec3(0.125, 0.13, 0.135), smoothstep(0.0, 0.1, plank)) * u_room_light;
@@ -41,7 +41,7 @@ void main() {
     if (has_window) {
       vec2 pane = vec2(fract(along.x * 1.5 + 0.25), along.y);
       float open = within(pane, vec2(0.12, 0.64), vec2(0.88, 0.92), 0.012);
-      vec3 sky = mix(vec3(0.95, 1.0, 1.05), vec3(0.55, 0.78, 1.1), smoothstep(0.6, 0.95, high)) * 2.4 * u_window_light;
+      vec3 sky = mix(vec3(0.95, 1.0, 1.05), vec3(0.55, 0.78, 1.1), smoothstep(0.6, 0.95, high)) * 1.3 * u_window_light;
       float frame = within(abs(pane - vec2(0.5, 0.78)), vec2(-1.0), vec2(0.012, 1.0), 0.006);
       light = mix(light, sky, open * (1.0 - frame));
       light += vec3(0.05, 0.05, 0.048) * u_window_light * within(pane, vec2(0.02, 0.5), vec2(0.98, 0.99), 0.15) * (1.0 - open);
