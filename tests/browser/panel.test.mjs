@@ -45,9 +45,13 @@ describe("the panel", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   it("follows a finger on its handle", async () => {
     const touch = await phone.context().newCDPSession(phone);
     const send = (type, y) => touch.send("Input.dispatchTouchEvent", { type, touchPoints: y === undefined ? [] : [{ id: 1, x: 195, y }] });
+    // The handle follows the sheet a picture later.
+    const handleAtSheet = () => phone.waitForFunction(() => Math.abs(document.querySelector("#panel-toggle").getBoundingClientRect().top - document.querySelector("#panel").getBoundingClientRect().top) < 24, undefined, { timeout: WAIT_MS });
+    await handleAtSheet();
     const box = await phone.locator("#panel-toggle").boundingBox();
     const handleY = box.y + box.height / 2;
     for (const [toY, open] of [[380, true], [820, false]]) {
+      await handleAtSheet();
       const top = await phone.locator("#panel-toggle").boundingBox().then(({ y, height }) => y + height / 2);
       await send("touchStart", top);
       for (let k = 1; k <= 8; ++k) await send("touchMove", top + ((toY - top) * k) / 8);
