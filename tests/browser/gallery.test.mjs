@@ -10,7 +10,7 @@ import { chromium } from "playwright-core";
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { compare, described } from "./gallery/compare.mjs";
 import { DrivenPage } from "./gallery/driven_page.mjs";
-import { check, differencePath, kFile, keptPath, kKept, madePath, makePictures, nameOf } from "./gallery/pictures.mjs";
+import { check, differencePath, kFile, keptPath, kKept, kPosters, madePath, makePictures, nameOf } from "./gallery/pictures.mjs";
 import { lightsOf, kSize, sceneOf, setUp, shippedScenes, shotOf } from "./gallery/shots.mjs";
 
 const kWaitMs = 600_000;
@@ -88,5 +88,6 @@ describe("pictures of the shipped scenes", { concurrency: 1, skip }, () => {
 
   it("keeps only pictures of shipped scenes", () => {
     for (const quality of readdirSync(kKept)) assert.deepEqual(readdirSync(join(kKept, quality)).filter((file) => !sceneOf(file)), []);
+    assert.deepEqual(readdirSync(kPosters).filter((file) => !shippedScenes().includes(file.replace(".webp", ""))), []);
   });
 });

@@ -117,7 +117,7 @@ describe("a view of the water", () => {
 });
 
 describe("the first view of a scene", () => {
-  const first = { xM: 3, zM: -2, lengthM: 12, depthM: 6, headingRad: 0.7, pitchRad: 0.3, hour: 12 };
+  const first = { xM: 3, zM: -2, acrossM: 12, awayM: 6, headingRad: 0.7, pitchRad: 0.3, hour: 12 };
   const water = { sideM: 40, minYM: -1, maxYM: 1 };
 
   it("looks along its heading and down by its pitch, at its rectangle", () => {
@@ -137,7 +137,7 @@ describe("the first view of a scene", () => {
     const tall = firstView(water, first, { across: 0.4, up: 1 });
     expect(tall.box.widthM).toBeLessThan(8);
     expect(Math.asin(tall.backward.y)).toBeGreaterThan(0.4);
-    expect(firstView(water, { ...first, lengthM: 0, depthM: 0 }, { across: 2, up: 1 }).box).toMatchObject({ sideM: 40, widthM: 40 });
+    expect(firstView(water, { ...first, acrossM: 0, awayM: 0 }, { across: 2, up: 1 }).box).toMatchObject({ sideM: 40, widthM: 40 });
   });
 });
 

@@ -117,7 +117,7 @@ describe("the coast", () => {
   const bed = { sideM: 32, widthM: 32, depthM: 1.2, beaches: [{ side: "+x" as const, widthM: 7, shoreDepthM: 0 }] };
   const coast = { bed, sides: sidesOf("closed", "open", "closed", "open") };
 
-  it("has the bed's depth, rises behind a beach, stands as a quay elsewhere", () => {
+  it("has the bed's depth, rises behind a beach, stands as uneven rocks elsewhere", () => {
     expect(coastHeightM(coast, -60, -60)).toBeCloseTo(-1.2, 9);
     let before = coastHeightM(coast, 15.9, 0);
     for (let xM = 15.95; xM < 60; xM += 0.05) {
@@ -127,7 +127,14 @@ describe("the coast", () => {
     }
     expect(before).toBeGreaterThan(0.5);
     expect(coastHeightM(coast, 0, 15.99)).toBeLessThan(-1);
-    expect(coastHeightM(coast, 0, 16.01)).toBeGreaterThanOrEqual(quayHeightM(bed) - 1e-9);
+    const heightsM = [-12, -8, -4, 0, 4, 8].map((xM) => coastHeightM(coast, xM, 16.01));
+    expect(Math.min(...heightsM)).toBeGreaterThan(0.3 * quayHeightM(bed));
+    expect(Math.max(...heightsM) - Math.min(...heightsM)).toBeGreaterThan(0.3 * quayHeightM(bed));
+  });
+
+  it("stands as an even quay where the scene has no beach", () => {
+    const harbor = { bed: { ...bed, beaches: [] }, sides: sidesOf("open", "open", "closed", "open") };
+    for (const xM of [-12, -4, 0, 8]) expect(coastHeightM(harbor, xM, 16.01)).toBeCloseTo(quayHeightM(bed), 6);
   });
 
   it("follows the beach outside the square as well", () => {

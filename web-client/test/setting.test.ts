@@ -55,11 +55,11 @@ describe("the water", () => {
 describe("the first view", () => {
   it("is that of the scene in radians, with the defaults of the server's rules", () => {
     expect(readFirstView(create(SceneSchema, { wave: sized }))).toBeUndefined();
-    expect(readFirstView(create(SceneSchema, { firstView: { xM: 2, headingDeg: 180, hour: 16 } }))).toEqual({ xM: 2, zM: 0, lengthM: 0, depthM: 0, headingRad: Math.PI, pitchRad: (22 * Math.PI) / 180, hour: 16 });
+    expect(readFirstView(create(SceneSchema, { firstView: { xM: 2, headingDeg: 180, hour: 16 } }))).toEqual({ xM: 2, zM: 0, acrossM: 0, awayM: 0, headingRad: Math.PI, pitchRad: (22 * Math.PI) / 180, hour: 16 });
   });
 
   it("is left out where its numbers cannot be drawn", () => {
-    for (const firstView of [{ xM: NaN }, { lengthM: -1 }, { pitchDeg: 90 }, { hour: 25 }]) expect(readFirstView(create(SceneSchema, { firstView }))).toBeUndefined();
+    for (const firstView of [{ xM: NaN }, { acrossM: -1 }, { pitchDeg: 90 }, { hour: 25 }]) expect(readFirstView(create(SceneSchema, { firstView }))).toBeUndefined();
   });
 });
 

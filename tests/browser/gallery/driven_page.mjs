@@ -11,7 +11,7 @@ const kWaitMs = 180_000;
 const kStepMaxTicks = 600;
 /** Pictures that are not kept only move the white water on. They are small, because they cost by the pixel. */
 const kSmallWidthPx = 64;
-/** A light fades within 1.2 s of the pictures' clock, and the camera arrives at a view within 0.9 s. */
+/** A light fades within 1.2 s of the pictures' clock. */
 const kFadeS = 2;
 /** The page's panels; only the canvas is kept. */
 const kBare = "body > :not(canvas), #card, #panel, #panel-toggle, #toast { display: none !important }";
@@ -172,20 +172,9 @@ export class DrivenPage {
     );
   }
 
-  /** Places the camera at one of the page's views ("start", "side", "overview"), or anywhere, metres. */
-  async look({ view, eyeM, targetM }) {
-    if (!view) return this.#page.evaluate(([eye, target]) => window.spindrift.stepped.look(eye, target), [eyeM, targetM]);
-    await this.#resize(true);
-    await this.#page.evaluate(
-      ({ name, timeS, travelS }) => {
-        const { stepped } = window.spindrift;
-        document.getElementById(`view-${name}`).click();
-        stepped.draw(timeS);
-        stepped.pass(travelS);
-        stepped.draw(timeS);
-      },
-      { name: view, timeS: this.#shownTick / kTickRateHz, travelS: kFadeS },
-    );
+  /** Places the camera, metres. */
+  look({ eyeM, targetM }) {
+    return this.#page.evaluate(([eye, target]) => window.spindrift.stepped.look(eye, target), [eyeM, targetM]);
   }
 
   /** Returns the light presets of the page. */

@@ -58,7 +58,7 @@ function connectParent(app: App, parents: readonly string[], news: News): void {
   window.setInterval(tell, kTellEveryMs);
 }
 
-/** Returns the command of a request, or why there is none. */
+/** Returns the command of a request, or why it is refused. */
 function actionOf({ effects }: App, request: Request): CommandAction | string {
   switch (request.kind) {
     case "splash": {

@@ -27,7 +27,7 @@ export class Sheet {
     handle.addEventListener("pointerdown", (event) => this.begin(event));
     handle.addEventListener("pointermove", (event) => this.move(event));
     for (const type of ["pointerup", "pointercancel"] as const) handle.addEventListener(type, (event) => this.end(event));
-    // The click that follows a drag is none.
+    // A click that ends a drag does not count.
     handle.addEventListener("click", (event) => this.wasDragged && event.stopImmediatePropagation(), { capture: true });
   }
 

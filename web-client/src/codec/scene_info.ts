@@ -135,25 +135,31 @@ export function readWaterType(scene: Scene): WaterTypeName {
   return kWaterTypes[scene.waterType] ?? (readSetting(scene) === "openSea" ? "coast" : "pool");
 }
 
-/** What a visitor sees first; a size of 0 leaves it to the setting. */
+/** What a visitor sees first: a rectangle of the water. `acrossM` 0: as much as suits the setting; `awayM` 0: as long as across. */
 export interface FirstViewInfo {
   xM: number;
   zM: number;
-  lengthM: number;
-  depthM: number;
+  /** Sides across the picture and away from the camera. */
+  acrossM: number;
+  awayM: number;
   /** Where the camera looks, from +x toward +z, and by how much down. */
   headingRad: number;
   pitchRad: number;
-  /** Of the light. */
+  /** Hour of the light. */
   hour: number;
 }
 
 /** Returns the first view of a scene; undefined without one, or with numbers that cannot be drawn. */
 export function readFirstView({ firstView }: Scene): FirstViewInfo | undefined {
   if (!firstView) return undefined;
-  const { xM = 0, zM = 0, lengthM = 0, depthM = 0, headingDeg = -90, pitchDeg = 22, hour = 12 } = firstView;
-  const isDrawable = [xM, zM, headingDeg].every(Number.isFinite) && [lengthM, depthM].every((sizeM) => sizeM >= 0 && sizeM <= 1e6) && pitchDeg > 0 && pitchDeg < 90 && hour >= 0 && hour <= 24;
-  return isDrawable ? { xM, zM, lengthM, depthM, headingRad: (headingDeg * Math.PI) / 180, pitchRad: (pitchDeg * Math.PI) / 180, hour } : undefined;
+  const { xM = 0, zM = 0, acrossM = 0, awayM = 0, headingDeg = -90, pitchDeg = 22, hour = 12 } = firstView;
+  const isDrawable = [xM, zM, headingDeg].every(Number.isFinite) && [acrossM, awayM].every((sizeM) => sizeM >= 0 && sizeM <= 1e6) && pitchDeg > 0 && pitchDeg < 90 && hour >= 0 && hour <= 24;
+  return isDrawable ? { xM, zM, acrossM, awayM, headingRad: (headingDeg * Math.PI) / 180, pitchRad: (pitchDeg * Math.PI) / 180, hour } : undefined;
+}
+
+/** Returns whether closed sides without a beach are rocky shores: beside a beach, quays look like those of a canal. */
+export function hasRockyShores(beaches: readonly BeachInfo[]): boolean {
+  return beaches.length > 0;
 }
 
 /** Returns the wind of a scene with a storm; undefined without one, or with numbers that cannot be drawn. */

@@ -1,7 +1,7 @@
 // Which room a page's address means:
 //   ?room=NAME               that room; without it, the server's first one
-//   ?scene=SCENE             the room of that scene, which is opened if there is none
-//   ?room=NAME&scene=SCENE   the room NAME, which is opened with that scene if there is none
+//   ?scene=SCENE             the room of that scene, which is opened if it does not exist
+//   ?room=NAME&scene=SCENE   the room NAME, which is opened with that scene if it does not exist
 //   &set=PATH:VALUE,…        values of the scene's parameters in a room that is opened; without effect on a room that exists
 // Everybody who opens the same link comes into the same room, so its name follows from scene and values alone.
 

@@ -14,7 +14,7 @@ const kGoalTopSides = 0.08;
 
 interface Tag {
   label: HTMLElement;
-  /** Shown in this game, and while there is none. */
+  /** Shown in this game, and outside of games. */
   kind: GameInfo["kind"];
   xM: number;
   zM: number;

@@ -1,6 +1,6 @@
 // What is at each side of the water, so that a list names a side by what one sees there.
 import type { GreetingInfo } from "../codec/greeting";
-import { kSideNames, type SideName } from "../codec/scene_info";
+import { hasRockyShores, kSideNames, type SideName } from "../codec/scene_info";
 
 export type SideWhat = "beach" | "sea" | "rocks" | "quay" | "wall" | "end";
 /** As seen from the first view. */
@@ -16,7 +16,7 @@ type Surrounded = Pick<GreetingInfo, "wave" | "beaches" | "setting"> & { firstVi
 function whatIsAt(side: SideName, { wave, beaches, setting }: Surrounded): SideWhat {
   if (beaches.some((beach) => beach.side === side)) return "beach";
   const isClosed = wave === undefined || wave.sides[side] === "closed";
-  if (setting === "openSea") return !isClosed ? "sea" : beaches.length > 0 ? "rocks" : "quay";
+  if (setting === "openSea") return !isClosed ? "sea" : hasRockyShores(beaches) ? "rocks" : "quay";
   return isClosed ? "wall" : "end";
 }
 

@@ -192,7 +192,7 @@ export class CameraViews {
       // The bed does not matter for a part of the water.
       minYM: Math.max(whole.minYM, -0.25 * radiusM),
     };
-    return frameBox(box, this.backwardOf("start", tangents), tangents);
+    return frameBox(box, this.aimed("start", tangents).backward, tangents);
   }
 
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
@@ -280,14 +280,14 @@ export class CameraViews {
     this.camera.updateProjectionMatrix();
   }
 
-  /** Direction from the water to the camera. */
-  private backwardOf(name: Exclude<FixedView, "below">, tangents: { across: number; up: number }): Vector3 {
+  /** Returns the part of the water that a view shows, and the direction to the camera. */
+  private aimed(name: Exclude<FixedView, "below">, tangents: { across: number; up: number }): { box: ViewedBox; backward: Vector3 } {
     const { extent } = this;
-    if (name === "start" && extent.first) return firstView(extent, extent.first, tangents).backward;
+    if (name === "start" && extent.first) return firstView(extent, extent.first, tangents);
     const backward = name === "side" ? turnedTo(extent.seenFrom ?? "+z", kBackward.side) : kBackward[name].clone();
     if (name === "start") backward.y *= raisedBy(extent, tangents);
     if (name === "side") backward.y *= extent.sideRaised ?? 1;
-    return backward;
+    return { box: focusBox(extent, tangents), backward };
   }
 
   private placed(name: FixedView): Placement {
@@ -298,10 +298,10 @@ export class CameraViews {
     }
     if (name === "below") return this.placed("start");
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
-    const box = name === "start" && extent.first ? firstView(extent, extent.first, tangents).box : focusBox(extent, tangents);
-    const placement = frameBox(box, this.backwardOf(name, tangents), tangents);
+    const { box, backward } = this.aimed(name, tangents);
+    const placement = frameBox(box, backward, tangents);
     const distanceM = placement.positionM.distanceTo(placement.targetM);
-    // A scene may be seen first from as near as it likes.
+    // A scene's first view may be nearer.
     this.controls.minDistance = Math.min(0.25 * extent.sideM, 0.5 * distanceM);
     this.controls.maxDistance = Math.max(4 * extent.sideM, 1.5 * distanceM);
     return placement;

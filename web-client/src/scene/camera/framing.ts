@@ -84,23 +84,23 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
   return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
 }
 
-/** In a tall free part, a scene's first view shows this share of its length, from so many times steeper. */
-const kFirstTall = { length: 0.55, steep: 1.5 };
-/** Depth of water that it shows, as a share of its length. */
+/** In a tall free part, a scene's first view shows this share of its side across, and looks down with this multiple of its slope. */
+const kFirstTall = { across: 0.55, slope: 1.5 };
+/** Depth of water that it shows, as a share of its side across. */
 const kFirstDepth = 0.3;
 
 /** Returns the part of the water that a scene shows first, and the direction to the camera, in a free part of this shape. */
 export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { across: number; up: number }): { box: ViewedBox; backward: Vector3 } {
   const tall = tallness(tangents);
   const whole = focusBox(box, tangents);
-  const wideM = first.lengthM > 0 ? first.lengthM * (1 + (kFirstTall.length - 1) * tall) : Math.max(whole.sideM, whole.widthM ?? 0);
+  const acrossM = first.acrossM > 0 ? first.acrossM * (1 + (kFirstTall.across - 1) * tall) : Math.max(whole.sideM, whole.widthM ?? 0);
   const { headingRad, xM, zM } = first;
-  const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.steep - 1) * tall));
+  const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.slope - 1) * tall));
   // A part of wide water is seen without its floor.
-  const minYM = Math.max(box.minYM, -kFirstDepth * wideM);
+  const minYM = Math.max(box.minYM, -kFirstDepth * acrossM);
   const { maxYM } = box;
   return {
-    box: { sideM: first.depthM || wideM, widthM: wideM, minYM, maxYM, centreM: { x: xM, z: zM }, turnRad: headingRad },
+    box: { sideM: first.awayM || acrossM, widthM: acrossM, minYM, maxYM, centreM: { x: xM, z: zM }, turnRad: headingRad },
     backward: new Vector3(-Math.cos(headingRad) * Math.cos(pitchRad), Math.sin(pitchRad), -Math.sin(headingRad) * Math.cos(pitchRad)),
   };
 }

@@ -2,7 +2,7 @@
 // at closed sides without a beach quays, or rocky shores where the scene has a beach elsewhere. Pure.
 import type { BufferGeometry } from "three";
 
-import { kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
+import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
 import { clamp, smoothstep } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { bedPaint, mixPaint } from "./paints";
@@ -56,11 +56,6 @@ function isShore({ bed }: Coast, side: SideName): boolean {
   return depthsM.every((depthM) => isShoreDepth(bed, depthM));
 }
 
-/** Returns whether closed sides are rocky shores: beside a beach, quays look like those of a canal. */
-function isWild({ bed }: Coast): boolean {
-  return bed.beaches.length > 0;
-}
-
 export function quayHeightM(bed: Bed): number {
   return clamp(kQuaySides * longSideM(bed), kQuayMinM, kQuayMaxM);
 }
@@ -83,7 +78,7 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
       const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
       heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
     } else if (outM > 1e-9 || pastQuay) {
-      const uneven = isWild(coast) ? 1 + 0.55 * rolling((31 * xM) / sideM, (31 * zM) / sideM) : 1;
+      const uneven = hasRockyShores(bed.beaches) ? 1 + 0.55 * rolling((31 * xM) / sideM, (31 * zM) / sideM) : 1;
       heightM = Math.max(heightM, uneven * quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
     }
   }
@@ -102,7 +97,7 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
     const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));
     const patchy = 0.06 * rolling((23 * xM) / sideM, (23 * zM) / sideM);
     if (isShore(coast, side)) paint = mixPaint(paint, grass, smoothstep(0.16, 0.42, out + patchy) * smoothstep(0.4, 0.8, yM / (kDuneSides * sideM)));
-    else if (yM > 0 && isWild(coast)) paint = mixPaint(kCliff, grass, smoothstep(0.02, 0.3, out + patchy));
+    else if (yM > 0 && hasRockyShores(bed.beaches)) paint = mixPaint(kCliff, grass, smoothstep(0.02, 0.3, out + patchy));
     else if (yM > 0) paint = mixPaint(kPaving, grass, smoothstep(kPavingSides, kPavingSides + 0.01, out));
   }
   return paint;
@@ -172,6 +167,6 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): v
     };
     const low = ordered.map((t) => at(t, false));
     const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
-    builder.grid([low, high], isWild(coast) ? kCliff : kQuayWall);
+    builder.grid([low, high], hasRockyShores(coast.bed.beaches) ? kCliff : kQuayWall);
   }
 }

@@ -78,9 +78,10 @@ function unit([x, y, z]: Rgb): Rgb {
   return [x / length, y / length, z / length];
 }
 
-const map = (a: Rgb, b: Rgb, of: (a: number, b: number) => number): Rgb => [of(a[0], b[0]), of(a[1], b[1]), of(a[2], b[2])];
-const mixRgb = (a: Rgb, b: Rgb, share: number): Rgb => map(a, b, (x, y) => mix(x, y, share));
-const scale = (a: Rgb, by: number): Rgb => map(a, a, (x) => x * by);
+/** Combines two colours channel by channel. */
+export const mapRgb = (a: Rgb, b: Rgb, of: (a: number, b: number) => number): Rgb => [of(a[0], b[0]), of(a[1], b[1]), of(a[2], b[2])];
+const mixRgb = (a: Rgb, b: Rgb, share: number): Rgb => mapRgb(a, b, (x, y) => mix(x, y, share));
+const scale = (a: Rgb, by: number): Rgb => mapRgb(a, a, (x) => x * by);
 const luminance = ([red, green, blue]: Rgb): number => 0.2126 * red + 0.7152 * green + 0.0722 * blue;
 
 function mixSky(a: Sky, b: Sky, share: number): Sky {
@@ -112,8 +113,8 @@ function clearSky(sine: number): Sky {
 function stormSky(clear: Sky): Sky {
   // What is left of the noon's daylight, and half of its tint.
   const dim = luminance(clear.ambientUp) / luminance(kNoonSky.ambientUp);
-  const tint = map(clear.ambientUp, kNoonSky.ambientUp, (a, b) => mix(dim, a / b, 0.5));
-  const of = (name: Exclude<keyof Sky, "exposure">): Rgb => map(kStormSky[name], tint, (a, b) => a * b);
+  const tint = mapRgb(clear.ambientUp, kNoonSky.ambientUp, (a, b) => mix(dim, a / b, 0.5));
+  const of = (name: Exclude<keyof Sky, "exposure">): Rgb => mapRgb(kStormSky[name], tint, (a, b) => a * b);
   return {
     key: of("key"), zenith: of("zenith"), middle: of("middle"), horizon: of("horizon"), glow: of("glow"), cloud: of("cloud"), cloudLit: of("cloudLit"),
     ambientUp: of("ambientUp"), ambientDown: of("ambientDown"), exposure: kStormSky.exposure * clear.exposure,
@@ -140,8 +141,8 @@ export function lightAt(hour: number, storm: number): Light {
     key: isMoon ? moon : scale(sky.key, smoothstep(-0.012, 0.02, sunDirection[1])),
     halo: scale(moon, 0.4),
     sharp: (1 - wild) ** 2,
-    cloudLit: map(sky.cloudLit, moon, (cloud, light) => cloud + 0.6 * light),
-    ambientUp: map(sky.ambientUp, moon, (ambient, light) => ambient + 0.1 * light),
+    cloudLit: mapRgb(sky.cloudLit, moon, (cloud, light) => cloud + 0.6 * light),
+    ambientUp: mapRgb(sky.ambientUp, moon, (ambient, light) => ambient + 0.1 * light),
     cloudCover: mix(kFairCover, 1, wild),
     stars: smoothstep(...kStarSines, sunDirection[1]) * (1 - wild),
   };
@@ -152,8 +153,8 @@ export function indoors(light: Light): Light {
   const daylight = Math.min(luminance(light.ambientUp) / luminance(kNoonSky.ambientUp), 1);
   const lamps = smoothstep(0.9, 0.2, daylight);
   const from = (name: "key" | "ambientUp" | "ambientDown", lamp: Rgb): Rgb => {
-    const tint = map(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b);
-    return map(map(kNoonSky[name], tint, (a, b) => a * b), lamp, (a, b) => a + lamps * b);
+    const tint = mapRgb(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b);
+    return mapRgb(mapRgb(kNoonSky[name], tint, (a, b) => a * b), lamp, (a, b) => a + lamps * b);
   };
   return {
     ...light,
@@ -208,13 +209,13 @@ function throughSurface(sine: number): number {
 export function derive(light: Light): DerivedLight {
   // Clouds on a clear day cover little and are thin.
   const clouds = light.cloudCover - 0.1;
-  const onLevel = ({ key, ambientUp }: Pick<Light, "key" | "ambientUp">, sine: number): Rgb => map(key, ambientUp, (k, a) => 1.25 * k * sine + a);
-  const relative = (name: "ambientUp" | "horizon"): Rgb => map(light[name], kNoonSky[name], (a, b) => a / b);
+  const onLevel = ({ key, ambientUp }: Pick<Light, "key" | "ambientUp">, sine: number): Rgb => mapRgb(key, ambientUp, (k, a) => 1.25 * k * sine + a);
+  const relative = (name: "ambientUp" | "horizon"): Rgb => mapRgb(light[name], kNoonSky[name], (a, b) => a / b);
   return {
     room: relative("ambientUp"),
     window: relative("horizon"),
     veiled: [mixRgb(light.zenith, light.cloud, clouds), mixRgb(light.middle, light.cloud, clouds), mixRgb(light.horizon, light.cloud, 0.3 * clouds)],
-    water: map(onLevel(light, light.keyDirection[1]), onLevel(kNoonSky, kNoon[1]), (a, b) => a / b),
+    water: mapRgb(onLevel(light, light.keyDirection[1]), onLevel(kNoonSky, kNoon[1]), (a, b) => a / b),
     keyBelow: scale(light.key, throughSurface(light.keyDirection[1]) / throughSurface(kNoon[1])),
   };
 }

@@ -1,12 +1,12 @@
 // Optical types of water: what it absorbs and scatters, and the colours that follow for the shaders (shaders/water_optics.glsl). Pure.
 import type { WaterTypeName } from "../../codec/scene_info";
-import type { Rgb } from "./light";
+import { mapRgb, type Rgb } from "./light";
 
-/** Inherent optical properties at 650, 550 and 450 nm, per metre: light lost to absorption, and scattered back where it came from. */
+/** Inherent optical properties at 650, 550 and 450 nm, per metre. */
 interface Properties {
   absorption: Rgb;
   backscattering: Rgb;
-  /** Scenes are models: so many metres of real water have the colour of one of theirs; kRealPerModelLength if left out. */
+  /** kRealPerModelLength if left out. */
   realPerModelLength?: number;
 }
 
@@ -15,21 +15,22 @@ interface Properties {
 const kProperties: Record<WaterTypeName, Properties> = {
   pool: { absorption: [0.340, 0.065, 0.026], backscattering: [0.0060, 0.0120, 0.0180] },
   lagoon: { absorption: [0.345, 0.060, 0.022], backscattering: [0.0050, 0.0085, 0.0130] },
-  // No bed is seen in it.
+  // So deep that no bed is seen.
   ocean: { absorption: [0.350, 0.068, 0.030], backscattering: [0.0016, 0.0028, 0.0052], realPerModelLength: 20 },
   coast: { absorption: [0.375, 0.090, 0.082], backscattering: [0.0045, 0.0070, 0.0078] },
   harbor: { absorption: [0.440, 0.150, 0.200], backscattering: [0.0075, 0.0115, 0.0105] },
 };
 
+/** Scenes are models: this many metres of real water have the colour of one metre of theirs. */
 const kRealPerModelLength = 2.5;
-/** Light that level, infinitely deep water sends up, per light that comes in: this times backscattering over both losses (Gordon et al. 1975). */
+/** Reflectance of deep water over b / (a + b), with a the absorption and b the backscattering (Gordon et al. 1975). */
 const kReflectancePerRatio = 0.33;
 /** Photographs of the sea are exposed for its darkest part. */
 const kExposure = 1.5;
-/** Backscattering by the bubbles of broken water, which have no colour (/m), and the share of that light which is seen. */
+/** Backscattering by the bubbles of broken water at all wavelengths (/m), and the share of that light which is seen. */
 const kBubblesPerM = 0.35;
 const kBubblesShare = 0.55;
-/** Light through a crest has gone this far in the water (m), and this share of it continues to the eye. */
+/** Way of light through a crest (m), and the share of it that reaches the eye. */
 const kCrestM = 0.8;
 const kCrestShare = 0.34;
 
@@ -46,7 +47,7 @@ export interface WaterOptics {
 
 export function waterOpticsOf(type: WaterTypeName): WaterOptics {
   const { absorption, backscattering, realPerModelLength = kRealPerModelLength } = kProperties[type];
-  const of = (value: (a: number, b: number) => number): Rgb => [0, 1, 2].map((i) => value(absorption[i]!, backscattering[i]!)) as unknown as Rgb;
+  const of = (value: (a: number, b: number) => number): Rgb => mapRgb(absorption, backscattering, value);
   return {
     lossPerM: of((a, b) => realPerModelLength * (a + b)),
     scattered: of((a, b) => (kExposure * kReflectancePerRatio * b) / (a + b)),

@@ -36,6 +36,9 @@ float cloud(vec2 p) {
 
 void main() {
   vec3 direction = normalize(v_direction);
+  vec3 ground = u_ambient_up * vec3(0.95, 0.79, 0.66);
+  color = vec4(ground, 0.0);
+  if (direction.y < -0.08) return;
   float up = max(direction.y, 0.0);
   float toward_sun = max(dot(direction, u_sun_direction), 0.0);
   vec3 sky = mix(u_middle, u_zenith, smoothstep(0.12, 0.75, up));
@@ -62,7 +65,6 @@ void main() {
   cover *= mix(0.8, 0.95, heavy);
   // Air lies between the eye and the low ones.
   sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.16, up), 1.0, heavy)), cover);
-  vec3 ground = u_ambient_up * vec3(0.95, 0.79, 0.66);
   sky = mix(sky, ground, smoothstep(0.0, -0.08, direction.y));
   // Stars shine through where there are no clouds, and not through the haze at the horizon.
   color = vec4(sky, (1.0 - cover) * smoothstep(0.0, 0.22, direction.y));

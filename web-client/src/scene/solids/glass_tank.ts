@@ -25,8 +25,8 @@ const kBayCount = 2;
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kWood: Paint = [0.40, 0.39, 0.36, 0.35];
-const kWoodEdge: Paint = [0.24, 0.235, 0.22, 0.35];
+const kTable: Paint = [0.40, 0.39, 0.36, 0.35];
+const kTableEdge: Paint = [0.24, 0.235, 0.22, 0.35];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 const kBase: Paint = [0.20, 0.22, 0.24, 0.1];
 const kGlassPaint: Paint = [1, 1, 1, 0];
@@ -82,7 +82,7 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
   if (!isFlume) {
     const reachM = kTableReach * longM;
     const tableM = kTableThickness * longM;
-    box(0, 0, -bedM - tableM, -bedM, hx + reachM, hz + reachM, kWoodEdge, kWood);
+    box(0, 0, -bedM - tableM, -bedM, hx + reachM, hz + reachM, kTableEdge, kTable);
     const rimM = kRimThickness * longM;
     for (const side of [-1, 1]) {
       box(0, side * (hz - thickM / 2), heightM - rimM, heightM, hx, thickM / 2, kSteel);
@@ -90,7 +90,7 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
     }
     const legM = 0.05 * longM;
     for (const x of [-1, 1])
-      for (const z of [-1, 1]) box(x * (hx + reachM - 2 * legM), z * (hz + reachM - 2 * legM), -bedM - tableM - 0.9 * longM, -bedM - tableM, legM, legM, kWoodEdge);
+      for (const z of [-1, 1]) box(x * (hx + reachM - 2 * legM), z * (hz + reachM - 2 * legM), -bedM - tableM - 0.9 * longM, -bedM - tableM, legM, legM, kTableEdge);
     return builder.build();
   }
   const beamM = kBeamWidths * Math.min(sideM, widthM);
