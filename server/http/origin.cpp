@@ -92,10 +92,10 @@ core::Result<void> checkParentOrigin(const std::string& text) {
                            "' names no page, and a page that embeds the water acts with its visitors' rights: " +
                            "list the Origin of each, such as https://school.example"};
   }
+  if (text.find('[') != std::string::npos)
+    return wrongOrigin(text, "browsers take no IPv6 address in a frame policy; name the host");
   if (auto checked = checkOrigin(text); !checked) return checked;
-  const std::string_view host = hostOf(text);
-  if (host.empty()) return wrongOrigin(text, "pages that embed the water are at http:// or https://");
-  if (host.starts_with('[')) return wrongOrigin(text, "browsers take no IPv6 address in a frame policy; name the host");
+  if (hostOf(text).empty()) return wrongOrigin(text, "pages that embed the water are at http:// or https://");
   return {};
 }
 
