@@ -23,8 +23,9 @@ library_closure() {
     while read -r name path; do [[ "$name" =~ $glibc_libraries ]] || printf '%s %s\n' "$name" "$path"; done
 }
 
-# The server, and what measures it on the machine to which the bundle goes.
+# The server, and what measures it on the machine to which the bundle goes. With --with-tests, also the tests of the device.
 readonly bundled_programs=(spindrift spindrift-bench spindrift-study)
+readonly bundled_tests=(gpu_test sim_test endurance_test storm_test sweeps_test state_hash)
 
 # copy_library PATH TARGET: copies the file behind the links, under the name that programs use, and records it for the
 # licences.
@@ -34,11 +35,14 @@ copy_library() {
   bundled_files+=("$path")
 }
 
+# bundle_program FOLDER PROGRAM…
 bundle_program() {
-  local folder="$1" preset="$2" name path real program
-  for program in "${bundled_programs[@]}"; do
-    install -D --mode=755 "$(binary_of "$preset" "$program")" "$folder/bin/$program"
-    strip --strip-debug "$folder/bin/$program"
+  local folder="$1" name path real built=("${@:2}")
+  for path in "${built[@]}"; do
+    name="$(basename -- "$path")"
+    install -D --mode=755 "$path" "$folder/bin/$name"
+    strip --strip-debug "$folder/bin/$name"
+    [[ "$name" == spindrift ]] || ln -s spindrift "$folder/$name"
   done
   while read -r name path; do
     if [[ "$name" =~ $shared_with_drivers ]]; then
@@ -51,9 +55,9 @@ bundle_program() {
       # shellcheck disable=SC2016  # $ORIGIN is for the loader
       patchelf --set-rpath '$ORIGIN' "$folder/lib/$name"
     fi
-  done < <(library_closure "${bundled_programs[@]/#/$root/build/$preset/bin/}")
+  done < <(library_closure "${built[@]}")
   # shellcheck disable=SC2016
-  patchelf --set-rpath '$ORIGIN/../lib' "${bundled_programs[@]/#/$folder/bin/}"
+  patchelf --set-rpath '$ORIGIN/../lib' "$folder"/bin/*
 }
 
 # shellcheck disable=SC2016  # $ORIGIN is for the loader
@@ -102,15 +106,15 @@ bundle_readme() {
 command_bundle() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev bundle [--output DIR] [--without-mesa] [--no-archive] [--preset release|debug]
+usage: ./dev bundle [--output DIR] [--without-mesa] [--with-tests] [--no-archive] [--preset release|debug]
 
 Packs dist/spindrift-<version>-linux-x86_64/ and the same as .tar.gz: program, page, scenes, every library but the
 C library's, and Mesa's software rasteriser for machines without a driver. It runs on another x86-64 Linux with
-nothing installed but (for speed) a GPU driver.
+nothing installed but (for speed) a GPU driver. --with-tests adds the tests of the device, for tests/bench/on-hardware.sh.
 TEXT
     return
   fi
-  local preset rest output=dist mesa=true archive=true version name folder bundled_files=()
+  local preset rest output=dist mesa=true tests=() archive=true version name folder bundled_files=()
   take_preset "$@"
   set -- "${rest[@]}"
   while (($# > 0)); do
@@ -120,8 +124,8 @@ TEXT
         output="$(cd -- "$called_from" && realpath --canonicalize-missing -- "$2")"
         shift
         ;;
-      --with-mesa) mesa=true ;;
       --without-mesa) mesa=false ;;
+      --with-tests) tests=("${bundled_tests[@]}") ;;
       --no-archive) archive=false ;;
       *) fail 2 "bundle does not know '$1'; see ./dev bundle --help" ;;
     esac
@@ -130,7 +134,7 @@ TEXT
   need_packages server driver bundle
   lock_build
   need_web
-  build_server "$preset" "${bundled_programs[@]}"
+  build_server "$preset" "${bundled_programs[@]}" "${tests[@]}"
   build_web
   unlock_build
 
@@ -140,13 +144,11 @@ TEXT
   say "packing $folder"
   rm -rf "$folder" "$folder.tar.gz"
   mkdir -p "$folder/share/spindrift"
-  bundle_program "$folder" "$preset"
+  bundle_program "$folder" "${bundled_programs[@]/#/$root/build/$preset/bin/}" "${tests[@]/#/$root/build/$preset/tests/}"
   ! "$mesa" || bundle_mesa "$folder"
   cp -r server/scenes "$folder/share/spindrift/scenes"
   cp -r "$web_dist" "$folder/share/spindrift/web"
   install --mode=755 .ci/bundle/spindrift "$folder/spindrift"
-  ln -s spindrift "$folder/spindrift-bench"
-  ln -s spindrift "$folder/spindrift-study"
   install --mode=644 LICENSE "$folder/LICENSE"
   bundle_licences "$folder" "$preset" "$version"
   bundle_readme "$folder" "$version" "$mesa"

@@ -202,7 +202,9 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
     source.lines = read.lines;
   }
   std::string text(kVersionLine);
-  for (const auto& [name, value] : defines) text += "#define " + name + " " + value + "\n";
+  const Defines tuning = ctx.tuning().defines();
+  for (const Defines* const each : {&tuning, &defines})
+    for (const auto& [name, value] : *each) text += "#define " + name + " " + value + "\n";
   // The whole text is one string, because each source string has its own number in driver messages.
   text += "#line 1\n";
   const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;

@@ -23,8 +23,6 @@ namespace {
 /// NVIDIA messages that are sent for every buffer or texture and say nothing about cost: framebuffer storage, placement
 /// of a buffer (type "other", not "performance"), textures without a base level.
 constexpr std::array<GLuint, 3> kNoisyIds = {131169, 131185, 131204};
-/// More message ids than any driver has; further ones are logged as debug messages.
-constexpr std::size_t kMaxKnownMessages = 64;
 
 /// Returns the driver's message in one line, without surrounding spaces and line ends.
 std::string oneLine(std::string_view text) {
@@ -46,8 +44,6 @@ void GLAD_API_PTR onDebugMessage(GLenum source, GLenum type, GLuint id, GLenum s
     spdlog::error("OpenGL error {}: {}", id, oneLine(text));
   } else if (severity == GL_DEBUG_SEVERITY_HIGH && source != GL_DEBUG_SOURCE_SHADER_COMPILER) {
     spdlog::warn("OpenGL message {}: {}", id, oneLine(text));
-  } else if (type == GL_DEBUG_TYPE_PERFORMANCE && ctx.isNewMessage(id)) {
-    spdlog::info("performance message {} of the driver (logged once): {}", id, oneLine(text));
   } else {
     spdlog::debug("OpenGL message {}: {}", id, oneLine(text));
   }
@@ -178,11 +174,6 @@ bool Context::isLost() {
                                                         : "the driver does not know why");
   }
   return true;
-}
-
-bool Context::isNewMessage(std::uint32_t id) {
-  const std::lock_guard lock(messages_mutex_);
-  return known_messages_.size() < kMaxKnownMessages && known_messages_.insert(id).second;
 }
 
 std::vector<std::string> Context::takeFaults() {

@@ -194,7 +194,8 @@ std::vector<DeviceInfo> describeDevices(const std::vector<egl::Candidate>& candi
       continue;
     }
     if (attempt.handles && !attempt.info.is_software) {
-      attempt.info.problem = "Mesa picks " + attempt.info.name + " here; LIBGL_ALWAYS_SOFTWARE=1 makes it use software";
+      attempt.info.problem = "EGL gives " + attempt.info.name + " in its place: Mesa is not installed, or prefers it" +
+                             " (LIBGL_ALWAYS_SOFTWARE=1 makes Mesa use software)";
       attempt.info.is_software = true;
     }
     software = std::move(attempt.info);

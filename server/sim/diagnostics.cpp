@@ -9,7 +9,6 @@
 #include <shared/bindings.h>
 #include <shared/fixed_point.h>
 #include <shared/gauge_uniforms.h>
-#include <shared/groups.h>
 #include <shared/pool.h>
 
 #include "ticks_in_flight.h"
@@ -70,9 +69,9 @@ std::vector<GaugeReading> gaugeReadings(std::span<const std::byte> bytes) {
 }
 
 /// Number of invocations, and of partial results, for this many items: a whole number of groups.
-std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program) {
+std::uint32_t sharesFor(std::uint32_t items, const gpu::Program& program, const gpu::Context& ctx) {
   const std::uint32_t group = program.groupSize()[0];
-  return (items / REDUCE_ITEMS + group) / group * group;
+  return (items / ctx.tuning().reduce_items + group) / group * group;
 }
 
 }  // namespace
@@ -94,7 +93,7 @@ Diagnostics::Diagnostics(Creation& create, const core::Scene& scene, const Deriv
     cells_ = static_cast<std::uint32_t>(derived.wave->counts().total());
     surface_pass_ = create.pass("diagnostics/surface.comp");
     if (create.error()) return;
-    surface_shares_ = sharesFor(cells_, surface_pass_);
+    surface_shares_ = sharesFor(cells_, surface_pass_, ctx_);
     surface_sums_ = create.buffer("surface sums", surface_shares_ * sizeof(Partial), gpu::BufferContent::kScratch);
   }
   if (!scene.gauges.empty()) createGauges(create, scene, *derived.wave);
@@ -120,7 +119,7 @@ void Diagnostics::createGauges(Creation& create, const core::Scene& scene, const
 void Diagnostics::resize(Creation& create, const Derived& derived) {
   if (create.error()) return;
   gpu::Buffer sums;
-  const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_pass_) : 0;
+  const std::uint32_t shares = derived.particles ? sharesFor(derived.particles->count, particle_pass_, ctx_) : 0;
   if (shares > 0) sums = create.buffer("particle sums", shares * sizeof(Partial), gpu::BufferContent::kScratch);
   auto ring = create.ring(
       "diagnostics",

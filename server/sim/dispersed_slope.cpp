@@ -37,9 +37,6 @@ std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four
   return out;
 }
 
-/// The halo of a strip (shaders/dispersion/strip.glsl) goes around a grid with fewer cells more than once.
-constexpr std::uint32_t kNarrowCount = 2 * DISPERSION_COLUMNS;
-
 /// A table of the bottom, and its texels of one grid.
 struct BottomTable {
   const char* name;
@@ -59,7 +56,7 @@ constexpr BottomTable kBottomTables[] = {
 }  // namespace
 
 DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const Basin& basin, bool keeps_last_step)
-    : keeps_last_step_(keeps_last_step) {
+    : tuning_(create.context().tuning()), keeps_last_step_(keeps_last_step) {
   const Dispersion dispersion = layOutDispersion(layout, basin);
   // One work group takes fewer dispatches for the bottom, but has only one core.
   const std::size_t bottom = bottomOf(dispersionGrids(layout));
@@ -78,6 +75,8 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
       grid.faces = create.scratch("dispersion faces", cells, kFloats);
     }
     if (k == bottom) break;
+    // The halo of a strip (shaders/dispersion/strip.glsl) goes around a grid with fewer cells more than once.
+    constexpr std::uint32_t kNarrowCount = 8;
     is_narrow[k == 0] = is_narrow[k == 0] || std::min(grid.count.x, grid.count.z) < kNarrowCount;
     if (dispersion.is_flat) {
       grid.coefficients = create.texels("dispersion coefficients", 2, kFloats);
@@ -186,8 +185,8 @@ void DispersedSlope::ascend(std::size_t level) {
 void DispersedSlope::run(Pass& pass, std::size_t level) {
   const CellCounts count = grids_[level].count;
   grids_[level].sizes.bindUniform(DISPERSION_UNIFORMS);
-  pass.run((count.x + DISPERSION_COLUMNS - 1) / DISPERSION_COLUMNS,
-           (count.z + DISPERSION_STRIP - 1) / DISPERSION_STRIP);
+  pass.run((count.x + tuning_.dispersion_columns - 1) / tuning_.dispersion_columns,
+           (count.z + tuning_.dispersion_strip - 1) / tuning_.dispersion_strip);
 }
 
 }  // namespace spindrift::sim

@@ -7,15 +7,15 @@
 
 namespace spindrift::sim {
 
-NeighborGrid::NeighborGrid(Creation& create, const ParticleLayout& layout, bool pooled)
+NeighborGrid::NeighborGrid(Creation& create, const ParticleLayout& layout)
     : crowded_(create.texels("crowded particles", 2, gpu::TexelFormat::kR32UI)),
+      clear_(create.pass("grid/clear.comp")),
       count_(create.pass("grid/count.comp")),
       scan_blocks_(create.pass("grid/scan_blocks.comp")),
       scan_totals_(create.pass("grid/scan_totals.comp")),
       scan_add_(create.pass("grid/scan_add.comp")),
       scatter_(create.pass("grid/scatter.comp")),
       reorder_(create.pass("grid/reorder.comp")) {
-  if (pooled) clear_ = create.pass("grid/clear.comp");
   resize(create, layout);
 }
 
@@ -30,16 +30,10 @@ void NeighborGrid::resize(Creation& create, const ParticleLayout& layout) {
 }
 
 void NeighborGrid::build(const ParticleBuffers& particles, const Population& population) {
-  if (population.pool()) {
-    cells_.count.bindStorage(CELL_COUNT);
-    population.forCells(clear_);
-  } else {
-    cells_.count.clear();
-  }
-
   // Count the particles of each cell.
-  particles.position.bindTexel(POSITION);
   cells_.count.bindStorage(CELL_COUNT);
+  population.forCells(clear_);
+  particles.position.bindTexel(POSITION);
   cells_.arrival.bindStorage(CELL_ARRIVAL);
   population.forParticles(count_);
 

@@ -12,7 +12,7 @@ namespace spindrift::sim {
 
 class NeighborGrid {
  public:
-  NeighborGrid(Creation& create, const ParticleLayout& layout, bool pooled);
+  NeighborGrid(Creation& create, const ParticleLayout& layout);
 
   /// Replaces the buffers for another layout and keeps the programs; an error changes nothing.
   void resize(Creation& create, const ParticleLayout& layout);

@@ -195,7 +195,7 @@ core::Result<void> WaterSim::build() {
   if (derived_.wave) make(p.wave, scene_, *derived_.wave, isSampled(scene_));
   if (derived_.particles) {
     p.particles.emplace(create, derived_.particles->count, storesFoamSource(scene_), hasTension(scene_));
-    make(p.grid, *derived_.particles, isTwoWay(scene_));
+    make(p.grid, *derived_.particles);
     if (scene_.particles->solver == core::PressureSolver::kPositionBased)
       make(p.position_based);
     else

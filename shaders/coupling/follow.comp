@@ -1,6 +1,7 @@
 // Moves the particle patch to its target: a position from the host, or the first boat. One invocation.
 // Reads BOATS. Writes min and max of x and z in the simulation's uniforms; the patch keeps its size and stays on the water.
 // The host need not read back the boat's position; the next pass reads the moved uniforms.
+#include "common/finite.glsl"
 #include "shared/bindings.h"
 #include "shared/dual.h"
 
@@ -37,7 +38,7 @@ void main() {
   const vec2 half_m = 0.5 * vec2(max_x_m - min_x_m, max_z_m - min_z_m);
   const vec2 room_m = max(0.5 * vec2(wave_length_m, wave_width_m) - half_m, vec2(0.0));
   const vec2 before_m = vec2(min_x_m, min_z_m) + half_m;
-  place_m = isnan(place_m.x + place_m.y) ? before_m : clamp(place_m, -room_m, room_m);
+  place_m = isNaN(place_m.x + place_m.y) ? before_m : clamp(place_m, -room_m, room_m);
   min_x_m = place_m.x - half_m.x;
   max_x_m = place_m.x + half_m.x;
   min_z_m = place_m.y - half_m.y;

@@ -4,6 +4,7 @@
 // number of breaking cells; sum of eta(t) eta(t - dt), sum of q^2/d over the faces, 0, 0; sum of ELEVATION >> 16, sum
 // of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers, so the volume is exact).
 #include "shared/groups.h"
+#include "common/finite.glsl"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
 #if NONLINEAR
@@ -22,8 +23,7 @@ layout(binding = OUTFLOW) uniform usamplerBuffer outflow;
 layout(binding = BOATS) uniform samplerBuffer boats;
 #endif
 #if FLOATING
-#include "common/finite.glsl"
-#include "shared/floaters.h"
+#include "bodies/floater_slot.glsl"
 layout(binding = FLOATERS) uniform samplerBuffer floaters;
 #endif
 #if BREAKERS
@@ -95,7 +95,7 @@ void main() {
   if (share == 0u) {
     for (int at = 0; at < int(boat_place_count) * BOAT_TEXELS; ++at) {
       const vec4 t = texelFetch(boats, at);
-      worst.x += isnan(t.x + t.y + t.z + t.w) || isinf(t.x + t.y + t.z + t.w) ? 1.0 : 0.0;
+      worst.x += isFinite(t.x + t.y + t.z + t.w) ? 0.0 : 1.0;
     }
   }
 #endif
@@ -103,7 +103,7 @@ void main() {
   for (uint slot = share; slot < uint(textureSize(floaters)) / FLOATER_TEXELS; slot += shares) {
     vec4 all = vec4(0.0);  // not finite if a part is not: position, rotation, velocity, spin
     for (int k = 0; k < 4; ++k) all += texelFetch(floaters, int(slot) * FLOATER_TEXELS + k);
-    const bool is_here = !(texelFetch(floaters, int(slot) * FLOATER_TEXELS).w < 0.0);
+    const bool is_here = isFloaterHere(texelFetch(floaters, int(slot) * FLOATER_TEXELS));
     worst.x += is_here && !(isFinite(all.xyz) && isFinite(all.w)) ? 1.0 : 0.0;
   }
 #endif

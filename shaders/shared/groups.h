@@ -18,9 +18,12 @@
 #define SCAN_GROUP 256
 #define SCAN_ITEMS 16
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
-// An invocation of the dispersion's passes owns so many columns, and rows of them; both even.
+// An invocation of the dispersion's passes owns so many columns, and rows of them; both even. A CPU wants long strips, because
+// neighbours of a strip are computed twice; a GPU wants many invocations with few registers (server/gpu, tuning.h).
+#ifndef DISPERSION_COLUMNS
 #define DISPERSION_COLUMNS 4
 #define DISPERSION_STRIP 32
+#endif
 #define DISPERSION_GROUP 16
 // Part of F that acts at once, for the shortest waves: so much of the depth, and at most so much of a cell.
 #define DISPERSION_DEPTH_SHARE 0.02
@@ -40,6 +43,8 @@
 // Diagnostics: every invocation sums a strided share of about REDUCE_ITEMS items by itself and writes one partial result; the
 // host sums those. No shared memory: its barriers cost llvmpipe 15 times the reduction itself.
 #define REDUCE_GROUP 64
+#ifndef REDUCE_ITEMS
 #define REDUCE_ITEMS 64
+#endif
 
 #endif

@@ -2,6 +2,7 @@
 // One group, an invocation for a row of slots.
 // Reads FLOATERS. Writes PACKED_WORDS from first_word on.
 #include "bodies/floater.glsl"
+#include "bodies/floater_slot.glsl"
 #include "stream/quantized.glsl"
 
 const uint kGroup = 128u;
@@ -13,7 +14,7 @@ uniform uint first_word;
 
 shared uint here_count[kGroup];
 
-bool isHere(uint slot) { return !(texelFetch(floaters, int(slot) * FLOATER_TEXELS).w < 0.0); }
+bool isHere(uint slot) { return isFloaterHere(texelFetch(floaters, int(slot) * FLOATER_TEXELS)); }
 
 void pack(uint slot, uint at) {
   vec4 t[FLOATER_TEXELS];

@@ -3,6 +3,7 @@
 // Reads FOAM_FIELD [foamCounts()]. Writes PACKED_WORDS [a quarter of target_nx * target_nz, rounded up, from first_word on]; bytes left over are 0.
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
+#include "common/finite.glsl"
 #include "foam/foam_cell.glsl"
 #include "stream/cover.glsl"
 
@@ -17,7 +18,7 @@ uniform uint target_nz;
 float whiteOf(int i) {
   const vec4 f = texelFetch(foam, i);
   const float white = f.x + f.y + f.z;
-  return isnan(white) ? 0.0 : clamp(white, 0.0, 1.0);
+  return isNaN(white) ? 0.0 : clamp(white, 0.0, 1.0);
 }
 
 float meanWhite(int i) {

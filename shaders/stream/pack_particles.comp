@@ -5,6 +5,7 @@
 // chooses which are packed: the same ones in every frame while their number stays, and a smaller budget chooses a
 // subset of a larger one.
 #include "shared/groups.h"
+#include "common/finite.glsl"
 #include "common/hash.glsl"
 #include "particles/population.glsl"
 
@@ -19,12 +20,12 @@ uniform uint budget_count;
 
 /// 0..1 to 0..high; a NaN becomes 0.
 uint quantized(float unit, float high) {
-  return isnan(unit) ? 0u : uint(round(clamp(unit, 0.0, 1.0) * high));
+  return isNaN(unit) ? 0u : uint(round(clamp(unit, 0.0, 1.0) * high));
 }
 
 /// -1..1 to a signed byte.
 uint quantizedSigned(float unit) {
-  return isnan(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * 127.0))) & 0xffu;
+  return isNaN(unit) ? 0u : uint(int(round(clamp(unit, -1.0, 1.0) * 127.0))) & 0xffu;
 }
 
 /// The mean number of chosen particles is four standard deviations below the budget, so that the random choice fits

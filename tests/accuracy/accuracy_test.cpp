@@ -6,14 +6,16 @@
 
 #include <spindrift/study/accuracy.h>
 
+#include "test_device.h"
+
 namespace spindrift::study {
 namespace {
 
 class Accuracy : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Accuracy, IsWithinTolerance) {
-  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  auto ctx = gpu::testContext();
+  if (!ctx) GTEST_SKIP() << "no device: " << ctx.error().message;
   const Case& each = accuracyCases()[GetParam()];
   const auto result = each.run(**ctx, true);
   ASSERT_TRUE(result) << result.error().message;
@@ -36,8 +38,8 @@ INSTANTIATE_TEST_SUITE_P(Cases, Accuracy, ::testing::Range(std::size_t{0}, accur
                          });
 
 TEST(Cases, EndWithTheErrorOfADeviceThatIsLost) {
-  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  auto ctx = gpu::testContext();
+  if (!ctx) GTEST_SKIP() << "no device: " << ctx.error().message;
   (*ctx)->simulateLoss();
   for (const Case& each : accuracyCases()) {
     const auto result = each.run(**ctx, true);

@@ -13,6 +13,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
 
+#include "test_device.h"
+
 namespace spindrift {
 namespace {
 
@@ -31,8 +33,8 @@ std::size_t residentBytes() {
 }
 
 TEST(Soak, DefaultSceneKeepsEnergyAndMemory) {
-  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  auto ctx = gpu::testContext();
+  if (!ctx) GTEST_SKIP() << "no device: " << ctx.error().message;
   auto scene = scene::loadSceneFile(std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes/pool.textproto");
   ASSERT_TRUE(scene) << scene.error().message;
   auto made = sim::WaterSim::create(**ctx, scene::toCore(*scene));

@@ -14,6 +14,8 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
 
+#include "test_device.h"
+
 namespace spindrift {
 
 /// What is thrown into a basin and the waves that come of it, over those of a basin of at least 6 m: 1 there.
@@ -32,8 +34,8 @@ class Endurance : public ::testing::Test {
 
  protected:
   void SetUp() override {
-    auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-    if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+    auto ctx = gpu::testContext();
+    if (!ctx) GTEST_SKIP() << "no device: " << ctx.error().message;
     ctx_ = *std::move(ctx);
   }
   void TearDown() override {

@@ -8,10 +8,12 @@
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/sim/water_sim.h>
 
+#include "test_device.h"
+
 int main(int count, char** arguments) {
   using namespace spindrift;
   if (count != 3) return std::fprintf(stderr, "usage: state_hash SCENE_FILE TICKS\n"), 2;
-  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
+  auto ctx = gpu::testContext();
   if (!ctx) return std::fprintf(stderr, "%s\n", ctx.error().message.c_str()), 3;
   const auto scene = scene::loadSceneFile(arguments[1]);
   if (!scene) return std::fprintf(stderr, "%s\n", scene.error().message.c_str()), 2;

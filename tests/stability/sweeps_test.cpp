@@ -7,14 +7,16 @@
 
 #include <spindrift/study/stability.h>
 
+#include "test_device.h"
+
 namespace spindrift::study {
 namespace {
 
 class Stability : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Stability, IsSafeEverywhereAndFoundWherePredicted) {
-  auto ctx = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-  if (!ctx) GTEST_SKIP() << "no software EGL device here: " << ctx.error().message;
+  auto ctx = gpu::testContext();
+  if (!ctx) GTEST_SKIP() << "no device: " << ctx.error().message;
   const Sweep sweep = stabilitySweeps(true)[GetParam()];
   std::vector<StabilityPoint> points;
   for (const double value : sweep.values) {

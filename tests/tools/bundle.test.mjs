@@ -40,7 +40,7 @@ describe("the bundle", () => {
   before(
     () => {
       folder = mkdtempSync(join(tmpdir(), "spindrift bundle "));
-      const made = spawnSync(join(repository, "dev"), ["bundle", "--no-archive", "--output", folder], { encoding: "utf8" });
+      const made = spawnSync(join(repository, "dev"), ["bundle", "--with-tests", "--no-archive", "--output", folder], { encoding: "utf8" });
       assert.equal(made.status, 0, made.stderr);
       bundle = join(folder, readdirSync(folder).find((name) => name.startsWith("spindrift-")));
 
@@ -106,6 +106,21 @@ describe("the bundle", () => {
   it("runs with only PATH in the environment", () => {
     const info = spawnSync(join(bundle, "spindrift"), ["info"], { env: TOOL_PATH, encoding: "utf8", timeout: START_LIMIT_MS });
     assert.equal(info.status, 0, info.stderr);
+  });
+
+  it("is measured by on-hardware.sh, which joins what its parts wrote", () => {
+    const script = join(repository, "tests/bench/on-hardware.sh");
+    const output = join(folder, "results");
+    const measure = (...args) => spawnSync(script, [bundle, "--device", "software", "--output", output, ...args], { encoding: "utf8", timeout: 2 * START_LIMIT_MS });
+    const run = measure("--parts", "info,hash,codec");
+    assert.equal(run.status, 0, run.stdout + run.stderr);
+    const [name] = readdirSync(output).filter((file) => file.endsWith(".json"));
+    const { device, failed, parts } = JSON.parse(readFileSync(join(output, name), "utf8"));
+    assert.match(device, /llvmpipe/);
+    assert.deepEqual(failed, []);
+    assert.ok(parts["codec-thesis"].codec.rows.length > 0);
+    assert.ok(existsSync(join(bundle, "bin/sim_test")), "tests of the device");
+    assert.match(measure("--parts", "all").stderr, /there is no part 'all'/);
   });
 
   it("uses its own software rasteriser on a machine without a driver", (t) => {

@@ -1,9 +1,7 @@
-// A context for each test: on the software rasteriser, or on the device in SPINDRIFT_TEST_DEVICE, which has the form of
-// `--device`. Without the device the tests are skipped.
+// A context for each test, on the device of test_device.h. Without it the tests are skipped.
 #pragma once
 
 #include <chrono>
-#include <cstdlib>
 #include <memory>
 #include <utility>
 #include <vector>
@@ -16,12 +14,9 @@
 #include <spindrift/gpu/fence.h>
 #include <spindrift/gpu/readback_ring.h>
 
-namespace spindrift::gpu {
+#include "test_device.h"
 
-inline core::Result<DeviceChoice> testDevice() {
-  const char* const wanted = std::getenv("SPINDRIFT_TEST_DEVICE");
-  return parseDeviceChoice(wanted ? wanted : "software");
-}
+namespace spindrift::gpu {
 
 class GpuTest : public testing::Test {
  protected:

@@ -96,9 +96,12 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
     for (std::size_t g = 0; g + 1 < kGroups; ++g) count += *place[g] < *place[g + 1] ? 1 : 0;
     return count;
   };
-  // Each of a device's threads runs its groups in ascending order, whatever the schedule of the threads.
   if (const std::uint32_t plain_count = ascendingCount(0); ctx) {
-    EXPECT_GE(plain_count, 90u);
+    // Each of a CPU's threads runs its groups in ascending order, whatever the schedule of the threads; a GPU runs them
+    // at once.
+    if (ctx->device().is_software) {
+      EXPECT_GE(plain_count, 90u);
+    }
     EXPECT_LE(ascendingCount(55), 75u);
   }
 }

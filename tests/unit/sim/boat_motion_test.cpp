@@ -122,8 +122,12 @@ class BoatMotion : public OnDevice {
     for (std::size_t k = 0; k + 2 < 4; ++k) {
       const auto coarse = distance(runs[k], runs[k + 1]);
       const auto fine = distance(runs[k + 1], runs[k + 2]);
-      EXPECT_GE(std::log2(coarse[0] / fine[0]), 1.9) << "places, from " << tick_rates_hz[k] << " Hz: " << fine[0];
-      EXPECT_GE(std::log2(coarse[1] / fine[1]), 1.9) << "angles, from " << tick_rates_hz[k] << " Hz: " << fine[1];
+      // A GPU's sin, cos and atan are good to about 2^-21, which a boat at 4 m/s turns into some 1e-5 m in two seconds.
+      const double floor = ctx_->device().is_software ? 0.0 : 5e-5;
+      EXPECT_TRUE(fine[0] <= floor || std::log2(coarse[0] / fine[0]) >= 1.9)
+          << "places, from " << tick_rates_hz[k] << " Hz: " << coarse[0] << ", " << fine[0];
+      EXPECT_TRUE(fine[1] <= floor || std::log2(coarse[1] / fine[1]) >= 1.9)
+          << "angles, from " << tick_rates_hz[k] << " Hz: " << coarse[1] << ", " << fine[1];
     }
   }
 };

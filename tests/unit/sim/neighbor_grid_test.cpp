@@ -32,7 +32,7 @@ class Grid : public OnDevice {
     p.position.upload(positions);
     p.velocity.upload(positions);  // lets a test check that both move together
     Creation create(*ctx_, {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}});
-    NeighborGrid grid(create, *derived_.particles, false);
+    NeighborGrid grid(create, *derived_.particles);
     ASSERT_FALSE(create.error()) << create.error()->message;
     grid.build(p, Population(derived_.particles->count, derived_.particles->cell_count, nullptr));
     ctx_->barrier(gpu::Barrier::kBufferUpdate);

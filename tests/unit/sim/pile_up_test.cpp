@@ -49,7 +49,7 @@ class PileUp : public OnDevice {
     uniforms->bindUniform(SIM_UNIFORMS);
     Creation create(*ctx_, defines);
     ParticleBuffers particles(create, derived->particles->count, false, false);
-    NeighborGrid grid(create, *derived->particles, false);
+    NeighborGrid grid(create, *derived->particles);
     std::vector<float> position;
     for (std::uint32_t i = 0; i < derived->particles->count; ++i)
       position.insert(position.end(), {0.3f, 0.2f, 0.3f, static_cast<float>(i)});

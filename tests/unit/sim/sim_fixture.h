@@ -1,4 +1,4 @@
-// A software device for the simulation's tests.
+// A device for the simulation's tests.
 #pragma once
 
 #include <memory>
@@ -9,14 +9,15 @@
 #include <spindrift/sim/water_sim.h>
 
 #include "small_scene.h"
+#include "test_device.h"
 
 namespace spindrift::sim {
 
 class OnDevice : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto context = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-    if (!context) GTEST_SKIP() << "no software EGL device here: " << context.error().message;
+    auto context = gpu::testContext();
+    if (!context) GTEST_SKIP() << "no device: " << context.error().message;
     ctx_ = *std::move(context);
   }
   void TearDown() override {

@@ -8,6 +8,8 @@
 #include <spindrift/study/trade.h>
 #include <spindrift/study/water_record.h>
 
+#include "test_device.h"
+
 namespace spindrift::study {
 namespace {
 
@@ -131,17 +133,17 @@ TEST(FinerScenes, KeepTheShapeOfARectangle) {
   EXPECT_NEAR(derived->wave->width_m, 17.28, 1e-9);
 }
 
-class OnSoftware : public ::testing::Test {
+class OnDevice : public ::testing::Test {
  protected:
   void SetUp() override {
-    auto made = gpu::Context::create({gpu::DeviceChoice::Kind::kSoftware, 0});
-    if (!made) GTEST_SKIP() << "no software EGL device here: " << made.error().message;
+    auto made = gpu::testContext();
+    if (!made) GTEST_SKIP() << "no device: " << made.error().message;
     ctx_ = *std::move(made);
   }
   std::unique_ptr<gpu::Context> ctx_;
 };
 
-TEST_F(OnSoftware, FinerRunsOfAWaveComeCloserToTheFinest) {
+TEST_F(OnDevice, FinerRunsOfAWaveComeCloserToTheFinest) {
   const auto run = [&](std::uint32_t cells) {
     core::Scene scene = waveOnly();
     scene.wave->resolution_count = cells;
@@ -162,7 +164,7 @@ TEST_F(OnSoftware, FinerRunsOfAWaveComeCloserToTheFinest) {
   EXPECT_GT(middle, 0.0);
 }
 
-TEST_F(OnSoftware, RectanglesAreComparedAndDryLandIsLevel) {
+TEST_F(OnDevice, RectanglesAreComparedAndDryLandIsLevel) {
   core::Scene scene = waveOnly();
   scene.wave->resolution_count = 128;
   scene.wave->side_m = 16.0;

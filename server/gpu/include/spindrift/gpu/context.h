@@ -7,8 +7,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
-#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,6 +14,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/checks.h>
 #include <spindrift/gpu/device.h>
+#include <spindrift/gpu/tuning.h>
 
 namespace spindrift::gpu {
 
@@ -108,6 +107,7 @@ class Context {
 
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
   [[nodiscard]] const DeviceLimits& limits() const { return device_.limits; }
+  [[nodiscard]] Tuning tuning() const { return device_.is_software ? Tuning{} : kHardwareTuning; }
   /// Returns one line: which device was chosen and why.
   [[nodiscard]] const std::string& why() const { return device_.why; }
 
@@ -171,9 +171,6 @@ class Context {
   void collectRetired();
   /// Returns whether retired storage is left.
   [[nodiscard]] bool hasRetired() const { return !retired_.empty(); }
-  /// Returns true the first time that the driver reports the message with this id. At most 64 ids are remembered;
-  /// further ids always return false. Any thread.
-  bool isNewMessage(std::uint32_t id);
 
  private:
   struct Retired {
@@ -193,8 +190,6 @@ class Context {
   Ledger ledger_;
   FenceDelay fence_delay_;
   std::vector<Retired> retired_;
-  std::mutex messages_mutex_;  ///< a driver may call back on its own thread
-  std::set<std::uint32_t> known_messages_;
   std::unique_ptr<AccessTracker> accesses_;
   std::unique_ptr<Staging> staging_;
   std::unique_ptr<ProgramCache> programs_;

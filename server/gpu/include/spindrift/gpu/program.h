@@ -17,9 +17,6 @@
 
 namespace spindrift::gpu {
 
-/// Preprocessor names and values put before the shader's first line.
-using Defines = std::vector<std::pair<std::string, std::string>>;
-
 /// Layout of a uniform block or storage block in the linked program.
 struct BlockLayout {
   bool is_storage = false;

@@ -1,0 +1,160 @@
+#!/usr/bin/env bash
+# Everything worth knowing about Spindrift on a machine with a GPU, in under ten minutes: the devices, the tests of the device, what a
+# step and the codecs cost, whether the water agrees with theory, and how many rooms hold real time.
+# BUNDLE is a folder made by `./dev bundle --with-tests`; nothing else is needed but bash, coreutils and python3.
+set -euo pipefail
+
+usage() {
+  cat <<'TEXT'
+usage: tests/bench/on-hardware.sh BUNDLE [--parts PART[,PART…]] [--device NAME] [--output DIR]
+
+  --parts    of info, tests, hash, step, codec, rooms, study (default: all of them, in this order)
+  --device   as of `spindrift serve` (default: auto)
+  --output   where <date>-<device>.json and .md go (default: tests/bench/results); logs go to its folder logs/
+TEXT
+}
+
+fail() {
+  printf 'on-hardware: %s\n' "$1" >&2
+  exit 2
+}
+
+bundle="" device=auto output="" parts=info,tests,hash,step,codec,rooms,study
+while (($# > 0)); do
+  case "$1" in
+    --help) usage && exit ;;
+    --parts | --device | --output)
+      (($# > 1)) || fail "$1 wants a value; see --help"
+      printf -v "${1#--}" '%s' "$2"
+      shift
+      ;;
+    -*) fail "does not know '$1'; see --help" ;;
+    *) bundle="$1" ;;
+  esac
+  shift
+done
+[[ -x "$bundle/spindrift" ]] || fail "'$bundle' is no bundle: it has no program spindrift; make one with ./dev bundle --with-tests"
+bundle="$(realpath -- "$bundle")"
+output="$(realpath -- "${output:-$(dirname -- "${BASH_SOURCE[0]}")/results}")"
+logs="$output/logs"
+rm -rf "$logs"
+mkdir -p "$logs"
+export bundle logs SPINDRIFT_TEST_DEVICE="$device"
+
+# These tests read the source tree, so they run only where the checkout is the one that built them.
+export without_checkout='ShaderFolderTest.*:LiveShader.*:SharedBlocks.*:*StateBuffersOf*:SavedState*'
+readonly part_limit_s=150
+
+# run_suite PROGRAM SUITE: one suite in a process of its own, with a line of its result.
+run_suite() {
+  local log="$logs/test-$1-${2//[\/.]/_}.log" state=passed
+  timeout 120 "$bundle/$1" --gtest_filter="$2*-$without_checkout" >"$log" 2>&1 || state="FAILED ($?)"
+  printf '%s %s %s: %s passed, %s failed, %s skipped\n' "$state" "$1" "$2" "$(grep -c '^\[       OK' "$log")" \
+    "$(grep -c '^\[  FAILED  \].* ms)$' "$log")" "$(grep -c '^\[  SKIPPED \].* ms)$' "$log")"
+}
+export -f run_suite
+
+part_info() {
+  ! command -v nvidia-smi >/dev/null || nvidia-smi --query-gpu=name,driver_version,memory.total,clocks.max.sm --format=csv
+  grep -m 1 'model name' /proc/cpuinfo
+  nproc
+  "$bundle/spindrift" info
+  "$bundle/spindrift" info --json "$logs/info.json" >/dev/null
+}
+
+# Suites of the device side by side; whole programs that run long, test by test.
+part_tests() {
+  local program suite
+  [[ -x "$bundle/bin/gpu_test" ]] || fail "the bundle has no tests: make it with ./dev bundle --with-tests"
+  # shellcheck disable=SC2016  # the inner shell expands them
+  for program in gpu_test sim_test endurance_test storm_test sweeps_test; do
+    "$bundle/$program" --gtest_list_tests 2>/dev/null | awk '/^[^ ].*\.( |$)/ { print $1 }' |
+      while read -r suite; do printf '%s %s\n' "$program" "$suite"; done
+  done | xargs -P "$(nproc)" -L 1 bash -c 'run_suite "$1" "$2"' - | sort | tee "$logs/tests.txt"
+}
+
+# The same scene twice, and with another order of the work groups: the states must be equal bit for bit.
+part_hash() {
+  local scene checks hashes
+  for scene in pool splash harbor flotsam; do
+    hashes="$(for checks in "" "" shuffle=7; do
+      SPINDRIFT_GPU_CHECKS="$checks" "$bundle/state_hash" "$bundle/share/spindrift/scenes/$scene.textproto" 200 2>/dev/null
+    done)"
+    printf '%s %s\n' "$scene" "$(tr '\n' ' ' <<<"$hashes")"
+    [[ "$(sort -u <<<"$hashes" | wc -l)" == 1 ]]
+  done
+}
+
+part_step() {
+  local scene
+  for scene in harbor splash pool flotsam; do
+    "$bundle/spindrift-bench" --suite step --scene "$scene" --seconds 1 --device "$device" --json "$logs/step-$scene.json" 2>&1
+  done
+}
+
+part_codec() {
+  "$bundle/spindrift-bench" --suite codec --scene thesis --seconds 1 --device "$device" --json "$logs/codec-thesis.json" 2>&1
+}
+
+# Eight rooms in one process, each watched by three clients at full detail; the server's last lines tell what each held.
+part_rooms() {
+  local rooms=(--scene harbor --room b=harbor --room c=harbor --room d=harbor --room e=pool --room f=pool --room g=splash --room h=splash)
+  local name urls=() port=18990 server ready=false
+  "$bundle/spindrift" serve --port "$port" --device "$device" "${rooms[@]}" >"$logs/serve.log" 2>&1 &
+  server=$!
+  for _ in {1..300}; do
+    if (exec 3<>"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then ready=true && break; fi
+    kill -0 "$server" 2>/dev/null || break
+    sleep 0.1
+  done
+  "$ready" || { tail -n 20 "$logs/serve.log" && return 1; }
+  for name in main b c d e f g h; do urls+=("ws://127.0.0.1:$port/ws/$name"); done
+  "$bundle/spindrift-bench" --suite load --url "${urls[@]}" --clients 24 --level full --seconds 8 --json "$logs/rooms.json" 2>&1
+  kill -INT "$server"
+  wait "$server" || true
+  grep -E 'ready|warning|error|real-time factor|sent' "$logs/serve.log" | cut -c 1-200
+}
+
+part_study() { "$bundle/spindrift-study" --quick --device "$device" --json "$logs/study.json" 2>&1; }
+
+for part in ${parts//,/ }; do
+  declare -F "part_$part" >/dev/null || fail "there is no part '$part'; see --help"
+done
+failed=()
+for part in ${parts//,/ }; do
+  printf '\n== %s\n' "$part"
+  SECONDS=0
+  export -f "part_$part" fail
+  timeout "$part_limit_s" bash -c "set -euo pipefail; device='$device'; part_$part" 2>&1 | tee "$logs/$part.log" || failed+=("$part")
+  printf '== %s took %d s\n' "$part" "$SECONDS"
+done
+
+python3 - "$logs" "$output" "${failed[*]}" <<'PYTHON'
+"""Joins what the parts wrote into one JSON file and one table."""
+import datetime, json, pathlib, platform, re, sys
+
+logs, output, failed = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3].split()
+parts = {file.stem: json.loads(file.read_text()) for file in sorted(logs.glob("*.json"))}
+steps = {name[5:]: value["step"] for name, value in parts.items() if name.startswith("step-")}
+device = next((value["device"] for value in parts.values() if isinstance(value.get("device"), str)), "unknown device")
+tests = (logs / "tests.txt").read_text().splitlines() if (logs / "tests.txt").exists() else []
+day = datetime.date.today().isoformat()
+name = f"{day}-{re.sub('[^a-z0-9]+', '-', device.lower()).strip('-')[:40]}"
+
+rows = [f"# {device}, {day}", "", f"{platform.machine()}, Linux {platform.release()}; failed parts: {', '.join(failed) or 'none'}", ""]
+if tests:
+    count = lambda what: sum(int(n) for line in tests for n in re.findall(rf"(\d+) {what}", line))
+    rows += [f"Tests of the device: {count('passed')} passed, {count('failed')} failed, {count('skipped')} skipped.", ""]
+    rows += [f"- {line}" for line in tests if not line.startswith("passed")] + [""]
+if steps:
+    rows += ["| scene | case | particles | substeps | ms per tick | times real time | ms by pass |", "|---|---|---|---|---|---|---|"]
+for scene, cases in steps.items():
+    for case in cases:
+        passes = " ".join(f"{k} {v:.3f}" for k, v in case["tick_ms_by_pass"].items())
+        rows.append(f"| {scene} | {case['name']} | {case['particle_count']} | {case['substeps_count']} | {case['tick_ms']:.3f} "
+                    f"| {case['real_time_factor']:.2f} | {passes} |")
+(output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "failed": failed, "tests": tests, "parts": parts}, indent=1))
+(output / f"{name}.md").write_text("\n".join(rows) + "\n")
+print(f"\n{output / name}.json and .md")
+PYTHON
+((${#failed[@]} == 0)) || { printf 'on-hardware: these parts failed: %s\n' "${failed[*]}" >&2 && exit 1; }
