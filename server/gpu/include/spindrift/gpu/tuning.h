@@ -13,7 +13,7 @@ namespace spindrift::gpu {
 /// Preprocessor names and values put before the shader's first line.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
-/// What one invocation takes, by class of device; shaders/shared/groups.h says what each means and has the values of a
+/// Shares of one invocation, by class of device; shaders/shared/groups.h says what each means and has the values of a
 /// CPU. Results do not depend on it, bit for bit.
 struct Tuning {
   std::uint32_t reduce_items = REDUCE_ITEMS;
