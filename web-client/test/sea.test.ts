@@ -70,9 +70,16 @@ describe("ripples", () => {
   });
 
   it("become steeper with the storm", () => {
-    expect(rippleSlope(0)).toBeGreaterThan(0);
-    expect(rippleSlope(1)).toBeGreaterThan(2 * rippleSlope(0));
-    expect(rippleSlope(5)).toBe(rippleSlope(1));
+    const slopeAt = (levelRatio: number) => rippleSlope({ levelRatio, waveHeightM: 0.3 });
+    expect(slopeAt(0)).toBe(rippleSlope(undefined));
+    expect(slopeAt(1)).toBeGreaterThan(2 * slopeAt(0));
+    expect(slopeAt(5)).toBe(slopeAt(1));
+  });
+
+  it("are hardly there in rain without wind", () => {
+    const still = rippleSlope({ levelRatio: 1, waveHeightM: 0 });
+    expect(still).toBeGreaterThan(0);
+    expect(still).toBeLessThan(0.3 * rippleSlope(undefined));
   });
 });
 

@@ -125,6 +125,6 @@ export class OpenSea implements Pass {
   }
 
   private slope(): number {
-    return rippleSlope(this.wind ? this.wind.levelRatio : 0);
+    return rippleSlope(this.wind);
   }
 }

@@ -1,5 +1,6 @@
 // Ripples: waves too short for the simulation's grid, as the second cascade of the open sea. They change the normals only, inside and
 // outside the simulated square alike. Pure.
+import type { WindInfo } from "../../codec/scene_info";
 import { clamp } from "../maths/interpolate";
 import { makeRandom, type PlaneWave } from "./sea_state";
 
@@ -9,10 +10,13 @@ const kSpreadRad = 1.25;
 /** Root mean square slope without wind, and what a full storm adds (half of what Cox & Munk 1954 give for 15 m/s: the rest is in the longer waves). */
 const kCalmSlope = 0.022;
 const kStormSlope = 0.11;
+/** Where a storm brings rain without wind, so that one sees the rings. */
+const kWindlessSlope = 0.004;
 
-/** Returns the root mean square slope of the ripples at a storm level. */
-export function rippleSlope(levelRatio: number): number {
-  return kCalmSlope + kStormSlope * clamp(levelRatio, 0, 1);
+/** Returns the root mean square slope of the ripples; without a storm there is a little wind. */
+export function rippleSlope(wind: Pick<WindInfo, "levelRatio" | "waveHeightM"> | undefined): number {
+  if (!wind) return kCalmSlope;
+  return wind.waveHeightM === 0 ? kWindlessSlope : kCalmSlope + kStormSlope * clamp(wind.levelRatio, 0, 1);
 }
 
 /**

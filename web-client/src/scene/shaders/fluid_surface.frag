@@ -94,9 +94,9 @@ void main() {
   vec3 axes = normal * normal * normal * normal;
   vec3 at = world / (kLaceRadii * u_radius_m);
   float lace = dot(axes, vec3(texture(u_noise, at.zy).r, texture(u_noise, at.xz).r, texture(u_noise, at.xy).r)) / (axes.x + axes.y + axes.z);
-  float strength = 0.85 * smoothstep(0.3, 1.0, foam);
-  float threads = smoothstep(1.0 - strength, 1.5 - 0.7 * strength, lace + 0.1);
-  float white = mix(threads * (0.5 + 0.4 * foam), 0.35 * foam, alone * raised);
+  float strength = 0.6 * smoothstep(0.4, 1.0, foam);
+  float threads = smoothstep(1.0 - strength, 1.7 - 0.7 * strength, lace + 0.1);
+  float white = mix(threads * (0.4 + 0.4 * foam), 0.3 * foam, alone * raised);
   // Near an outline the far side reflects totally, so that the path is longer than the ray's straight way out.
   float folded_m = 6.0 * u_radius_m * (1.0 - exp(-thickness_m / u_radius_m)) * (1.0 - alone) * raised;
   float path_m = (thickness_m + folded_m) * u_colour_ratio;
