@@ -33,12 +33,14 @@ core::Result<Checks> parseChecks(std::string_view text) {
       checks.barriers = true;
     } else if (word == "poison") {
       checks.poison = true;
+    } else if (word == "times") {
+      checks.times = true;
     } else if (!readNumber(word, "shuffle", 1, kMaxSeed, checks.shuffle_seed) &&
                !readNumber(word, "lag", 0, kMaxLag, checks.lag_fences_count) &&
                !readNumber(word, "memory", 1, kMaxMemory_MiB, checks.memory_mib)) {
-      return core::invalid("SPINDRIFT_GPU_CHECKS: \"" + std::string(word) + "\" is not barriers, poison, shuffle=1…" +
-                           std::to_string(kMaxSeed) + ", lag=0…" + std::to_string(kMaxLag) + " or memory=1…" +
-                           std::to_string(kMaxMemory_MiB));
+      return core::invalid("SPINDRIFT_GPU_CHECKS: \"" + std::string(word) +
+                           "\" is not barriers, poison, times, shuffle=1…" + std::to_string(kMaxSeed) + ", lag=0…" +
+                           std::to_string(kMaxLag) + " or memory=1…" + std::to_string(kMaxMemory_MiB));
     }
   }
   return checks;

@@ -13,6 +13,7 @@
 #include "access_tracker.h"
 #include "compiled_program.h"
 #include "device_selection.h"
+#include "dispatch_times.h"
 #include "egl_display.h"
 #include "shader_folder.h"
 #include "staging.h"
@@ -70,6 +71,7 @@ Context::Context(egl::Attempt chosen, const Checks& checks, const std::string& s
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
       programs_(std::make_unique<ProgramCache>()),
+      dispatch_times_(checks.times ? std::make_unique<DispatchTimes>() : nullptr),
       shader_folder_(shader_folder.empty() ? nullptr : std::make_unique<ShaderFolder>(shader_folder)) {
   fence_delay_.set(checks.lag_fences_count);
   glEnable(GL_DEBUG_OUTPUT);
@@ -90,8 +92,10 @@ Context::~Context() {
     spdlog::error("OpenGL context destroyed while another thread uses it; its objects are not freed");
     (void)programs_.release();  // their destructors would need the context
     (void)staging_.release();
+    (void)dispatch_times_.release();
     return;
   }
+  dispatch_times_.reset();
   collectRetired();
   for (const Retired& retired : retired_) {
     spdlog::error("readback slots of buffer {} are still held while their context is destroyed", retired.buffer_id);

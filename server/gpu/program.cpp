@@ -9,6 +9,7 @@
 #include <spindrift/gpu/program.h>
 
 #include "compiled_program.h"
+#include "dispatch_times.h"
 
 namespace spindrift::gpu {
 namespace {
@@ -68,8 +69,7 @@ bool Program::dispatchGroups(std::uint32_t x_count, std::uint32_t y_count, std::
   }
   if (x_count == 0 || y_count == 0 || z_count == 0) return true;
   prepare(nullptr);
-  glDispatchCompute(x_count, y_count, z_count);
-  ++ctx_->ledgerEntry().dispatch_count;
+  run([&] { glDispatchCompute(x_count, y_count, z_count); });
   return true;
 }
 
@@ -78,7 +78,14 @@ void Program::dispatchIndirect(const Buffer& arguments, std::size_t offset_bytes
   assert(offset_bytes % 4 == 0 && offset_bytes + 12 <= arguments.sizeBytes());
   prepare(&arguments);
   glBindBuffer(GL_DISPATCH_INDIRECT_BUFFER, arguments.id());
-  glDispatchComputeIndirect(static_cast<GLintptr>(offset_bytes));
+  run([&] { glDispatchComputeIndirect(static_cast<GLintptr>(offset_bytes)); });
+}
+
+void Program::run(const auto& dispatch) {
+  DispatchTimes* const times = ctx_->dispatchTimes();
+  if (times) times->begin(path_);
+  dispatch();
+  if (times) times->end();
   ++ctx_->ledgerEntry().dispatch_count;
 }
 

@@ -89,6 +89,9 @@ part_step() {
   local scene
   for scene in harbor splash pool flotsam; do
     "$bundle/spindrift-bench" --suite step --scene "$scene" --seconds 1 --device "$device" --json "$logs/step-$scene.json" 2>&1
+    printf 'by shader, all cases together:\n'
+    SPINDRIFT_GPU_CHECKS=times "$bundle/spindrift-bench" --suite step --scene "$scene" --seconds 0.2 --device "$device" 2>&1 |
+      sed -n 's/^.* info  *\([0-9.]* % [a-z]*\/.*\)/  \1/p' | head -n 12
   done
 }
 

@@ -236,10 +236,11 @@ TEST(BarrierDeathTest, UntakenFaultsEndTheProcess) {
 TEST(Checks, ReadsTheModesOfTheEnvironment) {
   const auto none = parseChecks("");
   ASSERT_TRUE(none);
-  EXPECT_FALSE(none->barriers || none->poison || none->shuffle_seed || none->lag_fences_count || none->memory_mib);
-  const auto all = parseChecks("barriers,poison,shuffle=7,lag=3,memory=64");
+  EXPECT_FALSE(none->barriers || none->poison || none->times || none->shuffle_seed || none->lag_fences_count ||
+               none->memory_mib);
+  const auto all = parseChecks("barriers,poison,times,shuffle=7,lag=3,memory=64");
   ASSERT_TRUE(all);
-  EXPECT_TRUE(all->barriers && all->poison);
+  EXPECT_TRUE(all->barriers && all->poison && all->times);
   EXPECT_EQ(all->shuffle_seed, 7u);
   EXPECT_EQ(all->lag_fences_count, 3u);
   EXPECT_EQ(all->memory_mib, 64u);

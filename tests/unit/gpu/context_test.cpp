@@ -1,11 +1,8 @@
 #include <algorithm>
-#include <sstream>
 #include <thread>
 
 #include <glad/gl.h>
 #include <gmock/gmock.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
@@ -15,7 +12,6 @@
 namespace spindrift::gpu {
 namespace {
 
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -80,26 +76,6 @@ TEST_F(ContextTest, DebugCallbackCountsErrorsOnly) {
   glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PERFORMANCE, 7, GL_DEBUG_SEVERITY_LOW, -1, text);
   ctx->finish();
   EXPECT_EQ(ctx->debugErrorCount(), 0u);
-}
-
-TEST_F(ContextTest, PerformanceMessagesAreLoggedOnceEachAtInfo) {
-  std::ostringstream log;
-  const auto before = spdlog::default_logger();
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
-  const auto remark = [&](GLuint id, const char* text) {
-    glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PERFORMANCE, id, GL_DEBUG_SEVERITY_MEDIUM, -1,
-                         text);
-  };
-  for (int i = 0; i < 5; ++i) {
-    remark(131186, "Buffer object 7 is being moved from VIDEO memory to HOST memory.\n");
-    remark(131218, "Program is being recompiled");
-  }
-  ctx->finish();
-  spdlog::set_default_logger(before);
-  const std::string said = log.str();
-  EXPECT_THAT(said, AllOf(HasSubstr("[info]"), HasSubstr("131186"), HasSubstr("HOST memory"), HasSubstr("131218")));
-  EXPECT_EQ(std::ranges::count(said, '\n'), 2) << said;
 }
 
 TEST_F(ContextTest, MovesToAnotherThreadAndBack) {

@@ -1,9 +1,12 @@
 // Poisoned scratch buffers, another order of work groups, programs that are shared.
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <vector>
 
 #include <gmock/gmock.h>
+#include <spdlog/sinks/ostream_sink.h>
+#include <spdlog/spdlog.h>
 
 #include <spindrift/gpu/program.h>
 
@@ -104,6 +107,28 @@ TEST_F(TestModes, ShuffledGroupsRunInAnotherOrder) {
     }
     EXPECT_LE(ascendingCount(55), 75u);
   }
+}
+
+TEST_F(TestModes, TimesOfProgramsAreLoggedAtTheEnd) {
+  make({.times = true});
+  if (!ctx) return;
+  {
+    auto program = Program::create(*ctx, "tests/group_order.comp");
+    auto order = Buffer::create(*ctx, "order", 4 * (1 + 3));
+    ASSERT_TRUE(program && order);
+    order->bindStorage(0);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_TRUE(program->dispatchGroups(1));
+      ctx->barrier(Barrier::kStorage);
+    }
+  }
+  std::ostringstream log;
+  const auto before = spdlog::default_logger();
+  spdlog::set_default_logger(
+      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+  ctx.reset();
+  spdlog::set_default_logger(before);
+  EXPECT_THAT(log.str(), HasSubstr("100.0 % tests/group_order.comp: 3 dispatches of "));
 }
 
 TEST_F(TestModes, CompileErrorsOfShuffledShadersNameTheirLines) {

@@ -73,10 +73,10 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   // dispatch for the health.
   EXPECT_EQ(wave.programs, 8u);
   EXPECT_EQ(wave.dispatches, 5u);
-  // Particles alone: 6 programs of the grid, 3 of sph, effects on particles, their diagnostics and packing; 2 x 9
+  // Particles alone: 7 programs of the grid, 3 of sph, effects on particles, their diagnostics and packing; 2 x 10
   // dispatches per tick, and one for the health.
-  EXPECT_EQ(particles.programs, 12u);
-  EXPECT_EQ(particles.dispatches, 19u);
+  EXPECT_EQ(particles.programs, 13u);
+  EXPECT_EQ(particles.dispatches, 21u);
   // Together: the sum, and the sampling of the surface once per tick; the effects act on the wave.
   EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);
@@ -86,14 +86,14 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   sim_.reset();
   EXPECT_EQ(derive(wave_only)->device_bytes, sizeof(shared::SimUniforms) + 32 * 32 * 24);
 
-  // Two-way: a pool and its plan, breaking, emission, a clearing pass in the grid; in calm water the particle passes
+  // Two-way: a pool and its plan, breaking, emission; in calm water the particle passes
   // have no groups.
   core::Scene two_way = full;
   two_way.coupling->mode = core::CouplingMode::kTwoWay;
   two_way.coupling->droplet_spacing_m = 0.25;
   const Cost both = cost(two_way);
-  EXPECT_EQ(both.programs, all.programs + 4) << "breaking, plan, emit, clear";
-  EXPECT_EQ(both.dispatches, all.dispatches + 1 + 2 + 1 + 2) << "breaking, 2 plans, emission, 2 clearings";
+  EXPECT_EQ(both.programs, all.programs + 3) << "breaking, plan, emit";
+  EXPECT_EQ(both.dispatches, all.dispatches + 1 + 2 + 1) << "breaking, 2 plans, emission";
 
   core::Scene boats = wave_only;
   boats.boats.emplace();

@@ -23,6 +23,7 @@ struct Attempt;
 struct Handles;
 }  // namespace egl
 class AccessTracker;
+class DispatchTimes;
 struct BufferAccess;
 class ProgramCache;
 struct ProgramUses;
@@ -158,6 +159,8 @@ class Context {
   AccessTracker& accesses() { return *accesses_; }
   Staging& staging() { return *staging_; }
   ProgramCache& programs() { return *programs_; }
+  /// Returns null unless Checks::times is on.
+  DispatchTimes* dispatchTimes() { return dispatch_times_.get(); }
   /// Returns the folder of shaders; null: the embedded shaders are used.
   [[nodiscard]] const ShaderFolder* shaderFolder() const { return shader_folder_.get(); }
   /// Issues the barrier that a dispatch needs; `indirect`: the buffer with its group counts, or null.
@@ -193,6 +196,7 @@ class Context {
   std::unique_ptr<AccessTracker> accesses_;
   std::unique_ptr<Staging> staging_;
   std::unique_ptr<ProgramCache> programs_;
+  std::unique_ptr<DispatchTimes> dispatch_times_;
   std::unique_ptr<ShaderFolder> shader_folder_;
 };
 

@@ -70,6 +70,7 @@ class Program {
   [[nodiscard]] std::int32_t location(std::string_view name);
   /// Prepares the program, its uniforms and the memory that it reads for a dispatch.
   void prepare(const Buffer* arguments);
+  void run(const auto& dispatch);
 
   std::unique_ptr<Context, Uncount> ctx_;  ///< not owned
   std::string path_;
