@@ -31,8 +31,9 @@ describe("the record of gauges", () => {
 
   it("begins anew when the scene does", () => {
     const record = new GaugeRecord();
-    record.add(7, [reading("toe", 7)]);
-    record.add(0.1, [reading("toe", 1)]);
+    expect(record.add(7, [reading("toe", 7)])).toBe("added");
+    expect(record.add(7, [reading("toe", 7)])).toBe("known");
+    expect(record.add(0.1, [reading("toe", 1)])).toBe("anew");
     expect(record.view(["toe"], "elevation")).toEqual({ timesS: [0.1], columns: [[1]] });
   });
 

@@ -41,7 +41,7 @@ export class GaugeChart {
         cursor: { y: false, drag: { setScale: false, x: false, y: false } },
         scales: { x: { time: false }, y: { range: (_, low, high) => rangeOf(low, high) } },
         axes: [
-          { ...axis, size: 26, space: 56 },
+          { ...axis, size: 26, space: 56, values: (_, values) => values.map((valueS) => `${valueS} s`) },
           { ...axis, size: 52, space: 26, values: (_, values) => values.map((value) => String(Number(value.toPrecision(4)))) },
         ],
         series: [{}],

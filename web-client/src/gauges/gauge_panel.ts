@@ -90,14 +90,14 @@ export class GaugePanel {
     this.gauges = gauges;
     this.keys.clear();
     for (const { name, label } of gauges) {
-      const value = make("output");
+      const value = make("span", { class: "gauge-value" });
       const key = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), label ?? name, value]);
       key.style.setProperty("--line", this.lineOf(name).color);
       key.addEventListener("click", () => this.toggle(name));
       this.keys.set(name, { button: key, value });
     }
     this.keyRow.replaceChildren(...[...this.keys.values()].map(({ button }) => button));
-    if (isFirst) this.isPaused = false;
+    if (isFirst) this.hold(false);
     if (this.isOpen) void this.readHistory();
     this.draw();
   }
@@ -118,7 +118,7 @@ export class GaugePanel {
 
   take(timeS: number, readings: readonly GaugeReadingInfo[]): void {
     if (!this.isOpen || this.isPaused) return;
-    this.record.add(timeS, readings);
+    if (this.record.add(timeS, readings) === "anew") void this.readHistory();
     this.draw();
   }
 
@@ -142,10 +142,14 @@ export class GaugePanel {
 
   /** Holds the chart with every tick of the history, or continues with what came meanwhile. */
   private async pause(isPaused: boolean): Promise<void> {
+    this.hold(isPaused);
+    await this.readHistory();
+  }
+
+  private hold(isPaused: boolean): void {
     this.isPaused = isPaused;
     setText(this.pauseButton, isPaused ? kGaugeTexts.resume : kGaugeTexts.pause);
     this.pauseButton.setAttribute("aria-pressed", String(isPaused));
-    await this.readHistory();
   }
 
   /** Reads what the server keeps of the chosen gauges; while the chart is paused up to its newest time. */

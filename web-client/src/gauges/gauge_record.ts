@@ -44,11 +44,12 @@ export class GaugeRecord {
     this.columns.clear();
   }
 
-  /** Adds the readings of one time. An earlier one than before means that the scene has started again: what was before is dropped. */
-  add(timeS: number, readings: readonly GaugeReadingInfo[]): void {
+  /** Adds the readings of one time. An earlier one than before means that the scene has started again: what was before is dropped ("anew"). */
+  add(timeS: number, readings: readonly GaugeReadingInfo[]): "added" | "known" | "anew" {
     const { newestS } = this;
-    if (newestS !== undefined && timeS < newestS) this.clear();
-    if (timeS === this.newestS) return;
+    if (timeS === newestS) return "known";
+    const isAnew = newestS !== undefined && timeS < newestS;
+    if (isAnew) this.clear();
     this.timesS.push(timeS);
     for (const { name, ...reading } of readings) {
       const columns = this.columnsOf(name);
@@ -57,6 +58,7 @@ export class GaugeRecord {
       columns.velocityZ[this.timesS.length - 1] = reading.velocityZMps;
     }
     this.fillAndTrim();
+    return isAnew ? "anew" : "added";
   }
 
   /** Adds the history of a gauge. What is known of times later than its last one stays. `untilS`: leaves out what is later. */
