@@ -7,12 +7,14 @@ import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { startServer } from "./server.mjs";
-import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
+import { skip, waitFor as waitForStats, WAIT_MS } from "./two_people.mjs";
 
 const kGauges = ["maker", "toe", "slope", "breakers", "shore"];
 const kFingerPx = 44;
 /** A picture, and all that a page on a busy machine has to do before it. */
-const slow = { timeout: 8 * WAIT_MS };
+const kPatienceMs = 4 * WAIT_MS;
+const slow = { timeout: 6 * kPatienceMs };
+const waitFor = (page, what, accept) => waitForStats(page, what, accept, kPatienceMs);
 
 describe("the gauges", { skip, concurrency: 1 }, () => {
   let server;
@@ -32,9 +34,9 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
 
   async function open(options) {
     const page = await (await browser.newContext(options)).newPage();
-    page.setDefaultTimeout(2 * WAIT_MS);
+    page.setDefaultTimeout(kPatienceMs);
     page.on("request", (request) => requested.push(request.url()));
-    await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
+    await page.goto(`${server.url}?quality=minimal`, { timeout: kPatienceMs });
     await waitFor(page, "a picture", ({ connectionState, shownTimeS }) => connectionState === "live" && shownTimeS !== null);
     return page;
   }
@@ -45,13 +47,13 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
   /** Opens the panel and waits for readings. */
   async function openPanel(page, press) {
     await press(page.getByTestId("gauges"));
-    await page.getByTestId("gauge-chart").waitFor({ timeout: WAIT_MS });
-    await page.waitForFunction(() => /\d m$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value")?.textContent), undefined, { timeout: WAIT_MS });
+    await page.getByTestId("gauge-chart").waitFor({ timeout: kPatienceMs });
+    await page.waitForFunction(() => /\d m$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value")?.textContent), undefined, { timeout: kPatienceMs });
   }
 
   /** Saves the table of the panel, and returns its header and its rows of numbers. */
   async function table(page) {
-    const download = page.waitForEvent("download", { timeout: WAIT_MS });
+    const download = page.waitForEvent("download", { timeout: kPatienceMs });
     await page.getByTestId("gauge-csv").click();
     const file = await download;
     assert.match(file.suggestedFilename(), /^spindrift-flume-gauges-\d{4}-\d\d-\d\d-\d{6}\.csv$/);
@@ -68,14 +70,14 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
       assert.ok(topM > 0.1, `${name} ends at ${topM} m`);
     }
     const named = desk.getByTestId("gauge-tags").locator("span", { hasText: "breakers" });
-    await named.filter({ visible: true }).waitFor({ timeout: WAIT_MS });
+    await named.filter({ visible: true }).waitFor({ timeout: kPatienceMs });
     const { topM, xM, zM } = gauges[3];
     const isThere = ([x, z, y]) => {
       const box = [...document.querySelectorAll(".gauge-tags span")].find((tag) => tag.textContent === "breakers").getBoundingClientRect();
       const [left, top] = window.spindrift.pixelOf(x, z, y);
       return Math.abs(box.left + box.width / 2 - left) < 3 && Math.abs(box.bottom - top) < 3;
     };
-    await desk.waitForFunction(isThere, [xM, zM, topM], { timeout: WAIT_MS });
+    await desk.waitForFunction(isThere, [xM, zM, topM], { timeout: kPatienceMs });
   });
 
   it("load their chart when the panel is first opened", slow, async () => {
@@ -83,16 +85,16 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     assert.ok(!requested.some(isChart), "nobody has opened it");
     await openPanel(desk, (button) => button.click());
     assert.equal(requested.filter(isChart).length, 1);
-    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-chart] canvas")?.width > 300, undefined, { timeout: WAIT_MS });
+    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-chart] canvas")?.width > 300, undefined, { timeout: kPatienceMs });
   });
 
   it("have a chart that is held and read: values under the mouse are those of the server", slow, async () => {
     await waitFor(desk, "waves at the toe", ({ simTime }) => simTime > 12);
     await desk.getByTestId("gauge-pause").click();
-    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-pause]").textContent === "Continue", undefined, { timeout: WAIT_MS });
+    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-pause]").textContent === "Continue", undefined, { timeout: kPatienceMs });
     const chart = await desk.getByTestId("gauge-chart").boundingBox();
     await desk.mouse.move(chart.x + 0.7 * chart.width, chart.y + 0.4 * chart.height);
-    await desk.waitForFunction(() => /^at /.test(document.querySelector("[data-testid=gauge-at]").textContent), undefined, { timeout: WAIT_MS });
+    await desk.waitForFunction(() => /^at /.test(document.querySelector("[data-testid=gauge-at]").textContent), undefined, { timeout: kPatienceMs });
     const readAll = async () => [await desk.getByTestId("gauge-at").textContent(), ...(await Promise.all(kGauges.map((gauge) => valueOf(desk, gauge))))];
     const read = await readAll();
     const timeS = Number(/^at ([\d.]+) s$/.exec(read[0])[1]);
@@ -106,7 +108,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     await waitFor(desk, "the water, which runs on", (stats) => stats.simTime > simTime + 1);
     assert.deepEqual(await readAll(), read);
     await desk.getByTestId("gauge-quantity").selectOption("velocityX");
-    await desk.waitForFunction(() => / m\/s$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value").textContent), undefined, { timeout: WAIT_MS });
+    await desk.waitForFunction(() => / m\/s$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value").textContent), undefined, { timeout: kPatienceMs });
   });
 
   it("are saved as a table of every tick, with what the server measured", slow, async () => {
@@ -134,7 +136,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     const newestS = held.rows.at(-1)[0];
     await waitFor(desk, "later water", ({ simTime }) => simTime > newestS + 2);
     await desk.mouse.move(640, 10);
-    await desk.getByTestId("gauge-at").filter({ hasText: "now" }).waitFor({ timeout: WAIT_MS });
+    await desk.getByTestId("gauge-at").filter({ hasText: "now" }).waitFor({ timeout: kPatienceMs });
     const { rows } = await table(desk);
     const gaps = rows.slice(1).map(([timeS], n) => timeS - rows[n][0]);
     assert.ok(rows.at(-1)[0] > newestS + 1);
@@ -142,7 +144,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
   });
 
   it("are saved as a picture", slow, async () => {
-    const download = desk.waitForEvent("download", { timeout: WAIT_MS });
+    const download = desk.waitForEvent("download", { timeout: kPatienceMs });
     await desk.getByTestId("gauge-png").click();
     const file = await download;
     assert.match(file.suggestedFilename(), /^spindrift-flume-gauges-[\d-]+\.png$/);
@@ -166,6 +168,6 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     const small = await phone.evaluate((least) => [...document.querySelectorAll(".gauge-card :is(button, select)")].filter((each) => each.offsetWidth < least || each.offsetHeight < least).map(({ textContent }) => textContent), kFingerPx);
     assert.deepEqual(small, []);
     await phone.touchscreen.tap(chart.x + 0.6 * chart.width, chart.y + 0.4 * chart.height);
-    await phone.getByTestId("gauge-at").filter({ hasText: /^at / }).waitFor({ timeout: WAIT_MS });
+    await phone.getByTestId("gauge-at").filter({ hasText: /^at / }).waitFor({ timeout: kPatienceMs });
   });
 });
