@@ -122,6 +122,7 @@ core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {
     time.set_ms(pass.ms);
   }
   for (const core::DiagnosticsView::GaugeNow& gauge : in.gauges) writeGauge(gauge, *out.add_gauges());
+  out.set_gauges_time_s(in.gauges_time_s);
   return serialized(message);
 }
 

@@ -154,7 +154,8 @@ core::DiagnosticsView RoomFrames::diagnostics() {
           .absorbed_m3 = h.absorbed_m3,
           .breaking_ratio = h.breaking_ratio,
           .passes = means.passes,
-          .gauges = gaugesNow(water)};
+          .gauges = gaugesNow(water),
+          .gauges_time_s = water.gauges() ? water.gauges()->newestTime_s() : 0.0};
 }
 
 }  // namespace spindrift::rooms

@@ -22,6 +22,7 @@ void GaugeHistory::add(double time_s, std::span<const GaugeReading> readings) {
     now.highest_m = is_empty_ ? readings[k].elevation_m : std::max(now.highest_m, readings[k].elevation_m);
     now.lowest_m = is_empty_ ? readings[k].elevation_m : std::min(now.lowest_m, readings[k].elevation_m);
   }
+  newest_time_s_ = time_s;
   is_empty_ = false;
 }
 
@@ -31,12 +32,18 @@ void GaugeHistory::clear() {
   readings_.clear();
   now_.assign(gauge_count_, {});
   next_ = 0;
+  newest_time_s_ = 0.0;
   is_empty_ = true;
 }
 
 std::vector<GaugeHistory::Now> GaugeHistory::now() const {
   const std::lock_guard lock(mutex_);
   return now_;
+}
+
+double GaugeHistory::newestTime_s() const {
+  const std::lock_guard lock(mutex_);
+  return newest_time_s_;
 }
 
 GaugeHistory::Series GaugeHistory::series(std::size_t gauge) const {

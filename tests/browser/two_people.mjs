@@ -13,12 +13,12 @@ export const WAIT_MS = 60_000;
 export const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 
 /** Waits until the page's numbers are as wanted, and returns them. */
-export async function waitFor(page, what, accept) {
-  const deadline_ms = Date.now() + WAIT_MS;
+export async function waitFor(page, what, accept, patience_ms = WAIT_MS) {
+  const deadline_ms = Date.now() + patience_ms;
   for (;;) {
     const stats = await page.evaluate(() => window.spindrift?.stats());
     if (stats !== undefined && accept(stats)) return stats;
-    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
+    assert.ok(Date.now() < deadline_ms, `waited ${patience_ms / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
     await sleep(50);
   }
 }

@@ -1,4 +1,6 @@
 // Gauges and the ground of a room, as clients, scripts and scrapers get them.
+#include <algorithm>
+
 #include <boost/json.hpp>
 
 #include <spindrift/script/script.h>
@@ -75,6 +77,29 @@ TEST_F(GaugesOfARoom, AreReadByRequestsAndScrapers) {
   EXPECT_EQ(get("/api/v1/rooms/plain/gauges").status, 200U);
   EXPECT_EQ(get("/api/v1/rooms/plain/gauges/near").status, 404U);
   EXPECT_THAT(get("/metrics").body, HasSubstr("spindrift_room_gauge_elevation_meters{room=\"main\",gauge=\"shore\"}"));
+}
+
+TEST_F(GaugesOfARoom, ReadingsInTheDiagnosticsAreThoseOfTheSeriesAtTheirTime) {
+  ScriptedClient player = client();
+  player.subscribe(v1::LAYER_DIAGNOSTICS);
+  v1::Command wave = splash();
+  wave.mutable_splash()->set_x_m(-3);
+  ASSERT_TRUE(player.apply(wave));
+  const auto newest = player.waitFor([](const v1::ServerMessage& message) {
+    return message.has_diagnostics() && message.diagnostics().gauges_time_s() > 0.5;
+  });
+  ASSERT_TRUE(newest);
+  const v1::Diagnostics& now = newest->diagnostics();
+  EXPECT_LE(now.gauges_time_s(), now.time_s());
+  ASSERT_EQ(now.gauges_size(), 2);
+  const boost::json::value series = boost::json::parse(get("/api/v1/rooms/main/gauges/near").body);
+  const boost::json::array& times_s = series.at("time_s").as_array();
+  const auto at = std::ranges::find_if(
+      times_s, [&](const boost::json::value& time) { return time.to_number<double>() == now.gauges_time_s(); });
+  ASSERT_NE(at, times_s.end()) << now.gauges_time_s();
+  const auto tick = static_cast<std::size_t>(at - times_s.begin());
+  EXPECT_NEAR(series.at("elevation_m").as_array()[tick].to_number<double>(), now.gauges(0).elevation_m(), 1e-7);
+  EXPECT_NE(now.gauges(0).elevation_m(), 0.0);
 }
 
 /// Undoes the differences of v1::Ground, as its comment says.

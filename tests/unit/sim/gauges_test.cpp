@@ -102,6 +102,7 @@ TEST_F(GaugesOnDevice, HaveOneReadingPerTickAndForgetItAtAReset) {
   EXPECT_GT(sim.gauges()->now()[0].highest_m, 0.9 * kAmplitude_m * std::cos(wavenumber_radpm()));
   sim.reset();
   EXPECT_TRUE(sim.gauges()->series(0).time_s.empty());
+  EXPECT_EQ(sim.gauges()->newestTime_s(), 0.0);
   run(sim, 3);
   EXPECT_NEAR(sim.gauges()->series(0).time_s[0], sim.derived().tick_s, 1e-9) << "no reading of the time before";
   EXPECT_EQ(sim.gauges()->now()[0].highest_m, 0.0F);
@@ -169,6 +170,7 @@ TEST(GaugeHistory, KeepsTheNewestTicksInOrderAndTheExtremesOfAll) {
     history.add(static_cast<double>(k),
                 std::vector<GaugeReading>{{.elevation_m = height_m}, {.elevation_m = -height_m}});
   }
+  EXPECT_EQ(history.newestTime_s(), history.series(0).time_s.back());
   const GaugeHistory::Series series = history.series(1);
   ASSERT_EQ(series.time_s.size(), GaugeHistory::kTickMaxCount);
   for (std::size_t k = 0; k < series.time_s.size(); ++k) {

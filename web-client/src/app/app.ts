@@ -37,6 +37,7 @@ import { ViewButtons } from "../ui/view_buttons";
 import { currentAddress, isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
+import { Gauges } from "./gauges";
 import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
@@ -92,6 +93,7 @@ export class App {
   private readonly tags = new BoatTags(byId("view"));
   private readonly marks = new CourseTags(byId("view"), markTopM);
   readonly fingers = new FingerTags(byId("view"));
+  private readonly gauges: Gauges;
   private readonly preview = new ToolPreview(byId("view"));
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
@@ -143,6 +145,9 @@ export class App {
       measured: (framesPerS, delayS) => this.hud.display(framesPerS, delayS),
       qualityChanged: () => this.showQuality(),
     });
+    this.gauges = new Gauges(this.display, () =>
+      import("./gauge_view").then(({ makeGaugeView }) => makeGaugeView(this), () => void this.warn(kTexts.gaugesNotLoaded)),
+    );
     this.pictures = new PictureControls(this.display, this.actions, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
@@ -233,6 +238,7 @@ export class App {
       diagnostics: ({ diagnostics }) => {
         this.hud.diagnostics(diagnostics);
         this.room.diagnostics(diagnostics, nowS());
+        this.gauges.take(diagnostics);
       },
       ack: ({ boatId, ...ack }) => {
         const commandId = Number(ack.commandId);
@@ -309,6 +315,7 @@ export class App {
     this.boats.enter(greeting);
     this.tags.setBoats(greeting.boats);
     this.marks.enter(greeting.course);
+    this.gauges.enter(greeting);
     this.fingers.clear();
     this.looks.enter(greeting);
     this.sound.enter(greeting);
@@ -356,6 +363,7 @@ export class App {
     const mark = nextMark === undefined ? undefined : this.entered?.course?.marks[nextMark];
     const next: Outline[] = mark ? [{ kind: "disc", at: mark, radiusM: mark.radiusM, color: kNextMarkColor }] : [];
     this.marks.update(scene.camera, nextMark, scene.heightAtM, covered);
+    this.gauges.update();
     this.preview.update([...(own ? [own] : []), ...next, ...this.fingers.discs()], scene.camera, scene.heightAtM);
     this.tags.update(scene.camera, (boatId) => scene.poseOf(boatId), views.view === "boat" ? this.boats.mineId : 0, covered);
   }

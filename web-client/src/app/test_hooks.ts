@@ -56,6 +56,7 @@ function stats(app: App) {
     boats: scene.drawnBoats(),
     floaters: scene.drawnFloaters().map((pose) => ({ ...pose, turn: [...pose.turn] })),
     dents: scene.ripple.count.value,
+    gauges: scene.drawnGauges(),
     whitewater: scene.whitewaterCounts(),
     role: app.role,
     myBoat: app.boats.mineId,

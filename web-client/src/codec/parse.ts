@@ -67,8 +67,12 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
 
 export type DiagnosticsInfo = ReturnType<typeof readDiagnostics>;
 
-function readDiagnostics({ $typeName: _, $unknown: __, passes, ...numbers }: Diagnostics) {
-  return { ...numbers, passes: passes.map(({ name, ms }) => ({ name, ms })) };
+function readDiagnostics({ $typeName: _, $unknown: __, passes, gauges, ...numbers }: Diagnostics) {
+  return {
+    ...numbers,
+    passes: passes.map(({ name, ms }) => ({ name, ms })),
+    gauges: gauges.map(({ name, elevationM, velocityXMps, velocityZMps }) => ({ name, elevationM, velocityXMps, velocityZMps })),
+  };
 }
 
 function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "fidelity" | "other" {

@@ -5,6 +5,7 @@ import type { GameInfo } from "../codec/game";
 import type { BoatDetail, GreetingInfo } from "../codec/greeting";
 import type { GroundGrid } from "../codec/ground";
 import type { PersonInfo } from "../codec/people";
+import type { GaugeInfo } from "../codec/scene_info";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import { diveWater, type DiveWater } from "./camera/dive";
 import type { ViewedBox } from "./camera/framing";
@@ -26,6 +27,7 @@ import { makeBase, makeNaturalWater, usedPasses, type RoomBase, type RoomTools, 
 import { clamp } from "./maths/interpolate";
 import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
+import type { Pole } from "./solids/gauge_poles";
 import { isIndoors, viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
@@ -62,6 +64,7 @@ export class WaterScene {
   private darknessShare = 0;
   private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
   private game: { kind: GameInfo["kind"] | undefined; nextMark: number | undefined } = { kind: undefined, nextMark: undefined };
+  private gauges: readonly GaugeInfo[] = [];
   private wantedLook: LookName = "natural";
   private greeting: GreetingInfo | undefined;
   /** Range of the elevations of the frame that was picked last. */
@@ -103,6 +106,7 @@ export class WaterScene {
     this.base = makeBase(greeting, this.tools);
     this.base.solids.setOwnerColors(this.ownerColors);
     this.base.solids.setGame(this.game.kind, this.game.nextMark);
+    this.base.solids.setGauges(this.gauges);
     this.base.solids.darkness.value = this.darknessShare;
     this.makeWater();
     this.findFloor();
@@ -180,6 +184,16 @@ export class WaterScene {
   setBoats(boats: readonly BoatDetail[]): void {
     if (this.greeting) this.greeting.boats = [...boats];
     this.base?.solids.setBoats(boats);
+  }
+
+  /** Sets the gauges in the water: those of the scene, and those that people have placed. */
+  setGauges(gauges: readonly GaugeInfo[]): void {
+    this.gauges = gauges;
+    this.base?.solids.setGauges(gauges);
+  }
+
+  drawnGauges(): readonly Pole[] {
+    return this.base?.solids.drawnGauges() ?? [];
   }
 
   /** Shows what belongs to a game, without one everything, and highlights the mark of the course that one's own boat has to round. */

@@ -23,6 +23,8 @@ export const kTexts = {
   notNow: "The lesson does not allow this at present.",
   failed: (what: string, why: string) => `${what}: ${why}`,
 
+  gaugesNotLoaded: "The gauges' names and chart could not be loaded; reload the page.",
+
   // The hint of the first visit
   movesObjectsByMouse: "Drag an object to move it; the wheel turns it.",
   movesObjectsByTouch: "Drag an object to move it; a second finger turns it.",

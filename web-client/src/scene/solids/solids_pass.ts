@@ -1,10 +1,11 @@
-// Everything but water: the sky, what is around the water, boats, buoys and objects. Reads the field, for buoys, the shore, the caustics, the shadow, and the
+// Everything but water: the sky, what is around the water, boats, buoys, gauges and objects. Reads the field, for buoys, the shore, the caustics, the shadow, and the
 // frames of boats and objects.
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { GameInfo } from "../../codec/game";
 import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
+import type { GaugeInfo } from "../../codec/scene_info";
 import { Boats } from "../boats/boats";
 import { buoyPlaces, Buoys } from "../boats/buoys";
 import { CourseMarks } from "../boats/course_marks";
@@ -21,6 +22,7 @@ import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
 import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { GaugePoles, type Pole } from "./gauge_poles";
 import { isIndoors, Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
@@ -52,6 +54,7 @@ export class SolidsPass implements Pass {
   private readonly buoys: Buoys | undefined;
   private readonly floaters: Floaters | undefined;
   private readonly course: CourseMarks | undefined;
+  private readonly gauges: GaugePoles;
 
   /** `greeting` is read in every picture, because its wind changes. `field` undefined: the room has no wave. */
   constructor(
@@ -83,7 +86,8 @@ export class SolidsPass implements Pass {
     const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, haze: this.haze, solid: this.material, quality });
-    this.scene.add(sky.dome, ...this.surroundings.solids);
+    this.gauges = new GaugePoles(greeting, this.material);
+    this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
     if (greeting.hasBoats) {
       this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
@@ -110,6 +114,14 @@ export class SolidsPass implements Pass {
 
   setBoats(boats: readonly BoatDetail[]): void {
     this.boats?.setBoats(boats);
+  }
+
+  setGauges(gauges: readonly GaugeInfo[]): void {
+    this.gauges.show(gauges);
+  }
+
+  drawnGauges(): readonly Pole[] {
+    return this.gauges.poles;
   }
 
   /** Shows what belongs to a game, and highlights the mark of the course that one's own boat has to round. */
@@ -168,6 +180,7 @@ export class SolidsPass implements Pass {
     this.buoys?.dispose();
     this.floaters?.dispose();
     this.course?.dispose();
+    this.gauges.dispose();
     this.surroundings.dispose();
     this.material.dispose();
     this.target.dispose();

@@ -45,6 +45,8 @@ class GaugeHistory {
   [[nodiscard]] std::size_t gaugeCount() const { return gauge_count_; }
   /// Returns one value per gauge; zeros before the first reading.
   [[nodiscard]] std::vector<Now> now() const;
+  /// Returns the time of the newest readings; 0 before the first.
+  [[nodiscard]] double newestTime_s() const;
   /// Returns the kept ticks of a gauge, oldest first. Precondition: gauge < gaugeCount().
   [[nodiscard]] Series series(std::size_t gauge) const;
 
@@ -55,6 +57,7 @@ class GaugeHistory {
   std::vector<GaugeReading> readings_;  ///< the same ticks, gauge fastest
   std::vector<Now> now_;
   std::size_t next_ = 0;  ///< tick of the ring that is written next
+  double newest_time_s_ = 0.0;
   bool is_empty_ = true;
 };
 

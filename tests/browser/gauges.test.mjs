@@ -1,0 +1,173 @@
+// Gauges, in Chromium: poles in the picture, and the panel with the chart, which holds what the server measured.
+import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
+import { after, before, describe, it } from "node:test";
+
+import { chromium } from "playwright-core";
+
+import { executable, kChromiumArgs } from "./chromium.mjs";
+import { startServer } from "./server.mjs";
+import { skip, waitFor as waitForStats, WAIT_MS } from "./two_people.mjs";
+
+const kGauges = ["maker", "toe", "slope", "breakers", "shore"];
+const kFingerPx = 44;
+/** A picture, and all that a page on a busy machine has to do before it. */
+const kPatienceMs = 4 * WAIT_MS;
+const slow = { timeout: 6 * kPatienceMs };
+const waitFor = (page, what, accept) => waitForStats(page, what, accept, kPatienceMs);
+
+describe("the gauges", { skip, concurrency: 1 }, () => {
+  let server;
+  let browser;
+  let desk;
+  const requested = [];
+
+  before(async () => {
+    server = await startServer(0, ["--scene", "flume"]);
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    desk = await open({ viewport: { width: 1280, height: 720 } });
+  }, slow);
+  after(async () => {
+    await browser?.close();
+    await server?.stop("SIGTERM");
+  });
+
+  async function open(options) {
+    const page = await (await browser.newContext(options)).newPage();
+    page.setDefaultTimeout(kPatienceMs);
+    page.on("request", (request) => requested.push(request.url()));
+    await page.goto(`${server.url}?quality=minimal`, { timeout: kPatienceMs });
+    await waitFor(page, "a picture", ({ connectionState, shownTimeS }) => connectionState === "live" && shownTimeS !== null);
+    return page;
+  }
+
+  const seriesOf = async (gauge) => (await fetch(`${server.url}api/v1/rooms/main/gauges/${gauge}`)).json();
+  const valueOf = (page, gauge) => page.getByTestId(`gauge-key-${gauge}`).locator(".gauge-value").textContent();
+
+  /** Opens the panel and waits for readings. */
+  async function openPanel(page, press) {
+    await press(page.getByTestId("gauges"));
+    await page.getByTestId("gauge-chart").waitFor({ timeout: kPatienceMs });
+    await page.waitForFunction(() => /\d m$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value")?.textContent), undefined, { timeout: kPatienceMs });
+  }
+
+  /** Saves the table of the panel, and returns its header and its rows of numbers. */
+  async function table(page) {
+    const download = page.waitForEvent("download", { timeout: kPatienceMs });
+    await page.getByTestId("gauge-csv").click();
+    const file = await download;
+    assert.match(file.suggestedFilename(), /^spindrift-flume-gauges-\d{4}-\d\d-\d\d-\d{6}\.csv$/);
+    const [head, ...rows] = (await readFile(await file.path(), "utf8")).trimEnd().split("\n").map((line) => line.split(","));
+    return { head, rows: rows.map((row) => row.map((value) => (value === "" ? null : Number(value)))) };
+  }
+
+  it("are poles from the bed to above the water, with their names", slow, async () => {
+    const { gauges } = await waitFor(desk, "the ground", (stats) => stats.gauges.length === 5 && stats.gauges[4].lowM > -0.1);
+    assert.deepEqual(gauges.map(({ name }) => name), kGauges);
+    const depths = { maker: 0.5, slope: 0.25, breakers: 0.1, shore: 0 };
+    for (const { name, lowM, topM } of gauges) {
+      if (name in depths) assert.ok(Math.abs(lowM + depths[name]) < 0.01, `${name} begins at ${lowM} m`);
+      assert.ok(topM > 0.1, `${name} ends at ${topM} m`);
+    }
+    const named = desk.getByTestId("gauge-tags").locator("span", { hasText: "breakers" });
+    await named.filter({ visible: true }).waitFor({ timeout: kPatienceMs });
+    const { topM, xM, zM } = gauges[3];
+    const isThere = ([x, z, y]) => {
+      const box = [...document.querySelectorAll(".gauge-tags span")].find((tag) => tag.textContent === "breakers").getBoundingClientRect();
+      const [left, top] = window.spindrift.pixelOf(x, z, y);
+      return Math.abs(box.left + box.width / 2 - left) < 3 && Math.abs(box.bottom - top) < 3;
+    };
+    await desk.waitForFunction(isThere, [xM, zM, topM], { timeout: kPatienceMs });
+  });
+
+  it("load their chart when the panel is first opened", slow, async () => {
+    const isChart = (url) => /gauge_panel.*\.js$/.test(url);
+    assert.ok(!requested.some(isChart), "nobody has opened it");
+    await openPanel(desk, (button) => button.click());
+    assert.equal(requested.filter(isChart).length, 1);
+    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-chart] canvas")?.width > 300, undefined, { timeout: kPatienceMs });
+  });
+
+  it("have a chart that is held and read: values under the mouse are those of the server", slow, async () => {
+    await waitFor(desk, "waves at the toe", ({ simTime }) => simTime > 12);
+    await desk.getByTestId("gauge-pause").click();
+    await desk.waitForFunction(() => document.querySelector("[data-testid=gauge-pause]").textContent === "Continue", undefined, { timeout: kPatienceMs });
+    const chart = await desk.getByTestId("gauge-chart").boundingBox();
+    await desk.mouse.move(chart.x + 0.7 * chart.width, chart.y + 0.4 * chart.height);
+    await desk.waitForFunction(() => /^at /.test(document.querySelector("[data-testid=gauge-at]").textContent), undefined, { timeout: kPatienceMs });
+    const readAll = async () => [await desk.getByTestId("gauge-at").textContent(), ...(await Promise.all(kGauges.map((gauge) => valueOf(desk, gauge))))];
+    const read = await readAll();
+    const timeS = Number(/^at ([\d.]+) s$/.exec(read[0])[1]);
+    for (const [n, gauge] of kGauges.entries()) {
+      const { time_s: times, elevation_m: elevations } = await seriesOf(gauge);
+      const near = elevations.filter((_, at) => Math.abs(times[at] - timeS) < 0.02);
+      const shownM = Number(/^(-?[\d.]+) m$/.exec(read[n + 1])[1]);
+      assert.ok(near.some((elevationM) => Math.abs(elevationM - shownM) <= 0.0006), `${gauge} at ${timeS} s: ${read[n + 1]}, the server has ${near}`);
+    }
+    const { simTime } = await waitFor(desk, "a second", () => true);
+    await waitFor(desk, "the water, which runs on", (stats) => stats.simTime > simTime + 1);
+    assert.deepEqual(await readAll(), read);
+    await desk.getByTestId("gauge-quantity").selectOption("velocityX");
+    await desk.waitForFunction(() => / m\/s$/.test(document.querySelector("[data-testid=gauge-key-toe] .gauge-value").textContent), undefined, { timeout: kPatienceMs });
+  });
+
+  it("are saved as a table of every tick, with what the server measured", slow, async () => {
+    await desk.getByTestId("gauge-key-maker").click();
+    const { head, rows } = await table(desk);
+    assert.deepEqual(head, ["time [s]", ...kGauges.slice(1).flatMap((gauge) => [`${gauge} elevation [m]`, `${gauge} velocity x [m/s]`, `${gauge} velocity z [m/s]`])]);
+    const { time_s: times, elevation_m: elevations, velocity_x_mps: speeds } = await seriesOf("toe");
+    const at = new Map(times.map((timeS, n) => [timeS, n]));
+    // Meanwhile the server has dropped the oldest ones.
+    const shared = rows.filter(([timeS]) => timeS >= times[0]);
+    assert.ok(shared.length > 300, `${shared.length} of ${rows.length} rows are of times that the server still has`);
+    for (const [timeS, elevationM, speedMps] of shared) {
+      const n = at.get(timeS);
+      assert.notEqual(n, undefined, `the server has no reading of ${timeS} s`);
+      assert.ok(Math.abs(elevationM - elevations[n]) < 1e-6 && Math.abs(speedMps - speeds[n]) < 1e-6, `${timeS} s: ${elevationM} m, ${speedMps} m/s; the server has ${elevations[n]}, ${speeds[n]}`);
+    }
+    assert.ok(Math.max(...elevations) > 0.02, "there are waves");
+    await desk.getByTestId("gauge-key-maker").click();
+  });
+
+  it("continue after the pause, live and with what came meanwhile", slow, async () => {
+    await desk.getByTestId("gauge-quantity").selectOption("elevation");
+    const held = await table(desk);
+    await desk.getByTestId("gauge-pause").click();
+    const newestS = held.rows.at(-1)[0];
+    await waitFor(desk, "later water", ({ simTime }) => simTime > newestS + 2);
+    await desk.mouse.move(640, 10);
+    await desk.getByTestId("gauge-at").filter({ hasText: "now" }).waitFor({ timeout: kPatienceMs });
+    const { rows } = await table(desk);
+    const gaps = rows.slice(1).map(([timeS], n) => timeS - rows[n][0]);
+    assert.ok(rows.at(-1)[0] > newestS + 1);
+    assert.ok(Math.max(...gaps) < 0.05, `a gap of ${Math.max(...gaps)} s`);
+  });
+
+  it("are saved as a picture", slow, async () => {
+    const download = desk.waitForEvent("download", { timeout: kPatienceMs });
+    await desk.getByTestId("gauge-png").click();
+    const file = await download;
+    assert.match(file.suggestedFilename(), /^spindrift-flume-gauges-[\d-]+\.png$/);
+    const bytes = await readFile(await file.path());
+    assert.deepEqual([...bytes.subarray(1, 4)].map((byte) => String.fromCharCode(byte)).join(""), "PNG");
+    assert.ok(bytes.readUInt32BE(16) > 400 && bytes.readUInt32BE(20) > 150, `${bytes.readUInt32BE(16)} x ${bytes.readUInt32BE(20)} pixels`);
+    await desk.getByTestId("gauge-close").click();
+    assert.ok(await desk.getByTestId("gauge-panel").isHidden());
+    await desk.close();
+  });
+
+  it("are in the sheet of a phone: a chart to read, and controls for fingers", slow, async () => {
+    const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    await phone.getByTestId("gauges").waitFor();
+    assert.equal(await phone.locator("#panel-toggle").getAttribute("aria-expanded"), "false");
+    await openPanel(phone, (button) => button.tap());
+    assert.equal(await phone.locator("#panel-toggle").getAttribute("aria-expanded"), "true");
+    const chart = await phone.getByTestId("gauge-chart").boundingBox();
+    assert.ok(chart.x >= 0 && chart.x + chart.width <= 390 && chart.y > 422 && chart.y + chart.height <= 844, JSON.stringify(chart));
+    assert.ok(chart.width > 330 && chart.height > 140, JSON.stringify(chart));
+    const small = await phone.evaluate((least) => [...document.querySelectorAll(".gauge-card :is(button, select)")].filter((each) => each.offsetWidth < least || each.offsetHeight < least).map(({ textContent }) => textContent), kFingerPx);
+    assert.deepEqual(small, []);
+    await phone.touchscreen.tap(chart.x + 0.6 * chart.width, chart.y + 0.4 * chart.height);
+    await phone.getByTestId("gauge-at").filter({ hasText: /^at / }).waitFor({ timeout: kPatienceMs });
+  });
+});
