@@ -5,7 +5,7 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
-import { wishOf } from "../net/room_address";
+import { roomOf, wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
@@ -43,6 +43,7 @@ import { nowS } from "./picture_clock";
 import { PictureControls } from "./picture_controls";
 import { removePoster } from "./poster";
 import { SoundControls } from "./sound_controls";
+import { leadToFront } from "./to_front";
 import { ViewAddress } from "./view_address";
 
 const kNextMarkColor = "#ffe14d";
@@ -216,6 +217,8 @@ export class App {
           for (const panel of [this.room, this.boats]) panel.setLive(false);
         }
         this.showRole();
+        // Frames and projectors show what they were given.
+        if (state.name === "refused" && state.rooms.length > 0 && !isEmbeddedAddress(location) && !isProjectorAddress(location)) leadToFront(roomOf(location.search), state.reason);
       },
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => {
