@@ -147,7 +147,7 @@ describe("the front page", { skip, concurrency: 1 }, () => {
     assert.ok((await ask("rooms/guest", { method: "DELETE" })).ok);
     await page.getByTestId("room-guest").waitFor({ state: "detached", timeout: WAIT_MS });
     await textOf(visitor, "main");
-    assert.equal(await visitor.getByTestId("front-missing").innerText(), "There is no room guest.");
+    assert.equal(await visitor.getByTestId("front-missing").innerText(), "The room was closed.");
     for (const each of [page, visitor]) await each.close();
   });
 

@@ -39,8 +39,8 @@ describe("the address", () => {
     expect(await leads("?room=nope", [])).toBe(false);
   });
 
-  it("of a frame, of a projector and with a scene to open leads to the water", async () => {
-    for (const search of ["?embed", "?class", "?scene=pool", "?room=nope&scene=pool", "?room=nope&embed"]) expect(await leads(search, ["main", "second"])).toBe(false);
+  it("of a frame, of a projector, of a kiosk with a room and with a scene to open leads to the water", async () => {
+    for (const search of ["?embed", "?class", "?scene=pool", "?room=nope&scene=pool", "?room=nope&embed", "?room=nope&kiosk"]) expect(await leads(search, ["main", "second"])).toBe(false);
   });
 });
 

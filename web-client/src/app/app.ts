@@ -34,7 +34,7 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { currentAddress, isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
+import { currentAddress, isEmbeddedAddress, isKioskAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Haptics } from "./haptics";
@@ -50,7 +50,7 @@ const kNextMarkColor = "#ffe14d";
 
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {
-  ack(commandId: number, boatId: number): void;
+  ack(commandId: number, boatId: number, floaterId: number): void;
   reject(commandId: number, message: string, reason: string): void;
 }
 
@@ -120,6 +120,8 @@ export class App {
   turnHeld: (angleRad: number) => boolean = () => false;
   /** Called when the room has another value of a parameter; set by changed_values.ts. */
   parameterChanged: () => void = () => {};
+  /** Lifts all fingers and leaves the helm; set by input.ts. */
+  letGo: () => void = () => {};
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
 
@@ -147,8 +149,8 @@ export class App {
     this.pictures = new PictureControls(this.display, this.actions, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
-    // A projector's camera moves by itself.
-    this.viewAddress = isProjectorAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
+    // The camera of a projector or a kiosk moves by itself.
+    this.viewAddress = isProjectorAddress(location) || isKioskAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
       this.identity = { ...this.identity, name, token };
@@ -217,8 +219,8 @@ export class App {
           for (const panel of [this.room, this.boats]) panel.setLive(false);
         }
         this.showRole();
-        // Frames and projectors show what they were given.
-        if (state.name === "refused" && state.rooms.length > 0 && !isEmbeddedAddress(location) && !isProjectorAddress(location)) leadToFront(roomOf(location.search), state.reason);
+        // Frames, projectors and kiosks show what they were given.
+        if (state.name === "refused" && state.rooms.length > 0 && ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location))) leadToFront(roomOf(location.search), state.reason);
       },
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => {
@@ -237,12 +239,12 @@ export class App {
         this.hud.diagnostics(diagnostics);
         this.room.diagnostics(diagnostics, nowS());
       },
-      ack: ({ boatId, ...ack }) => {
+      ack: ({ boatId, floaterId, ...ack }) => {
         const commandId = Number(ack.commandId);
         const appliedTick = Number(ack.appliedTick);
         this.lastAck = { commandId, appliedTick };
         this.hud.acked(commandId, appliedTick);
-        for (const listener of this.answerListeners) listener.ack(commandId, boatId);
+        for (const listener of this.answerListeners) listener.ack(commandId, boatId, floaterId);
         this.commands.takeLabel(commandId);
       },
       reject: ({ reason, message, ...reject }) => {

@@ -1,5 +1,5 @@
 // Whether the page's address leads to the water of a room or to the front page with all rooms.
-import { isEmbeddedAddress, isProjectorAddress } from "../app/address";
+import { isEmbeddedAddress, isKioskAddress, isProjectorAddress } from "../app/address";
 import { findMissingRoom, type Fetch } from "../net/missing_room";
 import { roomOf, wishOf } from "../net/room_address";
 import type { RoomSummary } from "../net/room_requests";
@@ -14,6 +14,8 @@ export interface EntranceWorld {
 export async function leadsToFront(search: string, socketUrl: string, token: string, world: EntranceWorld): Promise<boolean> {
   // Frames and projectors keep what they were given, and a scene in the address opens its room.
   if (isEmbeddedAddress({ search }) || isProjectorAddress({ search }) || wishOf(search)) return false;
+  // A kiosk waits for its room.
+  if (isKioskAddress({ search }) && roomOf(search)) return false;
   if (roomOf(search)) return (await findMissingRoom(socketUrl, token, world.fetch)) !== undefined;
   return world.requestRooms(token).then((rooms) => rooms.length > 1, () => false);
 }

@@ -58,6 +58,13 @@ export const kTexts = {
   peopleCount: (count: number) => (count === 0 ? "nobody in it" : count === 1 ? "1 person" : `${count} people`),
   roomState: { running: "running", paused: "paused", asleep: "asleep until somebody enters" },
 
+  // A kiosk
+  kioskInvite: "Touch the water",
+  kioskCountdown: (leftS: number) => `Back to the start in ${leftS} s – touch to go on`,
+  kioskBoat: "To my boat",
+  kioskWhole: "Whole water",
+  kioskPutAway: "Putting away",
+
   // Sides of the water
   /** `where`: as seen from the first view; undefined for the only side of its kind. */
   side: (what: SideWhat, where: SideWhere | undefined) => (where ? `${where} side: ${kSides[what]}` : kSides[what]),
