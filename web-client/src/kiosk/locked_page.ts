@@ -1,7 +1,7 @@
 // Takes from the browser what leads visitors out of the page: menus, zoom, selection, dragging, links, and keys that the water does not use.
 
 /** Keys that act on the water or move the focus. */
-const kKeys = /^(Arrow(Up|Down|Left|Right)|Enter|Space|Tab|Digit[1-7]|Numpad(Add|Subtract)|Equal|Minus|Comma|Period|Delete|Key[QEWASD])$/;
+const kKeys = /^(Arrow(Up|Down|Left|Right)|Enter|Space|Tab|Digit[1-7]|Numpad(Add|Subtract)|Equal|Minus|Comma|Period|Key[QEWASD])$/;
 
 /** `isOffered`: the button with this number in the row of tools is there for visitors. */
 export function lockPage(isOffered: (digit: number) => boolean): void {

@@ -60,7 +60,7 @@ export const kTexts = {
 
   // A kiosk
   kioskInvite: "Touch the water",
-  kioskCountdown: (leftS: number) => `Back to the start in ${leftS} s – touch to go on`,
+  kioskCountdown: (leftS: number) => `Back to the start in ${leftS} s – touch to continue`,
   kioskBoat: "To my boat",
   kioskWhole: "Whole water",
   kioskPutAway: "Putting away",
