@@ -172,6 +172,7 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
   it(`stands ${kHours} h of random touches and keys: no error, no way out, no growth of memory`, { timeout: 8 * WAIT_MS + kRoundsCount * 10_000 }, async (context) => {
     await page.emulateMedia({ reducedMotion: "no-preference" });
     await page.evaluate(() => void (window.mark = 1));
+    const { reloads } = await stats();
     let seed = 20_261_127;
     const random = () => (seed = (Math.imul(seed, 1_664_525) + 1_013_904_223) >>> 0) / 2 ** 32;
     const devtools = await page.context().newCDPSession(page);
@@ -201,7 +202,7 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     await untilStats("pictures after all that", ({ shownTimeS, connectionState }) => connectionState === "live" && shownTimeS > end.shownTimeS + 1);
     const { boat_count: boats = 0, session_count: sessions, paused = false } = await roomNow();
     assert.deepEqual([boats, sessions, paused], [0, 1, false]);
-    assert.equal((await stats()).reloads, 2, "the watchdog saw a page that works");
+    assert.equal((await stats()).reloads, reloads, "the watchdog saw a page that works");
     assert.deepEqual(complaints, []);
   });
 

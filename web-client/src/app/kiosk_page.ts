@@ -186,6 +186,8 @@ class Guard {
   private readonly storage = sessionStorageIfAny();
   private readonly watchdog = new Watchdog(Number(this.storage?.getItem(kReloadsKey)) || 0);
   private isAsking = false;
+  /** Why the page has to load again, now. */
+  private why: string | undefined;
 
   constructor(private readonly app: App | undefined) {}
 
@@ -198,10 +200,10 @@ class Guard {
   }
 
   update(nowMs: number): void {
-    const why = this.watchdog.update(nowMs, { isVisible: !document.hidden, isConnected: this.app?.state.name === "live" });
-    if (why === undefined || this.isAsking) return;
+    this.why = this.watchdog.update(nowMs, { isVisible: !document.hidden, isConnected: this.app?.state.name === "live" });
+    if (this.why === undefined || this.isAsking) return;
     this.isAsking = true;
-    void this.reload(why).finally(() => (this.isAsking = false));
+    void this.reload(this.why).finally(() => (this.isAsking = false));
   }
 
   /** Only from a server that answers: the browser's page about one that does not is a dead end. */
@@ -211,9 +213,15 @@ class Guard {
       console.warn(`spindrift: kiosk: ${why}; the page is not loaded again before the server answers`);
       return new Promise((done) => window.setTimeout(done, 5000));
     }
+    // The connection came back meanwhile.
+    if (this.why === undefined) return;
     const count = this.reloads + 1;
     console.warn(`spindrift: kiosk: ${why}; the page loads again (reload ${count} in a row)`);
-    this.storage?.setItem(kReloadsKey, String(count));
+    try {
+      this.storage?.setItem(kReloadsKey, String(count));
+    } catch {
+      // Full: the next page waits no longer than this one.
+    }
     location.reload();
     // The page ends soon; should it not, the next try has its time.
     return new Promise((done) => window.setTimeout(done, 5000));
