@@ -29,7 +29,7 @@ const complaints = [];
 let is_server_down = false;
 
 /** Waits until frames of `layer` arrive. */
-async function openPage(room = "", layer = "surface") {
+async function openPage(room = "main", layer = "surface") {
   const opened = await context.newPage();
   opened.on("pageerror", (error) => complaints.push(`uncaught: ${error.stack ?? error.message}`));
   opened.on("console", (message) => {
@@ -38,7 +38,7 @@ async function openPage(room = "", layer = "surface") {
     if (is_server_down && /WebSocket connection|ERR_CONNECTION/.test(message.text())) return;
     complaints.push(`console: ${message.text()} (${message.location().url})`);
   });
-  await opened.goto(`${server.url}?quality=minimal${room && `&room=${room}`}`, { timeout: WAIT_MS });
+  await opened.goto(`${server.url}?quality=minimal&room=${room}`, { timeout: WAIT_MS });
   await waitFor(opened, "the page to be live", (stats) => stats.connectionState === "live" && stats.framesReceived[layer] > 0);
   return opened;
 }

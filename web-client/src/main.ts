@@ -1,7 +1,12 @@
-// The page's root: the water, or a pad for phones. What only one of them needs is loaded by that one.
+// The page's root: the water of a room, the front page with all rooms, or a pad for phones. What only one of them needs is loaded by that one.
 import "./style.css";
-import { isEmbeddedAddress, isPadAddress } from "./app/address";
+import { isEmbeddedAddress, isPadAddress, takeLinkToken } from "./app/address";
 import { showPoster } from "./app/poster";
+import { leadsToFront } from "./front/entrance";
+import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
+import { requestRooms } from "./net/room_requests";
+import { roomOf } from "./net/room_address";
+import { socketUrl } from "./net/water_client";
 
 if (isEmbeddedAddress(location)) {
   document.body.classList.add("embedded");
@@ -12,6 +17,21 @@ if (isPadAddress(location) && !isEmbeddedAddress(location)) {
   document.body.replaceChildren();
   void import("./pad/pad_page").then(({ openPad }) => openPad());
 } else {
+  void openRoomOrFront();
+}
+
+async function openRoomOrFront(): Promise<void> {
+  const load = () => import("./app/water_page");
+  // Most rooms that are named exist: their page is loaded meanwhile.
+  const water = roomOf(location.search) ? load() : undefined;
+  const url = socketUrl(location.href);
+  // Only looked at: the page that is opened takes it out of the address.
+  const token = takeLinkToken(location, { replaceState: () => {} }) ?? new IdentityStore(sessionStorageIfAny(), url).token;
+  if (await leadsToFront(location.search, url, token, { requestRooms, fetch: (address, init) => fetch(address, init) })) {
+    const { openFront } = await import("./front/front_page");
+    return openFront();
+  }
   void showPoster();
-  void import("./app/water_page").then(({ openWaterPage }) => openWaterPage());
+  const { openWaterPage } = await (water ?? load());
+  openWaterPage();
 }

@@ -215,6 +215,7 @@ describe("golden bytes", () => {
     expect(parse(read(golden.file))).toEqual({
       kind: "ack", commandId: BigInt(golden["command_id"] as string), appliedTick: BigInt(golden["applied_tick"] as string),
       boatId: golden["boat_id"] ?? 0,
+      floaterId: golden["floater_id"] ?? 0,
     });
   });
 

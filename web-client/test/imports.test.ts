@@ -10,7 +10,7 @@ const kFolders = [
   "gen", "codec", "net",
   "scene/maths", "scene/drawing", "scene/shaders", "scene/meshes", "scene/frames", "scene/light", "scene/landscape", "scene/camera", "scene/sea", "scene/boats", "scene/floaters", "scene/shore",
   "scene/shadows", "scene/solids", "scene/water", "scene/rain", "scene/whitewater", "scene/fluid", "scene/looks", "scene",
-  "sound", "ui", "gauges", "class", "embed", "app", "pad", ".",
+  "sound", "ui", "gauges", "class", "kiosk", "embed", "app", "pad", "front", ".",
 ];
 /** Roots: nothing in src/ imports them. */
 const kRoots = ["main.ts", "net/worker.ts"];

@@ -86,6 +86,16 @@ describe("a connection to a missing room", () => {
     expect(rig.state).toEqual({ name: "refused", reason: "there is no room pool: the limit of 8 rooms is reached", rooms: ["main"] });
   });
 
+  it("that the server closes is known to be missing, with the rooms that there are", async () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(greeting());
+    rig.missing = { name: "pool", rooms: ["main"] };
+    rig.socket.deliver({ case: "refusal", value: { message: "the room was closed" } });
+    await settled();
+    expect(rig.state).toEqual({ name: "refused", reason: "the room was closed", rooms: ["main"] });
+  });
+
   it("is retried until it is known to be missing", async () => {
     const rig = new Rig();
     rig.socket.drop();

@@ -21,6 +21,11 @@ export function isEmbeddedAddress({ search }: Pick<PageAddress, "search">): bool
   return new URLSearchParams(search).has("embed");
 }
 
+/** ?kiosk: the page is an exhibit that nobody attends. */
+export function isKioskAddress({ search }: Pick<PageAddress, "search">): boolean {
+  return new URLSearchParams(search).has("kiosk");
+}
+
 /** Browsers refuse pages that change their address more often than 100 times in 30 s. */
 const kAddressEveryMs = 400;
 const changes = new Map<string, string | undefined>();
@@ -28,9 +33,9 @@ let writtenMs = -kAddressEveryMs;
 let writing: number | undefined;
 
 /** `value` undefined: the default, which the address leaves out. Changes in quick succession are written together. The address in a frame
- *  belongs to the page around it and stays. */
+ *  belongs to the page around it and stays, and that of a kiosk is what it was set up with. */
 export function setAddressParameter(name: string, value: string | undefined): void {
-  if (isEmbeddedAddress(location)) return;
+  if (isEmbeddedAddress(location) || isKioskAddress(location)) return;
   changes.set(name, value);
   const waitMs = writtenMs + kAddressEveryMs - performance.now();
   if (waitMs <= 0) writeAddress();

@@ -5,7 +5,7 @@ import type { RoleName } from "../codec/people";
 import { GroundRequests, requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
-import { wishOf } from "../net/room_address";
+import { roomOf, wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
 import { chooseQuality, firstTier, kTiers } from "../scene/drawing/quality";
@@ -34,7 +34,7 @@ import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
 import { ViewButtons } from "../ui/view_buttons";
-import { currentAddress, isEmbeddedAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
+import { currentAddress, isEmbeddedAddress, isKioskAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
 import { Display } from "./display";
 import { Gauges } from "./gauges";
@@ -44,13 +44,14 @@ import { nowS } from "./picture_clock";
 import { PictureControls } from "./picture_controls";
 import { removePoster } from "./poster";
 import { SoundControls } from "./sound_controls";
+import { leadToFront } from "./to_front";
 import { ViewAddress } from "./view_address";
 
 const kNextMarkColor = "#ffe14d";
 
 /** Takes the answers to its own commands and ignores the others. */
 interface AnswerListener {
-  ack(commandId: number, boatId: number): void;
+  ack(commandId: number, boatId: number, floaterId: number): void;
   reject(commandId: number, message: string, reason: string): void;
 }
 
@@ -121,6 +122,8 @@ export class App {
   turnHeld: (angleRad: number) => boolean = () => false;
   /** Called when the room has another value of a parameter; set by changed_values.ts. */
   parameterChanged: () => void = () => {};
+  /** Lifts all fingers and leaves the helm; set by input.ts. */
+  letGo: () => void = () => {};
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
 
@@ -151,8 +154,8 @@ export class App {
     this.pictures = new PictureControls(this.display, this.actions, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
     this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
-    // A projector's camera moves by itself.
-    this.viewAddress = isProjectorAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
+    // The camera of a projector or a kiosk moves by itself.
+    this.viewAddress = isProjectorAddress(location) || isKioskAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);
     this.people = new PeoplePanel(this.identity, (name, token) => {
       this.identity = { ...this.identity, name, token };
@@ -221,6 +224,8 @@ export class App {
           for (const panel of [this.room, this.boats]) panel.setLive(false);
         }
         this.showRole();
+        // Frames, projectors and kiosks show what they were given.
+        if (state.name === "refused" && state.rooms.length > 0 && ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location))) leadToFront(roomOf(location.search), state.reason);
       },
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => {
@@ -240,12 +245,12 @@ export class App {
         this.room.diagnostics(diagnostics, nowS());
         this.gauges.take(diagnostics);
       },
-      ack: ({ boatId, ...ack }) => {
+      ack: ({ boatId, floaterId, ...ack }) => {
         const commandId = Number(ack.commandId);
         const appliedTick = Number(ack.appliedTick);
         this.lastAck = { commandId, appliedTick };
         this.hud.acked(commandId, appliedTick);
-        for (const listener of this.answerListeners) listener.ack(commandId, boatId);
+        for (const listener of this.answerListeners) listener.ack(commandId, boatId, floaterId);
         this.commands.takeLabel(commandId);
       },
       reject: ({ reason, message, ...reject }) => {

@@ -5,13 +5,15 @@ import type { WaterClient } from "../net/water_client";
 export class CommandSender {
   /** The newest one, for tests. */
   last: CommandAction | undefined;
+  /** Chooses what is sent; the rest is dropped. */
+  accepts: (action: CommandAction) => boolean = () => true;
   private readonly labels = new Map<number, string>();
 
   constructor(private readonly client: WaterClient) {}
 
-  /** Returns the command's id; 0 if there is no action to send. */
+  /** Returns the command's id; 0 if there is no action to send, or it is not accepted. */
   readonly send = (action: CommandAction | undefined, label: string): number => {
-    if (!action) return 0;
+    if (!action || !this.accepts(action)) return 0;
     const commandId = this.client.command(action);
     this.last = action;
     this.labels.set(commandId, label);

@@ -55,6 +55,7 @@ function connectWindow(app: App, hands: PointerHands): void {
     app.boats.leaveHelm();
     hands.liftAll();
   };
+  app.letGo = leave;
   window.addEventListener("resize", () => app.display.resize());
   document.addEventListener("visibilitychange", () => {
     app.client.call("setVisible", !document.hidden);

@@ -7,10 +7,15 @@ const kFirstRoom = "main";
 /** Addresses of the stills of shipped scenes. */
 const kPosters = import.meta.glob<string>("../posters/*.webp", { query: "?url", import: "default", eager: true });
 
+/** Returns the address of the still of a shipped scene; undefined without one. */
+export function posterOf(scene: string | undefined): string | undefined {
+  return kPosters[`../posters/${scene}.webp`];
+}
+
 /** Shows the poster of the room's scene, or of the scene with which the address opens it; without a poster, nothing. */
 export async function showPoster(): Promise<void> {
   const poster = document.getElementById("poster") as HTMLImageElement | null;
-  const source = kPosters[`../posters/${await sceneOf(location.search)}.webp`];
+  const source = posterOf(await sceneOf(location.search));
   if (!poster || !source) return;
   poster.onload = () => (poster.hidden = false);
   poster.src = source;

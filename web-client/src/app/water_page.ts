@@ -1,8 +1,8 @@
-// The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class.
+// The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class, with `?kiosk` as an exhibit.
 import { makeRenderer } from "../scene/drawing/renderer";
 import { byId } from "../ui/dom";
 import { showNotice } from "../ui/notice";
-import { isEmbeddedAddress, isProjectorAddress } from "./address";
+import { isEmbeddedAddress, isKioskAddress, isProjectorAddress } from "./address";
 import { App } from "./app";
 import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
@@ -12,7 +12,10 @@ import { installTestHooks } from "./test_hooks";
 
 export function openWaterPage(): void {
   const made = makeRenderer(byId<HTMLCanvasElement>("view"));
+  const isKiosk = isKioskAddress(location) && !isEmbeddedAddress(location);
+  const openKiosk = (app?: App): void => void (isKiosk && import("./kiosk_page").then((page) => page.openKiosk(app)));
   if (!made) {
+    openKiosk();
     showNotice(
       "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",
     );
@@ -22,14 +25,20 @@ export function openWaterPage(): void {
   connectInput(app);
   if (isEmbeddedAddress(location)) void import("./embedded_page").then(({ openEmbeddedPage }) => openEmbeddedPage(app));
   else if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
-  addShareButton(app);
-  keepChangesInAddress(app);
-  openOperatorPanel(app);
+  if (isKiosk) openKiosk(app);
+  else addVisitorControls(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
   app.start(!isStepped);
   // A link with a token was opened in this tab; without it the browser would load nothing.
   window.addEventListener("hashchange", () => location.reload());
+}
+
+/** What leads to other addresses, or sets something for others. */
+function addVisitorControls(app: App): void {
+  addShareButton(app);
+  keepChangesInAddress(app);
+  openOperatorPanel(app);
 }
 
 /** Adds the operator's controls of a lesson when the server says that this visitor is one. */

@@ -25,7 +25,7 @@ type ReaderOf<K extends Kind> = (value: Extract<WireMessage, { case: K }>["value
 const kReaders = {
   greeting: (greeting) => readGreeting(greeting),
   diagnostics: (diagnostics) => ({ diagnostics: readDiagnostics(diagnostics) }),
-  ack: ({ commandId, appliedTick, boatId }) => ({ commandId, appliedTick, boatId }),
+  ack: ({ commandId, appliedTick, boatId, floaterId }) => ({ commandId, appliedTick, boatId, floaterId }),
   reject: ({ commandId, reason, field, message }) => ({ commandId, reason: RejectReason[reason] ?? `${reason}`, field, message }),
   parameterChanged: ({ path, value, appliedTick }) =>
     Number.isFinite(value) ? { path, value, appliedTick } : malformed(`parameter ${path} is ${value}`),

@@ -191,10 +191,7 @@ export class Connection implements ConnectionCalls {
         return this.meter.malformed(parsed.reason);
       case "unknown":
         return;
-      case "packedSurface":
-      case "packedFoam":
-      case "packedParticles":
-      case "packedFloaters": {
+      case "packedSurface": case "packedFoam": case "packedParticles": case "packedFloaters": {
         const unpacked = this.unpacker.unpack(parsed);
         if (unpacked.kind !== "malformed" && unpacked.kind !== "missingBase") return this.deliver(unpacked);
         if (unpacked.kind === "malformed") this.meter.malformed(unpacked.reason);
@@ -202,11 +199,7 @@ export class Connection implements ConnectionCalls {
         if (parsed.kind !== "packedParticles") this.requestKeyframe();
         return;
       }
-      case "surface":
-      case "particles":
-      case "foam":
-      case "bodies":
-      case "floaters":
+      case "surface": case "particles": case "foam": case "bodies": case "floaters":
         return this.deliver(parsed);
       case "levelChanged":
         this.linkLevel = parsed.level;
@@ -216,7 +209,8 @@ export class Connection implements ConnectionCalls {
       case "pong":
         return this.ponged(parsed.clientTimeS * 1000, parsed.serverTimeS);
       case "refusal":
-        return this.refuse(parsed.message);
+        this.refuse(parsed.message);
+        return void this.addRooms();
       case "greeting":
         return this.greeted(parsed.greeting);
       case "diagnostics":
@@ -350,6 +344,13 @@ export class Connection implements ConnectionCalls {
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     if (this.world.openRoom && this.liveSinceMs === 0) void this.openRoom(missing);
     else this.refuse(`there is no room ${missing.name}`, missing.rooms);
+  }
+
+  /** Adds the rooms that there are to a refusal, if this one was closed. */
+  private async addRooms(): Promise<void> {
+    const { state } = this;
+    const missing = await this.world.findMissingRoom(this.url, this.identity.token);
+    if (missing && state.name === "refused" && this.state === state) this.setState({ ...state, rooms: missing.rooms });
   }
 
   private async openRoom({ name, rooms }: MissingRoom): Promise<void> {

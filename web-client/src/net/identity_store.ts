@@ -28,6 +28,11 @@ export class IdentityStore {
     private readonly url: string,
   ) {}
 
+  /** The stored token; empty without one. */
+  get token(): string {
+    return this.read().token;
+  }
+
   /** Returns the stored identity and removes the resume key from the store. `linkToken`: replaces the stored token. */
   load(linkToken?: string): Identity {
     const stored = this.read();

@@ -25,7 +25,7 @@ export async function openRoom(socketUrl: string, token: string, { scene, parame
       await wait(kAskEveryMs);
     }
     const why = message || `the server answers ${opened.status}`;
-    return opened.status === kForbidden ? `${why}. Open the operator's link first, enter a token under People, or choose one of these rooms` : why;
+    return opened.status === kForbidden ? `${why}. Open the operator's link first, or choose one of these rooms` : why;
   } catch {
     return "the server does not answer";
   }

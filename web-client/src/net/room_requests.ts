@@ -7,12 +7,35 @@ export interface RoomWithTokens {
   tokens: Record<RoleName, string>;
 }
 
+/** A room of the server, as its list has it. */
+export interface RoomSummary {
+  name: string;
+  scene: string;
+  title: string;
+  isPaused: boolean;
+  isAsleep: boolean;
+  /** Connections, those of front pages included. */
+  sessionsCount: number;
+}
+
 const kRoles: readonly [RoleName, string][] = [["operator", "ROLE_OPERATOR"], ["player", "ROLE_PLAYER"], ["viewer", "ROLE_VIEWER"]];
 
 /** Returns the parameters whose values differ from those of the room's scene. Throws an Error with a line for people. */
 export async function requestChanges(room: string, token: string): Promise<ParameterValue[]> {
   const { parameters = [] } = (await ask(`api/v1/rooms/${encodeURIComponent(room)}/changes`, token)) as { parameters?: ParameterValue[] };
   return parameters.map(({ path, value }) => ({ path, value }));
+}
+
+/** Returns the rooms that this visitor may know of. Throws an Error with a line for people. */
+export async function requestRooms(token: string): Promise<RoomSummary[]> {
+  const { rooms = [] } = (await ask("api/v1/rooms", token)) as { rooms?: { name: string; scene?: string; title?: string; paused?: boolean; asleep?: boolean; session_count?: number }[] };
+  return rooms.map(({ name, scene = "", title = "", paused = false, asleep = false, session_count: sessionsCount = 0 }) => ({ name, scene, title: title || name, isPaused: paused, isAsleep: asleep, sessionsCount }));
+}
+
+/** Returns the names of the scenes that a room can be opened with. Throws an Error with a line for people. */
+export async function requestScenes(token: string): Promise<string[]> {
+  const { scenes = [] } = (await ask("api/v1/scenes", token)) as { scenes?: string[] };
+  return scenes;
 }
 
 /** Opens a room with tokens of its own. The server shows them once; they end with the room. Throws an Error with a line for people. */

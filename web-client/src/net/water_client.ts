@@ -39,6 +39,11 @@ export class WaterClient {
     this.post({ kind: "release", layer, buffer }, [buffer]);
   }
 
+  /** Ends the worker, and with it the connection. */
+  close(): void {
+    this.worker.terminate();
+  }
+
   private post(request: WorkerRequest, transfer: Transferable[] = []): void {
     this.worker.postMessage(request, transfer);
   }

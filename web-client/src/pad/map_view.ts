@@ -3,7 +3,7 @@ import { wrapAngle } from "../scene/maths/interpolate";
 import type { WaterPlace } from "../ui/tools";
 
 /** Margin round the whole water. */
-const kMarginPx = 10;
+export const kMarginPx = 10;
 /** The boat's map: so many boat lengths along the shorter side, and the boat so far down. */
 const kBoatLengthsSeen = 11;
 const kBoatDown = 0.6;

@@ -43,6 +43,30 @@ export const kTexts = {
   filmHasNoCodec: "This browser encodes neither H.264, VP9 nor VP8; try a current Chrome, Edge, Firefox or Safari.",
   filmFailed: (why: string) => `The film was not saved (${why}); try again.`,
 
+  // The front page
+  frontLead: "Choose a water.",
+  frontRooms: "Rooms of this server",
+  noSuchRoom: (name: string) => `There is no room ${name}. These are the rooms of this server.`,
+  refusedRoom: (why: string) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
+  listFailed: (why: string) => `The list of rooms is not up to date (${why}). It is asked for again every few seconds.`,
+  tryNow: "Try now",
+  noAnswer: "the server does not answer",
+  noRooms: "This server has no room that you may enter. One may be opened at any time; this page shows it then.",
+  open: "Open",
+  openRoom: "Open a room",
+  openRoomWhy: "A room of the scene; everybody with its link comes into the same one.",
+  scene: "Scene",
+  sceneOfRoom: (scene: string, room: string) => (scene === room ? scene : `${scene} · room ${room}`),
+  peopleCount: (count: number) => (count === 0 ? "nobody in it" : count === 1 ? "1 person" : `${count} people`),
+  roomState: { running: "running", paused: "paused", asleep: "asleep until somebody enters" },
+
+  // A kiosk
+  kioskInvite: "Touch the water",
+  kioskCountdown: (leftS: number) => `Back to the start in ${leftS} s – touch to continue`,
+  kioskBoat: "To my boat",
+  kioskWhole: "Whole water",
+  kioskPutAway: "Putting away",
+
   // Sides of the water
   /** `where`: as seen from the first view; undefined for the only side of its kind. */
   side: (what: SideWhat, where: SideWhere | undefined) => (where ? `${where} side: ${kSides[what]}` : kSides[what]),

@@ -195,6 +195,11 @@ export class CameraViews {
     return frameBox(box, this.aimed("start", tangents).backward, tangents);
   }
 
+  /** Returns where the first view is, and lets the user come as near as there. */
+  firstPlacement(): Placement {
+    return this.placed("start");
+  }
+
   /** `followed`: the boat of the boat's view; without one the camera does not move. */
   update(nowS: number, followed?: Followed): void {
     if (this.following && followed) this.follow(this.following, followed, nowS);
