@@ -3,6 +3,7 @@ import { byId, isTyping } from "../ui/dom";
 import type { App } from "./app";
 import { PointerHands } from "./pointer";
 import { connectKeyboardTools, GamepadTools, type GamepadTarget } from "./virtual_pointer";
+import { kTexts } from "../ui/texts";
 
 export function connectInput(app: App): void {
   const hands = new PointerHands(app);
@@ -36,8 +37,8 @@ function gamepadTarget(app: App): GamepadTarget {
 }
 
 function connectButtons({ client, commands, effects }: App): void {
-  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), "Splash"));
-  byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), "Wave"));
+  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), kTexts.commands.splash));
+  byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), kTexts.commands.wave));
   byId("retry").addEventListener("click", () => client.call("retryNow"));
 }
 

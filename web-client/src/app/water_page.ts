@@ -1,6 +1,8 @@
 // The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class.
 import { makeRenderer } from "../scene/drawing/renderer";
 import { byId } from "../ui/dom";
+import { fillPage } from "../ui/fill_page";
+import { addLanguageRow } from "../ui/language_row";
 import { showNotice } from "../ui/notice";
 import { isEmbeddedAddress, isProjectorAddress } from "./address";
 import { App } from "./app";
@@ -9,13 +11,13 @@ import { connectInput } from "./input";
 import { addShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
 import { installTestHooks } from "./test_hooks";
+import { kTexts } from "../ui/texts";
 
 export function openWaterPage(): void {
+  fillPage(document);
   const made = makeRenderer(byId<HTMLCanvasElement>("view"));
   if (!made) {
-    showNotice(
-      "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",
-    );
+    showNotice(kTexts.noWebGl);
     return;
   }
   const app = new App(made);
@@ -25,6 +27,7 @@ export function openWaterPage(): void {
   addShareButton(app);
   keepChangesInAddress(app);
   openOperatorPanel(app);
+  addLanguageRow(() => app.address, (text) => app.warn(text));
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
   app.start(!isStepped);

@@ -1,0 +1,26 @@
+// Numbers as people write them in the page's language.
+import { translation } from "../net/translation";
+
+const formats = new Map<string, Intl.NumberFormat>();
+
+function format(options: Intl.NumberFormatOptions): Intl.NumberFormat {
+  const key = JSON.stringify(options);
+  const known = formats.get(key) ?? new Intl.NumberFormat(translation.locale, options);
+  formats.set(key, known);
+  return known;
+}
+
+/** With so many decimals, as toFixed(); without marks between thousands. */
+export function fixed(value: number, decimals: number): string {
+  return format({ minimumFractionDigits: decimals, maximumFractionDigits: decimals, useGrouping: false }).format(value);
+}
+
+/** With as many decimals as it needs, at most three; without marks between thousands. */
+export function plain(value: number): string {
+  return format({ useGrouping: false }).format(value);
+}
+
+/** With marks between thousands. */
+export function grouped(value: number): string {
+  return format({}).format(value);
+}
