@@ -26,7 +26,7 @@ const kProperties = /^(class|d|viewBox|role|transform|font|textAlign|headers|Aut
 const kExceptions: Record<string, string> = {
   "… – Spindrift": "the program's name",
   "button, input, select, summary, a[href]": "a selector",
-  Enter: "a key's code", Space: "a key's code", Delete: "a key's code",
+  Enter: "a key's code", Space: "a key's code",
   "700 12px system-ui, sans-serif": "a font", "600 12px system-ui, sans-serif": "a font",
   "… ms": "a unit",
   "read back": "a stage of drawing, in the console",
@@ -106,7 +106,7 @@ describe("the tables", () => {
   it("differ, except for words that both languages have", () => {
     const same = tables.flatMap(([english, german]) => {
       const before = entries(english);
-      return [...entries(german)].filter(([key, text]) => before.get(key) === text).map(([key]) => key);
+      return [...entries(german)].filter(([key, text]) => before.get(key) === text && !/^keysCard\.rows\.\d+\.0$/.test(key)).map(([key]) => key);
     });
     expect(same.sort()).toEqual([...kSame].sort());
   });

@@ -15,7 +15,7 @@ export function playersOf({ people, ownId }: LessonState): PersonInfo[] {
 }
 
 export class Boards {
-  readonly element = make("div", { class: "boards" });
+  readonly element = make("div", { class: "boards", role: "region", "aria-label": kTexts.class.title });
   private readonly headline = make("p", { class: "board-headline glass", "data-testid": "board-headline", role: "status", hidden: "" });
   private readonly score = make("p", { class: "board-score", "data-testid": "board-score", hidden: "" });
   private readonly count = make("p", { class: "board-count", "data-testid": "board-count", "aria-hidden": "true" });

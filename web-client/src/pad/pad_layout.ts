@@ -36,11 +36,11 @@ const kNameMaxLength = 24;
 /** Replaces the page's body. */
 export function makePadLayout(): PadElements {
   const myName = make("b", { "data-testid": "pad-name" });
-  const me = make("button", { type: "button", class: "pad-me", "data-testid": "pad-me", "aria-label": kTexts.myName }, [make("span", { class: "pad-swatch", "aria-hidden": "true" }), myName]);
+  const me = make("button", { type: "button", class: "pad-me", "data-testid": "pad-me" }, [make("span", { class: "pad-swatch", "aria-hidden": "true" }), myName]);
   const standing = make("span", { class: "pad-standing", "data-testid": "pad-standing", role: "status" });
   const state = make("span", { class: "pad-state", "data-testid": "pad-state", role: "status" });
   const retry = make("button", { type: "button", hidden: "" }, [kTexts.page.retry]);
-  const canvas = make("canvas", { class: "pad-canvas", "data-testid": "pad-canvas", "aria-label": kTexts.pad.water });
+  const canvas = make("canvas", { class: "pad-canvas", "data-testid": "pad-canvas", tabindex: "0", role: "application", "aria-label": kTexts.pad.water });
   const headline = make("p", { class: "pad-headline", "data-testid": "pad-headline", role: "status", hidden: "" });
   const count = make("p", { class: "pad-count", "data-testid": "pad-count", "aria-hidden": "true" });
   const veil = make("p", { class: "pad-veil", "data-testid": "pad-veil", role: "status", hidden: "" });

@@ -4,6 +4,7 @@ import "./pad.css";
 import { takeLinkToken } from "../app/address";
 import { CommandSender } from "../app/command_sender";
 import { Haptics } from "../app/haptics";
+import { connectKeyboardTools } from "../app/keyboard_tools";
 import { GamepadTools } from "../app/virtual_pointer";
 import type { GreetingInfo } from "../codec/greeting";
 import type { LessonTool } from "../codec/lesson";
@@ -94,6 +95,7 @@ class PadPage {
     this.lessons.watch(() => this.refresh());
     this.connectPage();
     this.connectMap();
+    connectKeyboardTools({ canvas: this.elements.canvas, isHelm: () => this.mode === "boat", isPaddle: () => this.mode === "wave" });
     this.client.start(url, this.identity);
     this.client.call("setLayers", ["surface", "bodies", "floaters"]);
     this.client.call("setDetail", "coarse");
@@ -226,7 +228,7 @@ class PadPage {
     document.body.style.setProperty("--own", me?.color ?? "#5fd4e6");
     if (me?.team) document.body.style.setProperty("--team", kTeamColors[me.team]);
     else document.body.style.removeProperty("--team");
-    elements.me.title = me?.team ? kTexts.teamOf(me.team) : "";
+    elements.me.title = me?.team ? kTexts.teamOf(me.team) : kTexts.myName;
     elements.helm.hidden = this.mode !== "boat";
     elements.launch.hidden = this.boat.boatId !== 0;
     elements.launch.disabled = elements.remove.disabled = reason !== undefined || this.state.name !== "live";

@@ -46,7 +46,7 @@ const kEnglish = {
     overview: "Overview", overviewTip: "Overview of the whole scene", below: "Below", belowTip: "View from below the surface", boat: "Boat", boatTip: "View from behind my boat",
     boats: "Boats", helm: "Helm of my boat", remove: "Remove my boat", tools: "Tools", effectsBox: "Splash and wave", soundBox: "Sound and vibration",
     people: "People", peopleList: "People in the room", room: "Room, for everybody", pause: "Pause", step: "Step", restart: "Restart",
-    more: "More", parameters: "Parameters", numbers: "Numbers",
+    more: "More", keys: "Keys …", parameters: "Parameters", numbers: "Numbers",
     simTime: "Simulation time", rtf: "Real-time factor", netFps: "Network frames/s", displayFps: "Display frames/s", latency: "Latency", delay: "Playout delay",
     detail: "Detail", particles: "Particles", breaking: "Breaking surface", volumeError: "Volume error", exchanged: "Water into spray / back",
     substeps: "Substeps per tick", stepMs: "Step", health: "Watchdog", device: "Device", lastAck: "Last acknowledged", passes: "Time per pass",
@@ -267,6 +267,29 @@ const kEnglish = {
     copied: "It is copied.",
     notCopied: "The browser does not allow to copy: select the text and copy it by hand.",
     notSent: "The browser cannot send the link: copy it.",
+  },
+
+  // The card of keys
+  keysCard: {
+    title: "Keys", close: "Close",
+    rows: [
+      ["Tab", "to the next control; to the water and out of it"],
+      ["← → ↑ ↓", "on the water: move the cursor; in the boat view: steer"],
+      ["Enter", "on the water: use the tool at the mouse or the cursor; held, with the arrows: draw, throw, move an object"],
+      ["1 … 7", "choose a tool"],
+      ["Q, E", "turn the object that is held"],
+      ["Del", "take out the object that is held or pointed at"],
+      [", .", "choose what the tool Float drops"],
+      ["Shift + ← → ↑ ↓", "turn the view"],
+      ["+ −", "bring it nearer, farther"],
+      ["V", "next view"],
+      ["B", "new boat"],
+      ["P", "pause and resume (operators)"],
+      ["N", "one step while it is paused (operators)"],
+      ["M", "sound on and off"],
+      ["C", "show and hide the controls"],
+      ["?", "this list"],
+    ] as [keys: string, does: string][],
   },
 
   // Games and lessons
