@@ -74,6 +74,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
         },
         "with the card of keys": async (page) => {
           await page.keyboard.press("Escape");
+          await page.getByTestId("share-card").waitFor({ state: "hidden", timeout: WAIT_MS });
           await page.keyboard.press("?");
           await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
         },
@@ -93,6 +94,77 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
         "with the code": (page) => page.getByTestId("join-card").waitFor({ timeout: WAIT_MS }),
         "with its controls": (page) => page.keyboard.press("Shift"),
       });
+    });
+  }
+
+  it("is used by keyboard alone: splash, pause, step, view, the list of keys, the language", async () => {
+    const page = await water(kDesk);
+    const { keyboard } = page;
+    const isFocused = (selector) => page.evaluate((wanted) => document.activeElement?.matches(wanted), selector);
+    const tabTo = async (selector) => {
+      for (let k = 0; k < 80; ++k) {
+        if (await isFocused(selector)) return;
+        await keyboard.press("Tab");
+      }
+      assert.fail(`80 presses of Tab do not reach ${selector}`);
+    };
+    try {
+      await tabTo("#view");
+      for (let k = 0; k < 4; ++k) await keyboard.press("ArrowLeft");
+      assert.ok(await page.getByTestId("key-cursor").isVisible());
+      await keyboard.press("Enter");
+      const { lastCommand } = await waitFor(page, "the splash", (stats) => stats.lastCommand?.case === "splash" && stats.lastAck);
+      const middle = await page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [lastCommand.value.xM, lastCommand.value.zM]);
+      assert.ok(Math.abs(middle[0] - (640 - 4 * 16)) < 40, `the splash is at the cursor: ${middle}`);
+      await keyboard.press("p");
+      const { simTime } = await waitFor(page, "the pause", ({ paused }) => paused);
+      await keyboard.press("n");
+      await waitFor(page, "the step", (stats) => stats.lastCommand.case === "step" && stats.paused);
+      const { view } = await waitFor(page, "a view", (stats) => stats.simTime >= simTime && stats.view !== null);
+      await keyboard.press("v");
+      await waitFor(page, "another view", (stats) => stats.view !== view);
+      await keyboard.press("p");
+      await waitFor(page, "the end of the pause", ({ paused }) => !paused);
+      await keyboard.press("?");
+      await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
+      await keyboard.press("Enter");
+      await page.getByTestId("keys-card").waitFor({ state: "hidden", timeout: WAIT_MS });
+      await tabTo("#more-box > summary");
+      await keyboard.press("Enter");
+      await tabTo("#language");
+      await keyboard.press("d");
+      await page.waitForFunction(() => document.documentElement.lang === "de" && document.querySelector("#splash")?.textContent === "Platscher", null, { timeout: WAIT_MS });
+    } finally {
+      await page.context().close();
+    }
+  });
+
+  /** Everything of at least two words that the page shows or names, but what the server says. */
+  const sentences = (page) =>
+    page.evaluate(() => {
+      const texts = new Set();
+      document.querySelectorAll("details").forEach((each) => (each.open = true));
+      for (const element of document.querySelectorAll("body *:not(script, style)")) {
+        if (element.closest("#parameters, #storm, #device, #passes, #toast, .pad-name, [data-testid=pad-me], #people, .board-people, .lesson-people")) continue;
+        for (const name of ["aria-label", "title"]) if (element.getAttribute(name)) texts.add(element.getAttribute(name));
+        for (const node of element.childNodes) if (node.nodeType === Node.TEXT_NODE && element.checkVisibility()) texts.add(node.textContent.trim());
+      }
+      return [...texts].filter((text) => /[A-Za-z]{2,} [A-Za-z]{2,}/.test(text));
+    });
+
+  for (const [what, path] of Object.entries({ "water page": `?quality=minimal#token=`, "projector's view": "?class&quality=minimal#token=", pad: "pad#token=" })) {
+    it(`has no sentence of the English page in German: ${what}`, async () => {
+      const found = {};
+      for (const locale of ["en-US", "de-DE"]) {
+        const page = await open(path.replace("#token=", path.startsWith("pad") ? "" : `#token=${token}`), { ...kDesk, locale });
+        assert.equal(await page.evaluate(() => document.documentElement.lang), locale.slice(0, 2));
+        if (path.startsWith("pad")) await page.getByTestId("pad-tool-boat").dispatchEvent("click");
+        else await page.getByTestId("class-box").waitFor({ state: "attached", timeout: WAIT_MS });
+        found[locale] = await sentences(page);
+        await page.context().close();
+      }
+      assert.ok(found["en-US"].length > (path.startsWith("pad") ? 2 : 20), JSON.stringify(found));
+      assert.deepEqual(found["de-DE"].filter((text) => found["en-US"].includes(text)), []);
     });
   }
 });

@@ -10,6 +10,7 @@ import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
 import { addShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
+import { openWaterSpeaker } from "./water_speaker";
 import { installTestHooks } from "./test_hooks";
 import { kTexts } from "../ui/texts";
 
@@ -27,6 +28,7 @@ export function openWaterPage(): void {
   addShareButton(app);
   keepChangesInAddress(app);
   openOperatorPanel(app);
+  openWaterSpeaker(app);
   addLanguageRow(() => app.address, (text) => app.warn(text));
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);

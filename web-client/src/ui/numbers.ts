@@ -24,3 +24,9 @@ export function plain(value: number): string {
 export function grouped(value: number): string {
   return format({}).format(value);
 }
+
+/** A length in words for people, to one or two digits: "8 mm", "35 cm", "1.2 m". */
+export function length(lengthM: number): string {
+  const [value, unit] = lengthM < 0.01 ? [1000 * lengthM, "mm"] : lengthM < 1 ? [100 * lengthM, "cm"] : [lengthM, "m"];
+  return `${plain(Number(value.toPrecision(value < 10 && unit !== "m" ? 1 : 2)))} ${unit}`;
+}

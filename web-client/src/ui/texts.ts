@@ -9,8 +9,8 @@ import type { FloaterKindName } from "../scene/frames/floaters";
 import type { PresetName } from "../scene/light/daylight";
 import type { LookName } from "../scene/looks/looks";
 import { translation } from "../net/translation";
-import { fixed, plain } from "./numbers";
-import type { SideWhat, SideWhere } from "./side_names";
+import { fixed, length, plain } from "./numbers";
+import type { PictureSide, SideWhat, SideWhere } from "./side_names";
 import type { ToolName } from "./tools";
 
 /** A row of the panel: its label, and what it does, as a tooltip. */
@@ -26,6 +26,7 @@ const kOrdinals = new Intl.PluralRules("en", { type: "ordinal" });
 const kOrdinalEndings: Partial<Record<Intl.LDMLPluralRule, string>> = { one: "st", two: "nd", few: "rd" };
 const ordinal = (place: number): string => `${place}${kOrdinalEndings[kOrdinals.select(place)] ?? "th"}`;
 
+const kWhere: Record<PictureSide, string> = { left: "on the left", middle: "in the middle", right: "on the right" };
 const kSides: Record<SideWhat, string> = { beach: "beach", sea: "open sea", rocks: "rocky shore", quay: "quay", wall: "wall", end: "open end" };
 const kTeams: Record<TeamName, string> = { red: "Red", blue: "Blue" };
 
@@ -290,6 +291,15 @@ const kEnglish = {
       ["C", "show and hide the controls"],
       ["?", "this list"],
     ] as [keys: string, does: string][],
+  },
+
+  // The state of the water, for screen readers
+  words: {
+    connected: "Connected to the water.", paused: "The water is paused.", runs: "The water runs.", calm: "The water is calm.",
+    waves: (heightM: number) => `Waves of about ${length(heightM)} from trough to crest.`,
+    storms: { none: "The storm is over.", some: "A storm blows.", strong: "A strong storm blows." },
+    own: (side: PictureSide) => `Your hand is in the water ${kWhere[side]}.`,
+    draws: (name: string, side: PictureSide) => `${name} draws in the water ${kWhere[side]}.`,
   },
 
   // Games and lessons

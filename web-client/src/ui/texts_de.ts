@@ -2,12 +2,13 @@
 import type { TeamName } from "../codec/people";
 import { kGermanNetTexts } from "../net/net_texts_de";
 import type { translation } from "../net/translation";
-import { fixed, plain } from "./numbers";
+import { fixed, length, plain } from "./numbers";
 import { kGermanScenes } from "./scene_texts_de";
-import type { SideWhat, SideWhere } from "./side_names";
+import type { PictureSide, SideWhat, SideWhere } from "./side_names";
 import type { Texts } from "./texts";
 
 const kSides: Record<SideWhat, string> = { beach: "Strand", sea: "offenes Meer", rocks: "felsiges Ufer", quay: "Kai", wall: "Wand", end: "offenes Ende" };
+const kPictureSides: Record<PictureSide, string> = { left: "links", middle: "in der Mitte", right: "rechts" };
 const kWhere: Record<SideWhere, string> = { left: "links", right: "rechts", near: "vorn", far: "hinten" };
 const kTeams: Record<TeamName, string> = { red: "Rot", blue: "Blau" };
 /** In front of "Tor" and after "das", "ins". */
@@ -258,6 +259,14 @@ export const kGerman: Texts = {
       ["C", "Bedienung ein- und ausblenden"],
       ["?", "diese Liste"],
     ],
+  },
+
+  words: {
+    connected: "Mit dem Wasser verbunden.", paused: "Das Wasser ist angehalten.", runs: "Das Wasser läuft.", calm: "Das Wasser ist ruhig.",
+    waves: (heightM) => `Wellen von etwa ${length(heightM)} vom Tal zum Kamm.`,
+    storms: { none: "Der Sturm ist vorbei.", some: "Es stürmt.", strong: "Es stürmt heftig." },
+    own: (side) => `Die eigene Hand ist ${kPictureSides[side]} im Wasser.`,
+    draws: (name, side) => `${name} zeichnet ${kPictureSides[side]} ins Wasser.`,
   },
 
   teams: kTeams,
