@@ -86,7 +86,7 @@ export class OperatorPanel {
     this.race = make("div", {}, [lapsRow.element, button("game-race", kText.startRace, () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, kTexts.commands.race))]);
     this.ball = make("div", {}, [goalsRow.element, button("game-ball", kText.startBall, () => this.startBall())]);
     const reset = confirmed("lesson-reset", kText.reset, kText.really, () => this.send({ case: "reset", value: {} }, kTexts.commands.reset));
-    const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h3", {}, [name]), ...children]);
+    const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h2", {}, [name]), ...children]);
     this.element = make("details", { id: "class-box", "data-testid": "class-box" }, [
       make("summary", {}, [kText.title]),
       make("div", { class: "buttons" }, [this.freeze, this.teams]),
