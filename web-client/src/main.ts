@@ -7,20 +7,26 @@ import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
 import { requestRooms } from "./net/room_requests";
 import { roomOf } from "./net/room_address";
 import { socketUrl } from "./net/water_client";
+import { translation } from "./net/translation";
+import { languageNow } from "./ui/language";
 
 if (isEmbeddedAddress(location)) {
   document.body.classList.add("embedded");
   const panel = new URLSearchParams(location.search).get("panel");
   if (panel === "tools" || panel === "all") document.body.dataset["panel"] = panel;
 }
+const language = (document.documentElement.lang = languageNow());
+// Before any module that reads the tables of texts.
+const inLanguage = language === "de" ? import("./ui/texts_de").then(({ kGermanTranslation }) => Object.assign(translation, kGermanTranslation)) : Promise.resolve();
 if (isPadAddress(location) && !isEmbeddedAddress(location)) {
   document.body.replaceChildren();
-  void import("./pad/pad_page").then(({ openPad }) => openPad());
+  void inLanguage.then(() => import("./pad/pad_page")).then(({ openPad }) => openPad());
 } else {
   void openRoomOrFront();
 }
 
 async function openRoomOrFront(): Promise<void> {
+  await inLanguage;
   const load = () => import("./app/water_page");
   // Most rooms that are named exist: their page is loaded meanwhile.
   const water = roomOf(location.search) ? load() : undefined;

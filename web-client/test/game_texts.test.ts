@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
 
 import type { GameInfo } from "../src/codec/game";
-import { clockText, countdownText, gameHeadline, GoalNews, goalTeamOf, nextMarkOf, ordinal, raceRows, raceTime, standingText, taskText } from "../src/ui/game_texts";
+import { clockText, countdownText, gameHeadline, GoalNews, goalTeamOf, nextMarkOf, raceRows, raceTime, standingText, taskText } from "../src/ui/game_texts";
+import { kTexts } from "../src/ui/texts";
 
 const racer = (personId: number, change: object = {}) => ({ personId, lapsCount: 0, nextMark: 1, lapBestS: 0, finishedS: 0, ...change });
 const race = (change: Partial<GameInfo>): GameInfo => ({
@@ -12,7 +13,7 @@ const people = [{ personId: 1, name: "Ada", color: "#ff0000", team: "red" as con
 describe("the words of a game", () => {
   it("write times in minutes, seconds and tenths, also at a full minute", () => {
     expect([0, 5.04, 59.96, 63.4, 600, -1].map(raceTime)).toEqual(["0:00.0", "0:05.0", "1:00.0", "1:03.4", "10:00.0", "0:00.0"]);
-    expect([1, 2, 3, 4, 11, 12, 13, 21, 22, 40, 111].map(ordinal)).toEqual(["1st", "2nd", "3rd", "4th", "11th", "12th", "13th", "21st", "22nd", "40th", "111th"]);
+    expect([1, 2, 3, 4, 11, 12, 13, 21, 22, 40, 111].map(kTexts.ordinal)).toEqual(["1st", "2nd", "3rd", "4th", "11th", "12th", "13th", "21st", "22nd", "40th", "111th"]);
   });
 
   it("count down to Go, which stays for a moment", () => {

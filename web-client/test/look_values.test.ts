@@ -128,7 +128,7 @@ describe("the probe of particles", () => {
 });
 
 describe("the label", () => {
-  const quantity = { title: "Surface height", unit: "m", map: "coolWarm" as const, range: "signed" as const, of: "surface" as const };
+  const quantity = { look: "height" as const, unit: "m", map: "coolWarm" as const, range: "signed" as const, of: "surface" as const };
 
   it("has the unit and no more decimals than the stream can tell apart", () => {
     expect(describeValue({ quantity, value: 0.12345, step: 0.0005 })).toBe("0.1235 m");

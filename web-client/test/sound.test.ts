@@ -18,7 +18,8 @@ import { SurfaceWatch } from "../src/sound/surface_watch";
 import { BedPlan, GrainPlan, kBedCount, kFadeS, kGrainCount } from "../src/sound/voice_plan";
 import { bandGain, Voices } from "../src/sound/voices";
 import { WaterSound } from "../src/sound/water_sound";
-import { describeOctave, kRestHz, octaveForDepthM, pitchHz } from "../src/sound/wave_tone";
+import { kRestHz, octaveForDepthM, pitchHz } from "../src/sound/wave_tone";
+import { kTexts } from "../src/ui/texts";
 import { FakeAudio } from "./fake_audio";
 
 const kSideM = 16;
@@ -305,7 +306,7 @@ describe("the wave tone", () => {
   it("suits the depth, and says what it maps", () => {
     expect(octaveForDepthM(1.5)).toBe(0.2);
     expect(octaveForDepthM(0.01)).toBe(0.01);
-    expect(describeOctave(0.2)).toBe("±20 cm = ±1 octave");
-    expect(describeOctave(2)).toBe("±2 m = ±1 octave");
+    expect(kTexts.octave(0.2)).toBe("±20 cm = ±1 octave");
+    expect(kTexts.octave(2)).toBe("±2 m = ±1 octave");
   });
 });

@@ -89,7 +89,7 @@ export class App {
     ownId: () => this.lessons.ownId,
     isChanging: () => this.room.isChanging,
   });
-  private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, "Parameter"), { "storm.level_ratio": byId("storm") });
+  private readonly parameters = new ParametersPanel(byId("parameters"), (action) => this.commands.send(action, kTexts.commands.parameter), { "storm.level_ratio": byId("storm") });
   private readonly people: PeoplePanel;
   private readonly tags = new BoatTags(byId("view"));
   private readonly marks = new CourseTags(byId("view"), markTopM);
@@ -309,9 +309,10 @@ export class App {
     this.effects.enter(greeting);
     this.parameters.enter(greeting.parameters);
     byId("effects-box").hidden = byId("effect-buttons").hidden = !this.effects.available;
-    setText(byId("title"), greeting.title);
-    setText(byId("description"), greeting.description);
-    document.title = `${greeting.title} – Spindrift`;
+    const { title, description } = kTexts.scenes[greeting.sceneName] ?? greeting;
+    setText(byId("title"), title);
+    setText(byId("description"), description);
+    document.title = `${title} – Spindrift`;
     this.hud.enter(greeting);
     this.hud.paused(greeting.paused);
     this.news.enter(greeting);

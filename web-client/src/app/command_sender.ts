@@ -1,6 +1,7 @@
 // Sends commands and keeps a label for each, for the line that reports its answer.
 import type { CommandAction } from "../net/messages";
 import type { WaterClient } from "../net/water_client";
+import { kTexts } from "../ui/texts";
 
 export class CommandSender {
   /** The newest one, for tests. */
@@ -22,7 +23,7 @@ export class CommandSender {
 
   /** Every command is answered exactly once, so the map stays small. */
   takeLabel(commandId: number): string {
-    const label = this.labels.get(commandId) ?? `Command ${commandId}`;
+    const label = this.labels.get(commandId) ?? kTexts.commands.numbered(commandId);
     this.labels.delete(commandId);
     return label;
   }

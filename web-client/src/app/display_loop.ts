@@ -2,6 +2,7 @@
 import type { WebGLRenderer } from "three";
 
 import { showNotice } from "../ui/notice";
+import { kTexts } from "../ui/texts";
 
 const kMeasureEveryMs = 500;
 
@@ -25,7 +26,7 @@ export class DisplayLoop {
   ) {
     renderer.domElement.addEventListener("webglcontextlost", () => {
       this.isContextLost = true;
-      showNotice("The graphics context was lost. The picture returns when the browser restores it.");
+      showNotice(kTexts.contextLost);
     });
     renderer.domElement.addEventListener("webglcontextrestored", () => {
       this.isContextLost = false;

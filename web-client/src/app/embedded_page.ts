@@ -9,10 +9,10 @@ import { byId } from "../ui/dom";
 import { describeState } from "../ui/hud";
 import { showNotice } from "../ui/notice";
 import type { App } from "./app";
+import { kTexts } from "../ui/texts";
 
 /** Frames are told at most so often. */
 const kTellEveryMs = 250;
-const kNoEffectsText = "this water takes no splashes and waves";
 
 export function openEmbeddedPage(app: App): void {
   const parameters = new URLSearchParams(location.search);
@@ -27,7 +27,7 @@ export function openEmbeddedPage(app: App): void {
   if (window.parent === window) return;
   askParents(location.href).then(
     (parents) => connectParent(app, parents, news),
-    (error: unknown) => app.warn(`The page around this one cannot act: ${error instanceof Error ? error.message : String(error)}`),
+    (error: unknown) => app.warn(kTexts.parentCannotAct(error instanceof Error ? error.message : String(error))),
   );
 }
 
@@ -37,7 +37,7 @@ function connectParent(app: App, parents: readonly string[], news: News): void {
     post: (message, origin) => parent.postMessage(message, origin),
     send: (request) => {
       const action = actionOf(app, request);
-      return typeof action === "string" ? action : app.commands.send(action, `Request "${request.kind}"`);
+      return typeof action === "string" ? action : app.commands.send(action, kTexts.commands.request(request.kind));
     },
     warn: (text) => console.warn(`spindrift: ${text}`),
     nowMs: () => performance.now(),
@@ -64,7 +64,7 @@ function actionOf({ effects }: App, request: Request): CommandAction | string {
     case "splash": {
       const { xM, zM } = request;
       const usual = effects.splashAt({ xM, zM });
-      if (usual?.case !== "splash") return kNoEffectsText;
+      if (usual?.case !== "splash") return kTexts.noEffects;
       const { radiusM: usualRadiusM = 1, depthM: usualDepthM = 1 } = usual.value;
       const radiusM = request.radiusM ?? usualRadiusM;
       // A smaller splash is as steep, a larger one no deeper.
@@ -74,7 +74,7 @@ function actionOf({ effects }: App, request: Request): CommandAction | string {
     case "wave": {
       const { kind: _, ...size } = request;
       const usual = effects.breakingWave();
-      if (usual?.case !== "breakingWave") return kNoEffectsText;
+      if (usual?.case !== "breakingWave") return kTexts.noEffects;
       return { case: "breakingWave", value: { ...usual.value, ...size, ...(size.directionDeg === undefined ? {} : { side: Side.DIRECTION }) } };
     }
     case "pause":
@@ -120,7 +120,7 @@ class News {
 
 /** Says over the water that there is no connection: the card, which does elsewhere, is hidden. */
 function showFailure({ state }: App): void {
-  showNotice(state.name === "retrying" || state.name === "refused" ? `No connection to the water: ${describeState(state)}` : "");
+  showNotice(state.name === "retrying" || state.name === "refused" ? kTexts.noConnection(describeState(state)) : "");
 }
 
 /** The wheel moves the page around, until somebody has clicked into the water; with Ctrl it zooms at once. */

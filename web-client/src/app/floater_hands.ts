@@ -9,6 +9,7 @@ import type { Outline } from "../ui/tool_preview";
 import type { ToolName, WaterPlace } from "../ui/tools";
 import type { App } from "./app";
 import { rayAt } from "./pointer_ray";
+import { kTexts } from "../ui/texts";
 
 /** An object counts as hit within this distance of a pointer; a finger covers more than a mouse's arrow. */
 const kNearPx = { touch: 22, other: 6 };
@@ -126,7 +127,7 @@ export class FloaterHands {
 
   /** Takes an object out of the water. */
   remove(floaterId: number): void {
-    this.app.commands.send({ case: "removeFloater", value: { floaterId } }, "Remove object");
+    this.app.commands.send({ case: "removeFloater", value: { floaterId } }, kTexts.commands.removeObject);
     for (const pointerId of this.sender.pointers()) if (this.sender.heldBy(pointerId) === floaterId) this.sender.drop(pointerId);
     this.refresh();
   }

@@ -1,8 +1,11 @@
 // Turns key, button and window events into calls of the App; pointers are in pointer.ts.
 import { byId, isTyping } from "../ui/dom";
 import type { App } from "./app";
+import { connectKeyboardTools } from "./keyboard_tools";
+import { connectPageKeys } from "./page_keys";
 import { PointerHands } from "./pointer";
-import { connectKeyboardTools, GamepadTools, type GamepadTarget } from "./virtual_pointer";
+import { GamepadTools, type GamepadTarget } from "./virtual_pointer";
+import { kTexts } from "../ui/texts";
 
 export function connectInput(app: App): void {
   const hands = new PointerHands(app);
@@ -12,7 +15,9 @@ export function connectInput(app: App): void {
   });
   connectButtons(app);
   connectHelmKeys(app);
-  connectKeyboardTools(app);
+  const { display, tools, boats } = app;
+  connectKeyboardTools({ canvas: display.canvas, isHelm: () => display.views.view === "boat" && boats.mineId !== 0, isPaddle: () => tools.tool.name === "paddle" });
+  connectPageKeys(app);
   const gamepad = new GamepadTools(gamepadTarget(app));
   app.poll = (atS) => gamepad.update(atS);
   connectWindow(app, hands);
@@ -36,8 +41,8 @@ function gamepadTarget(app: App): GamepadTarget {
 }
 
 function connectButtons({ client, commands, effects }: App): void {
-  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), "Splash"));
-  byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), "Wave"));
+  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), kTexts.commands.splash));
+  byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), kTexts.commands.wave));
   byId("retry").addEventListener("click", () => client.call("retryNow"));
 }
 

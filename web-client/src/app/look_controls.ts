@@ -39,7 +39,9 @@ export class LookControls {
       if (pointerType !== "touch") this.pointer = undefined;
     });
     // Keys take over from a finger.
-    canvas.addEventListener("keydown", () => (this.pointer = undefined));
+    canvas.addEventListener("keydown", () => {
+      if (this.pointer?.isTouch) this.pointer = undefined;
+    });
   }
 
   enter(greeting: GreetingInfo): void {

@@ -3,6 +3,7 @@
 import type { PixelRect } from "../scene/camera/framing";
 import { byId } from "../ui/dom";
 import { Sheet } from "./sheet";
+import { kTexts } from "../ui/texts";
 
 /** As in style.css: below this width the panel is a sheet at the bottom. */
 const kNarrowPx = 760;
@@ -67,6 +68,6 @@ export class PageLayout {
   private setPanelOpen(isOpen: boolean): void {
     document.body.classList.toggle("panel-closed", !isOpen);
     this.toggle.setAttribute("aria-expanded", String(isOpen));
-    this.toggle.setAttribute("aria-label", isOpen ? "Hide controls" : "Show controls");
+    this.toggle.setAttribute("aria-label", isOpen ? kTexts.hideControls : kTexts.showControls);
   }
 }

@@ -59,7 +59,7 @@ export class PictureControls {
     const name = fileName(this.sceneName, "png", new Date());
     // Drawn once more, with all pixels of the screen.
     this.display.drawInFull((canvas) =>
-      canvas.toBlob((blob) => (blob ? saveFile(blob, name) : this.failed(kTexts.pictureFailed(`${canvas.width} x ${canvas.height} pixels`))), "image/png"),
+      canvas.toBlob((blob) => (blob ? saveFile(blob, name) : this.failed(kTexts.pictureFailed(kTexts.pixels(canvas.width, canvas.height)))), "image/png"),
     );
   }
 

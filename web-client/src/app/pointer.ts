@@ -4,7 +4,6 @@
 import { kClickRadiusPx } from "../scene/camera/camera_hand";
 import { pickWater } from "../scene/frames/pick";
 import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
-import { floaterLabel } from "../ui/floater_rows";
 import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
 import { kTapMs, TapDetector, type PointerSample } from "../ui/tap";
 import { lessonToolOf } from "../ui/lesson_state";
@@ -14,6 +13,7 @@ import type { App } from "./app";
 import { FloaterHands, type Grip } from "./floater_hands";
 import { nowS } from "./picture_clock";
 import { rayAt } from "./pointer_ray";
+import { kTexts } from "../ui/texts";
 
 /** Two fingers that come down within this time are a gesture of the camera. */
 const kTogetherMs = 150;
@@ -165,7 +165,7 @@ export class PointerHands {
     } else if (tool.name === "paddle") {
       const wave = paddleWave(from, at, app.entered!, scale);
       if (!wave) return app.tools.explain();
-      app.commands.send(wave, "Paddle");
+      app.commands.send(wave, kTexts.commands.paddle);
       app.tools.wasUsed();
     } else if (tool.name === "throw") {
       this.launch(this.throwOf(hand, isTap), scale);
@@ -197,7 +197,7 @@ export class PointerHands {
 
   private splash(place: WaterPlace, scale: ToolScale | undefined, by: PointerEvent): void {
     if (this.app.mayDraw) this.app.haptics.feel("splash", by);
-    this.app.commands.send(this.app.effects.splashAt(place, scale), "Splash");
+    this.app.commands.send(this.app.effects.splashAt(place, scale), kTexts.commands.splash);
     this.app.tools.wasUsed();
   }
 
@@ -248,14 +248,14 @@ export class PointerHands {
     const { kind, densityRatio } = app.floaterRows;
     const sizeM = floaterSizeM("float", app.entered!, scale)!;
     const headingDeg = Math.round(360 * Math.random() - 180);
-    app.commands.send(dropOf(kind, place, app.display.scene.heightAtM(place.xM, place.zM), sizeM, densityRatio, headingDeg, app.entered!), floaterLabel(kind));
+    app.commands.send(dropOf(kind, place, app.display.scene.heightAtM(place.xM, place.zM), sizeM, densityRatio, headingDeg, app.entered!), kTexts.kinds[kind]);
     app.tools.wasUsed();
   }
 
   private launch(thrown: Throw | undefined, scale: ToolScale): void {
     const { app } = this;
     if (!thrown) return app.tools.explain();
-    app.commands.send(throwOf(thrown, floaterSizeM("throw", app.entered!, scale)!, app.entered!), "Stone");
+    app.commands.send(throwOf(thrown, floaterSizeM("throw", app.entered!, scale)!, app.entered!), kTexts.commands.stone);
     app.tools.wasUsed();
   }
 

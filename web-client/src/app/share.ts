@@ -23,7 +23,7 @@ export function addShareButton(app: App): void {
     card ??= load();
     card.then((one) => one.open(), () => {
       card = undefined;
-      app.warn("The card could not be loaded: try again when the server can be reached.");
+      app.warn(kTexts.shareFailed);
     });
   });
   button.element.setAttribute("aria-haspopup", "dialog");

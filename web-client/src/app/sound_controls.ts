@@ -11,6 +11,7 @@ import { SoundRows } from "../ui/sound_rows";
 import type { Display } from "./display";
 import type { Haptics } from "./haptics";
 import { rayAt } from "./pointer_ray";
+import { kTexts } from "../ui/texts";
 
 /** The middle of the view is looked for this often. */
 const kMiddleEveryMs = 250;
@@ -119,7 +120,7 @@ export class SoundControls {
       this.changed();
     } catch (error) {
       if (this.isOn) this.toggle();
-      this.failed(`Sound could not be loaded (${error instanceof Error ? error.message : String(error)}); try again.`);
+      this.failed(kTexts.soundFailed(error instanceof Error ? error.message : String(error)));
     }
   }
 

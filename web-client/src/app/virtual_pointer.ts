@@ -1,35 +1,24 @@
-// The tools without a pointer: Enter or the space bar on the water, and a gamepad. Both act as a pointer of their own would.
+// The tools by a gamepad, which acts as a pointer of its own would. keyboard_tools.ts does the same for keys.
 //
-// Keys: while Enter is held the arrows move the pointer, so that it draws, throws, or moves what it holds; Q and E turn that. Delete takes out
-// what is held or under the mouse; comma and full stop choose what the tool Float drops; plus and minus bring the camera nearer and farther.
 // Gamepad (the standard mapping): the left stick moves a cursor over the picture, A uses the tool there, held longer or moved on as a finger
 // would; LB and RB choose the tool, or turn what is held; X takes out the object there, Y chooses the next kind, B launches a boat. The right stick turns the
 // view, the triggers bring it nearer and farther; Back chooses the next view, Start the sound. The D-pad goes through the controls of the page
 // (panel_cursor.ts). In the boat's view the left stick and the D-pad are the helm. docs/controls.md lists all.
-import { isTyping } from "../ui/dom";
 import type { HelmCode } from "../ui/helm";
-import type { App } from "./app";
 import { standardGamepad } from "./gamepad";
 import { kGamepadId } from "./haptics";
 import { PanelCursor } from "./panel_cursor";
 
-const kKeyboardId = kGamepadId + 1;
-/** A paddle that is used by a key sends its wave away from the viewer: along this share of the picture's height. */
-const kPushShare = 0.12;
 /** Below this a stick counts as released. */
 const kDeadZone = 0.15;
 /** Speed of the cursor with the stick at its end, in heights of the picture per second. */
 const kCursorPerS = 0.6;
 const kLongestStepS = 0.1;
 
-/** What is held: turn per press of a key, and per second of a gamepad's button; pixels per press of an arrow key. */
-const kKeyTurnRad = 0.2;
+/** Turn of what is held, per second. */
 const kTurnRadps = 2;
-const kKeyStepPx = 16;
-const kArrows: Record<string, readonly [right: number, down: number]> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
 
-/** The view: zoom per press of a key, turn and zoom per second with a stick or a trigger at its end. */
-const kKeyZoom = 1.15;
+/** The view: turn and zoom per second with a stick or a trigger at its end. */
 const kOrbitRadps = 1.8;
 const kZoomPerS = 2.5;
 
@@ -37,7 +26,7 @@ const kButtons = { use: 0, launch: 1, takeOut: 2, nextKind: 3, previousTool: 4, 
 const kHelm = { up: "ArrowUp", down: "ArrowDown", left: "ArrowLeft", right: "ArrowRight" } as const;
 
 /** Sends the events of a pointer at a position of the window. */
-class VirtualPointer {
+export class VirtualPointer {
   isDown = false;
 
   constructor(
@@ -65,45 +54,6 @@ class VirtualPointer {
     const buttons = this.isDown ? 1 : 0;
     this.canvas.dispatchEvent(new PointerEvent(type, { pointerId: this.pointerId, pointerType: "mouse", button: 0, buttons, clientX, clientY, bubbles: true }));
   }
-}
-
-export function connectKeyboardTools(app: App): void {
-  const { display: { canvas }, tools } = app;
-  const pointer = new VirtualPointer(canvas, kKeyboardId);
-  const middle = (): [number, number] => [window.innerWidth / 2, window.innerHeight / 2];
-  /** How far the arrow keys have moved what is held. */
-  let movedPx = [0, 0] as [number, number];
-  const isUse = ({ code, ctrlKey, altKey, metaKey }: KeyboardEvent): boolean => (code === "Enter" || code === "Space") && !ctrlKey && !altKey && !metaKey;
-  canvas.addEventListener("keydown", (event) => {
-    if (!isUse(event)) return;
-    event.preventDefault();
-    if (!pointer.isDown) movedPx = [0, 0];
-    pointer.press(...middle());
-  });
-  canvas.addEventListener("keydown", (event) => {
-    const arrow = event.shiftKey ? undefined : kArrows[event.code];
-    if (!pointer.isDown || !arrow) return;
-    event.preventDefault();
-    event.stopImmediatePropagation();
-    movedPx = [movedPx[0] + kKeyStepPx * arrow[0], movedPx[1] + kKeyStepPx * arrow[1]];
-    pointer.move(middle()[0] + movedPx[0], middle()[1] + movedPx[1]);
-  }, { capture: true });
-  window.addEventListener("keydown", (event) => {
-    if (event.ctrlKey || event.altKey || event.metaKey || isTyping(event.target)) return;
-    if (event.code === "Delete" && !event.repeat) app.removePointed();
-    else if (event.code === "KeyQ" || event.code === "KeyE") app.turnHeld(event.code === "KeyQ" ? -kKeyTurnRad : kKeyTurnRad);
-    else if (event.key === "," || event.key === ".") app.floaterRows.step(event.key === "," ? -1 : 1);
-    else if (event.key === "+" || event.key === "=" || event.key === "-") app.display.views.orbit(0, 0, event.key === "-" ? kKeyZoom : 1 / kKeyZoom);
-  });
-  const release = (): void => {
-    const xPx = middle()[0] + movedPx[0];
-    const yPx = middle()[1] + movedPx[1];
-    const toPx = tools.tool.name === "paddle" && movedPx[0] === 0 && movedPx[1] === 0 ? yPx - kPushShare * window.innerHeight : yPx;
-    if (pointer.isDown && toPx !== yPx) pointer.move(xPx, toPx);
-    pointer.release(xPx, toPx);
-  };
-  canvas.addEventListener("keyup", (event) => isUse(event) && release());
-  canvas.addEventListener("blur", release);
 }
 
 /** What a gamepad acts on: the page of the water, or a pad, which has neither views nor sound. */

@@ -1,6 +1,8 @@
 // The page that shows the water of a room, with its controls; with `?class` for a projector in front of a class, with `?kiosk` as an exhibit.
 import { makeRenderer } from "../scene/drawing/renderer";
 import { byId } from "../ui/dom";
+import { fillPage } from "../ui/fill_page";
+import { addLanguageRow } from "../ui/language_row";
 import { showNotice } from "../ui/notice";
 import { isEmbeddedAddress, isKioskAddress, isProjectorAddress } from "./address";
 import { App } from "./app";
@@ -8,17 +10,18 @@ import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
 import { addShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
+import { openWaterSpeaker } from "./water_speaker";
 import { installTestHooks } from "./test_hooks";
+import { kTexts } from "../ui/texts";
 
 export function openWaterPage(): void {
+  fillPage(document);
   const made = makeRenderer(byId<HTMLCanvasElement>("view"));
   const isKiosk = isKioskAddress(location) && !isEmbeddedAddress(location);
   const openKiosk = (app?: App): void => void (isKiosk && import("./kiosk_page").then((page) => page.openKiosk(app)));
   if (!made) {
     openKiosk();
-    showNotice(
-      "This page needs WebGL 2 with floating-point targets, and this browser offers none. Turn on hardware acceleration, or try a current Firefox, Chrome, Edge or Safari.",
-    );
+    showNotice(kTexts.noWebGl);
     return;
   }
   const app = new App(made);
@@ -39,6 +42,8 @@ function addVisitorControls(app: App): void {
   addShareButton(app);
   keepChangesInAddress(app);
   openOperatorPanel(app);
+  openWaterSpeaker(app);
+  addLanguageRow(() => app.address, (text) => app.warn(text));
 }
 
 /** Adds the operator's controls of a lesson when the server says that this visitor is one. */

@@ -1,8 +1,9 @@
 // What the projector shows of people and games: who is in, the order of a race, the score, a countdown, the result.
 import type { PersonInfo } from "../codec/people";
 import { make, setText } from "../ui/dom";
-import { clockText, countdownText, gameHeadline, goalText, GoalNews, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
+import { clockText, countdownText, gameHeadline, GoalNews, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
 import type { LessonState } from "../ui/lesson_state";
+import { kTexts } from "../ui/texts";
 
 /** More people, and rows of a race, are only counted. */
 const kPeopleMax = 44;
@@ -14,13 +15,13 @@ export function playersOf({ people, ownId }: LessonState): PersonInfo[] {
 }
 
 export class Boards {
-  readonly element = make("div", { class: "boards" });
+  readonly element = make("div", { class: "boards", role: "region", "aria-label": kTexts.class.title });
   private readonly headline = make("p", { class: "board-headline glass", "data-testid": "board-headline", role: "status", hidden: "" });
   private readonly score = make("p", { class: "board-score", "data-testid": "board-score", hidden: "" });
   private readonly count = make("p", { class: "board-count", "data-testid": "board-count", "aria-hidden": "true" });
-  private readonly frozen = make("p", { class: "board-frozen glass", "data-testid": "board-frozen", role: "status", hidden: "" }, ["Pads are paused"]);
+  private readonly frozen = make("p", { class: "board-frozen glass", "data-testid": "board-frozen", role: "status", hidden: "" }, [kTexts.padsPaused]);
   private readonly race = make("table", { class: "board-race glass", "data-testid": "board-race", hidden: "" });
-  private readonly people = make("ul", { class: "board-people glass", "data-testid": "board-people", "aria-label": "People in the room", hidden: "" });
+  private readonly people = make("ul", { class: "board-people glass", "data-testid": "board-people", "aria-label": kTexts.page.peopleList, hidden: "" });
   private readonly side = make("div", { class: "board-side" }, [this.race, this.people]);
   /** Changes ten times per second, which no screen reader has to say. */
   private readonly clock = make("span", { "aria-hidden": "true" });
@@ -38,7 +39,7 @@ export class Boards {
     const { game, people } = this.lessons;
     this.news.take(game, simTimeS);
     const team = this.news.teamAt(simTimeS);
-    if (game) setText(this.headlineText, team ? goalText(team) : gameHeadline(game, people));
+    if (game) setText(this.headlineText, team ? kTexts.goalFor(team) : gameHeadline(game, people));
     this.headline.classList.toggle("over", game?.phase === "over" || team !== undefined);
     this.headline.style.borderColor = team ? kTeamColors[team] : "";
     setText(this.count, game ? countdownText(game, simTimeS) : "");
@@ -58,7 +59,7 @@ export class Boards {
     }
     const rows = game?.kind === "race" ? raceRows(game, people) : [];
     this.race.hidden = rows.length === 0;
-    this.race.replaceChildren(...rows.slice(0, kRowsMax).map(rowOf), ...(rows.length > kRowsMax ? [make("tr", {}, [make("td", { colspan: "4" }, [`and ${rows.length - kRowsMax} more`])])] : []));
+    this.race.replaceChildren(...rows.slice(0, kRowsMax).map(rowOf), ...(rows.length > kRowsMax ? [make("tr", {}, [make("td", { colspan: "4" }, [kTexts.andMore(rows.length - kRowsMax)])])] : []));
     this.showPeople(rows.length > 0);
   }
 
@@ -68,7 +69,7 @@ export class Boards {
     const players = playersOf(this.lessons);
     this.people.hidden = isRace || players.length === 0;
     const sorted = lesson.teams ? [...players].sort((a, b) => (a.team ?? "").localeCompare(b.team ?? "")) : players;
-    this.people.replaceChildren(...sorted.slice(0, kPeopleMax).map(personItem), ...(players.length > kPeopleMax ? [make("li", {}, [`and ${players.length - kPeopleMax} more`])] : []));
+    this.people.replaceChildren(...sorted.slice(0, kPeopleMax).map(personItem), ...(players.length > kPeopleMax ? [make("li", {}, [kTexts.andMore(players.length - kPeopleMax)])] : []));
     this.people.classList.toggle("many", players.length > 14);
   }
 }

@@ -7,12 +7,14 @@ import { GameKind, LessonSchema, StartGameSchema } from "../gen/spindrift/v1/wir
 import type { CommandAction } from "../net/messages";
 import { make, setText } from "../ui/dom";
 import { fieldRange } from "../ui/effect_limits";
-import { kTeamColors, kTeamLabels } from "../ui/game_texts";
+import { kTeamColors } from "../ui/game_texts";
 import { LatestSender } from "../ui/latest_sender";
-import { kLessonToolLabels, type LessonState } from "../ui/lesson_state";
+import type { LessonState } from "../ui/lesson_state";
 import { SliderRow } from "../ui/slider_row";
 import { playersOf } from "./boards";
+import { kTexts } from "../ui/texts";
 
+const kText = kTexts.class;
 /** At most so often while the slider moves. */
 const kForceEveryMs = 250;
 /** A second press within this time confirms. */
@@ -47,18 +49,18 @@ function confirmed(testId: string, label: string, question: string, pressed: () 
 
 export class OperatorPanel {
   readonly element: HTMLDetailsElement;
-  private readonly freeze = button("lesson-freeze", "Pause pads", () => this.change({ frozen: !this.lessons.lesson.frozen }));
-  private readonly teams = button("lesson-teams", "Teams", () => this.change({ teams: !this.lessons.lesson.teams }));
+  private readonly freeze = button("lesson-freeze", kText.pausePads, () => this.change({ frozen: !this.lessons.lesson.frozen }));
+  private readonly teams = button("lesson-teams", kText.teams, () => this.change({ teams: !this.lessons.lesson.teams }));
   private readonly tools = new Map<LessonTool, HTMLButtonElement>();
   private readonly force: SliderRow;
   private readonly forces: LatestSender<number>;
-  private readonly clear = button("lesson-clear", "Take out all objects", () => this.send({ case: "removeFloater", value: { all: true } }, "Take out all objects"));
+  private readonly clear = button("lesson-clear", kText.clear, () => this.send({ case: "removeFloater", value: { all: true } }, kTexts.commands.removeObjects));
   private readonly race: HTMLElement;
   private readonly ball: HTMLElement;
-  private readonly end = button("game-end", "End the game", () => this.send({ case: "endGame", value: {} }, "End of the game"));
-  private readonly noGames = make("p", { class: "hint" }, ["This scene has no course for a race and no goals; the scene “regatta” has both."]);
-  private readonly people = make("ul", { class: "lesson-people", "data-testid": "lesson-people", "aria-label": "Who plays" });
-  private readonly nobody = make("p", { class: "hint" }, ["Nobody plays yet."]);
+  private readonly end = button("game-end", kText.endGame, () => this.send({ case: "endGame", value: {} }, kTexts.commands.endGame));
+  private readonly noGames = make("p", { class: "hint" }, [kText.noGames]);
+  private readonly people = make("ul", { class: "lesson-people", "data-testid": "lesson-people", "aria-label": kText.whoPlays });
+  private readonly nobody = make("p", { class: "hint" }, [kText.nobody]);
   private lapsCount: number;
   private goalsCount: number;
 
@@ -67,31 +69,31 @@ export class OperatorPanel {
     private readonly greeting: () => GreetingInfo | undefined,
     private readonly send: (action: CommandAction, label: string) => number,
   ) {
-    for (const tool of kLessonToolNames) this.tools.set(tool, button(`lesson-tool-${tool}`, kLessonToolLabels[tool], () => this.toggle(tool)));
+    for (const tool of kLessonToolNames) this.tools.set(tool, button(`lesson-tool-${tool}`, kTexts.lessonTools[tool], () => this.toggle(tool)));
     this.forces = new LatestSender((forceRatio) => this.change({ forceRatio }), {
       nowMs: () => performance.now(),
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kForceEveryMs);
-    const percent = { ...fieldRange(LessonSchema.field.forceRatio), describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
-    this.force = new SliderRow("lesson-force", percent, 1, "Share of what a pupil's tool does to the water.", (ratio) => this.forces.offer(ratio));
+    const percent = { ...fieldRange(LessonSchema.field.forceRatio), ...kText.force, describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
+    this.force = new SliderRow("lesson-force", percent, 1, (ratio) => this.forces.offer(ratio));
     const laps = fieldRange(StartGameSchema.field.lapsCount);
     const goals = fieldRange(StartGameSchema.field.goalsCount);
     this.lapsCount = laps.default;
     this.goalsCount = goals.default;
-    const lapsRow = new SliderRow("game-laps", laps, laps.default, "Laps of a race.", (count) => (this.lapsCount = count));
-    const goalsRow = new SliderRow("game-goals", goals, goals.default, "Goals that win.", (count) => (this.goalsCount = count));
-    this.race = make("div", {}, [lapsRow.element, button("game-race", "Start a race", () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, "Race"))]);
-    this.ball = make("div", {}, [goalsRow.element, button("game-ball", "Start a ball game", () => this.startBall())]);
-    const reset = confirmed("lesson-reset", "Start the scene again", "Really? Press again", () => this.send({ case: "reset", value: {} }, "Reset"));
-    const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h3", {}, [name]), ...children]);
+    const lapsRow = new SliderRow("game-laps", { ...laps, ...kText.laps }, laps.default, (count) => (this.lapsCount = count));
+    const goalsRow = new SliderRow("game-goals", { ...goals, ...kText.goals }, goals.default, (count) => (this.goalsCount = count));
+    this.race = make("div", {}, [lapsRow.element, button("game-race", kText.startRace, () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, kTexts.commands.race))]);
+    this.ball = make("div", {}, [goalsRow.element, button("game-ball", kText.startBall, () => this.startBall())]);
+    const reset = confirmed("lesson-reset", kText.reset, kText.really, () => this.send({ case: "reset", value: {} }, kTexts.commands.reset));
+    const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h2", {}, [name]), ...children]);
     this.element = make("details", { id: "class-box", "data-testid": "class-box" }, [
-      make("summary", {}, ["Class"]),
+      make("summary", {}, [kText.title]),
       make("div", { class: "buttons" }, [this.freeze, this.teams]),
-      group("Tools handed out", [make("div", { class: "lesson-tools" }, [...this.tools.values()]), this.force.element]),
-      group("Game", [this.race, this.ball, this.noGames, this.end]),
-      group("Water", [make("div", { class: "buttons" }, [this.clear, reset])]),
-      group("People", [this.nobody, this.people]),
+      group(kText.toolsGroup, [make("div", { class: "lesson-tools" }, [...this.tools.values()]), this.force.element]),
+      group(kText.gameGroup, [this.race, this.ball, this.noGames, this.end]),
+      group(kText.waterGroup, [make("div", { class: "buttons" }, [this.clear, reset])]),
+      group(kText.peopleGroup, [this.nobody, this.people]),
     ]);
     lessons.watch(() => this.refresh());
     this.refresh();
@@ -101,7 +103,7 @@ export class OperatorPanel {
   refresh(): void {
     const { lesson, game, role } = this.lessons;
     this.element.hidden = role !== "operator";
-    setText(this.freeze, lesson.frozen ? "Resume pads" : "Pause pads");
+    setText(this.freeze, lesson.frozen ? kText.resumePads : kText.pausePads);
     this.freeze.setAttribute("aria-pressed", String(lesson.frozen));
     this.teams.setAttribute("aria-pressed", String(lesson.teams));
     for (const [tool, element] of this.tools) element.setAttribute("aria-pressed", String(lesson.tools.includes(tool)));
@@ -129,26 +131,26 @@ export class OperatorPanel {
     swatch.style.background = person.color;
     setText(name, person.name);
     team.hidden = !this.lessons.lesson.teams;
-    setText(team, person.team ? kTeamLabels[person.team] : "–");
+    setText(team, person.team ? kTexts.teams[person.team] : "–");
     team.style.borderColor = person.team ? kTeamColors[person.team] : "";
-    team.setAttribute("aria-label", `Team of ${person.name}: ${person.team ?? "none"}`);
-    setText(mute, person.muted ? "Unmute" : "Mute");
+    team.setAttribute("aria-label", kText.teamOf(person.name, person.team));
+    setText(mute, person.muted ? kText.unmute : kText.mute);
     mute.setAttribute("aria-pressed", String(person.muted));
-    mute.setAttribute("aria-label", `${person.muted ? "Unmute" : "Mute"} ${person.name}`);
+    mute.setAttribute("aria-label", person.muted ? kText.unmuteName(person.name) : kText.muteName(person.name));
     return row;
   }
 
   private makeRow(personId: number): HTMLElement {
     const person = (): PersonInfo | undefined => this.lessons.personOf(personId);
-    const team = button(`team-${personId}`, "", () => this.send({ case: "setTeam", value: { personId, team: wireTeam(kNextTeam[person()?.team ?? "none"]) } }, "Team"));
-    const mute = button(`mute-${personId}`, "", () => this.send({ case: "mutePerson", value: { personId, muted: !person()?.muted } }, "Mute"));
+    const team = button(`team-${personId}`, "", () => this.send({ case: "setTeam", value: { personId, team: wireTeam(kNextTeam[person()?.team ?? "none"]) } }, kTexts.commands.team));
+    const mute = button(`mute-${personId}`, "", () => this.send({ case: "mutePerson", value: { personId, muted: !person()?.muted } }, kTexts.commands.mute));
     return make("li", { "data-person": String(personId) }, [make("i", { "aria-hidden": "true" }), make("span"), team, mute]);
   }
 
   /** A ball game is one of teams: they are dealt before it. */
   private startBall(): void {
     if (!this.lessons.lesson.teams) this.change({ teams: true });
-    this.send({ case: "startGame", value: { kind: GameKind.BALL, goalsCount: this.goalsCount } }, "Ball game");
+    this.send({ case: "startGame", value: { kind: GameKind.BALL, goalsCount: this.goalsCount } }, kTexts.commands.ball);
   }
 
   private toggle(tool: LessonTool): void {
@@ -160,6 +162,6 @@ export class OperatorPanel {
   }
 
   private change(change: Partial<LessonInfo>): void {
-    this.send({ case: "setLesson", value: { lesson: wireLesson({ ...this.lessons.lesson, ...change }) } }, "Lesson");
+    this.send({ case: "setLesson", value: { lesson: wireLesson({ ...this.lessons.lesson, ...change }) } }, kTexts.commands.lesson);
   }
 }

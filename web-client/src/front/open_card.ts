@@ -9,7 +9,7 @@ import { kTexts } from "../ui/texts";
 export class OpenCard {
   readonly element: HTMLLIElement;
   private readonly still = make("img", { alt: "" });
-  private readonly scene = new SelectRow("front-scene", kTexts.scene, kTexts.openRoomWhy, (value) => this.choose(value));
+  private readonly scene = new SelectRow("front-scene", kTexts.openScene, (value) => this.choose(value));
   private readonly link = make("a", { class: "front-open", "data-testid": "front-open-room" }, [kTexts.openRoom]);
   private readonly line = make("p", { class: "hint" }, [kTexts.openRoomWhy]);
 

@@ -17,6 +17,7 @@ import type { MissingRoom } from "./missing_room";
 import { planMove, type MovePlan } from "./move_plan";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
+import { kNetTexts } from "./net_texts";
 
 const kSubprotocol = "spindrift.v1";
 /** Version of the program; vite.config.ts defines it. */
@@ -88,7 +89,7 @@ export class Connection implements ConnectionCalls {
     this.tickTimer = this.retryTimer = undefined;
     this.state = { name: "connecting" };
     this.dropSocket();
-    this.failPending("the page closed the connection");
+    this.failPending(kNetTexts.pageCloses);
   }
 
   retryNow(): void {
@@ -100,7 +101,7 @@ export class Connection implements ConnectionCalls {
   introduce(name: string, token: string): void {
     this.identity = { ...this.identity, name, token };
     this.failedCount = 0;
-    this.failPending("the page connects again under another name");
+    this.failPending(kNetTexts.renamed);
     this.connect();
   }
 
@@ -134,11 +135,11 @@ export class Connection implements ConnectionCalls {
   }
 
   command(commandId: number, action: CommandAction): void {
-    if (this.state.name !== "live") return this.rejectHere(commandId, "not connected to the server");
+    if (this.state.name !== "live") return this.rejectHere(commandId, kNetTexts.notConnected);
     if (this.pending.isFull)
-      return this.rejectHere(commandId, `${kMaxPendingCount} commands are waiting for an answer already; try again in a moment`);
+      return this.rejectHere(commandId, kNetTexts.tooManyWait(kMaxPendingCount));
     if (this.socket!.bufferedAmount > kMaxUnsentBytes)
-      return this.rejectHere(commandId, "the link to the server is congested; try again in a moment");
+      return this.rejectHere(commandId, kNetTexts.congested);
     this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + kAnswerTimeoutMs);
     this.send({ case: "command", value: { commandId: BigInt(commandId), action } });
   }
@@ -168,7 +169,7 @@ export class Connection implements ConnectionCalls {
     };
     socket.onmessage = (event) => this.receive(event.data);
     socket.onclose = (event) => {
-      this.lost(event.reason || `closed by the server or the network (code ${event.code})`);
+      this.lost(event.reason || kNetTexts.closed(event.code));
       if (!isOpen) void this.askForRoom();
     };
     // A close follows every error and carries the reason.
@@ -234,7 +235,7 @@ export class Connection implements ConnectionCalls {
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     this.retryTimer = this.world.setTimer(() => {
       this.failedCount = 0;
-      this.failPending("the page moves to another server");
+      this.failPending(kNetTexts.moves);
       this.connect();
     }, this.move.atMs - this.world.nowMs());
     this.sink.event({ kind: "draining", draining });
@@ -267,7 +268,7 @@ export class Connection implements ConnectionCalls {
 
   private greeted(greeting: GreetingInfo): void {
     if (greeting.versionMajor !== kWireMajor)
-      return this.refuse(`the server speaks version ${greeting.versionMajor}.${greeting.versionMinor} of the wire, this page ${kWireMajor}.${kWireMinor}; reload the page`);
+      return this.refuse(kNetTexts.otherVersion(`${greeting.versionMajor}.${greeting.versionMinor}`, `${kWireMajor}.${kWireMinor}`));
     this.greeting = greeting;
     // The greeting of another scene does not change the estimate of the clock.
     if (this.clock.leadMs() === undefined) this.clock.greeted(greeting.serverTimeS, this.world.nowMs());
@@ -314,9 +315,9 @@ export class Connection implements ConnectionCalls {
     this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...shownLevel(this.detail, this.governor.level, this.linkLevel) } });
     if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
     for (const commandId of this.pending.takeOverdue(nowMs))
-      this.rejectHere(commandId, `no answer for ${kAnswerTimeoutMs / 1000} s`);
+      this.rejectHere(commandId, kNetTexts.noAnswer(kAnswerTimeoutMs / 1000));
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
-    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(`no message from the server for ${kSilenceMs / 1000} s`);
+    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(kNetTexts.silent(kSilenceMs / 1000));
     const pingEveryMs = this.pingCount < kFirstPings ? 0 : kPingEveryMs;
     if (this.state.name === "live" && nowMs - this.lastPingMs >= pingEveryMs) this.ping();
   }
@@ -325,12 +326,12 @@ export class Connection implements ConnectionCalls {
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
     if (this.move) {
       this.dropSocket();
-      this.failPending("the server restarts");
-      return this.setState({ name: "retrying", inS: Math.max(0, this.move.atMs - this.world.nowMs()) / 1000, why: "the server restarts" });
+      this.failPending(kNetTexts.restarts);
+      return this.setState({ name: "retrying", inS: Math.max(0, this.move.atMs - this.world.nowMs()) / 1000, why: kNetTexts.restarts });
     }
     this.failedCount = this.state.name === "live" && this.world.nowMs() - this.liveSinceMs >= kSettledMs ? 1 : this.failedCount + 1;
     this.dropSocket();
-    this.failPending("the connection was lost before the answer came");
+    this.failPending(kNetTexts.lost);
     const inS = backoffS(this.failedCount, this.world.random());
     this.setState({ name: "retrying", inS, why });
     this.retryTimer = this.world.setTimer(() => this.connect(), inS * 1000);
@@ -343,7 +344,7 @@ export class Connection implements ConnectionCalls {
     if (!missing || this.state.name !== "retrying" || this.failedCount !== attempt) return;
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     if (this.world.openRoom && this.liveSinceMs === 0) void this.openRoom(missing);
-    else this.refuse(`there is no room ${missing.name}`, missing.rooms);
+    else this.refuse(kNetTexts.noRoom(missing.name), missing.rooms);
   }
 
   /** Adds the rooms that there are to a refusal, if this one was closed. */
@@ -358,12 +359,12 @@ export class Connection implements ConnectionCalls {
     const whyNot = await this.world.openRoom!(this.url, this.identity.token);
     if (this.state.name !== "opening") return;
     if (whyNot === undefined) this.connect();
-    else this.refuse(`there is no room ${name}: ${whyNot}`, rooms);
+    else this.refuse(kNetTexts.noRoomBecause(name, whyNot), rooms);
   }
 
   private refuse(reason: string, rooms: string[] = []): void {
     this.dropSocket();
-    this.failPending("the server refused the connection");
+    this.failPending(kNetTexts.refused);
     this.setState({ name: "refused", reason, rooms });
   }
 

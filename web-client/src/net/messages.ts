@@ -103,5 +103,6 @@ type Call = { [K in keyof ConnectionCalls]: { kind: "call"; name: K; args: Param
 
 export type WorkerRequest =
   | Call
-  | { kind: "start"; url: string; identity: Identity; wish: RoomWish | undefined }
+  /** `language`: of the connection's lines for people. */
+  | { kind: "start"; url: string; identity: Identity; wish: RoomWish | undefined; language: string }
   | { kind: "release"; layer: FrameLayer; buffer: ArrayBuffer };

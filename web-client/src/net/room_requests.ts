@@ -1,6 +1,7 @@
 // Requests of a page that shares its room: what was changed in it, and a new room with a token for each role.
 import type { RoleName } from "../codec/people";
 import type { ParameterValue, RoomWish } from "./room_address";
+import { kNetTexts } from "./net_texts";
 
 export interface RoomWithTokens {
   room: string;
@@ -49,6 +50,6 @@ export async function openRoomWithTokens(room: string, { scene, parameters }: Ro
 async function ask(url: string, token: string, init: RequestInit & { headers?: Record<string, string> } = {}): Promise<unknown> {
   const answer = await fetch(url, { ...init, cache: "no-store", headers: { ...init.headers, ...(token ? { Authorization: `Bearer ${token}` } : {}) } });
   const body: unknown = await answer.json().catch(() => ({}));
-  if (!answer.ok) throw new Error((body as { message?: string }).message ?? `The server answers ${answer.status}.`);
+  if (!answer.ok) throw new Error((body as { message?: string }).message ?? kNetTexts.answers(answer.status));
   return body;
 }

@@ -19,7 +19,7 @@ export class WaterClient {
 
   /** `wish`: opens the room if it does not exist. */
   start(url: string, identity: Identity, wish?: RoomWish): void {
-    this.post({ kind: "start", url, identity, wish });
+    this.post({ kind: "start", url, identity, wish, language: document.documentElement.lang });
   }
 
   /** Calls a method of the connection. */

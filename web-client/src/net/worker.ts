@@ -9,6 +9,7 @@ import type { ConnectionEvent, Frame, Identity, PageEvent, WorkerRequest } from 
 import { findMissingRoom } from "./missing_room";
 import { openRoom } from "./open_room";
 import type { RoomWish } from "./room_address";
+import { kNetTexts } from "./net_texts";
 
 /** The page's ring holds five; one more may be on its way. */
 const kMaxFramesUnderWay = 6;
@@ -72,6 +73,8 @@ function passOn(event: ConnectionEvent): void {
 self.addEventListener("message", ({ data: request }: MessageEvent<WorkerRequest>) => {
   switch (request.kind) {
     case "start":
+      // Calls follow at once, so nothing waits for it: a line before it is there is English.
+      if (request.language === "de") void import("./net_texts_de").then(({ kGermanNetTexts }) => Object.assign(kNetTexts, kGermanNetTexts));
       return start(request.url, request.identity, request.wish);
     case "release":
       return handovers[request.layer].release(request.buffer);

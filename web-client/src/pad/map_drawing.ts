@@ -7,11 +7,12 @@ import type { BodyPose } from "../scene/frames/bodies";
 import type { FloaterKindName, FloaterPose } from "../scene/frames/floaters";
 import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, groundHeightM } from "../scene/landscape/terrain";
-import { kTeamColors, kTeamLabels } from "../ui/game_texts";
+import { kTeamColors } from "../ui/game_texts";
 import type { WaterPlace } from "../ui/tools";
 import { edgeOf, toPx, type MapView } from "./map_view";
 import type { Preview } from "./pad_hands";
 import { WaterShade, type MixedSurface } from "./water_shade";
+import { kTexts } from "../ui/texts";
 
 const kBackground = "#06202f";
 const kFlatWater = "#166c92";
@@ -163,7 +164,7 @@ export class MapDrawing {
       context.lineWidth = 3;
       context.fill();
       context.stroke();
-      this.text(`${kTeamLabels[team]} goal`, ...toPx(view, goal), "#ffffff", "700 12px system-ui, sans-serif", true);
+      this.text(kTexts.goalOf(team), ...toPx(view, goal), "#ffffff", "700 12px system-ui, sans-serif", true);
     }
     if (game?.kind === "ball") return;
     course.marks.forEach((mark, n) => {

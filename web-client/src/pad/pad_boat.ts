@@ -7,12 +7,13 @@ import { LatestSender, type SenderWorld } from "../ui/latest_sender";
 import { spawnPlace } from "../ui/spawn_place";
 import type { WaterPlace } from "../ui/tools";
 import { kMidships, type HelmSetting } from "./stick";
+import { kTexts } from "../ui/texts";
 
 /** At most so often. */
 const kHelmEveryMs = 60;
 const kLongestStepS = 0.1;
 /** Label of the helm's commands, whose refusals are not worth a line each. */
-export const kPadHelmLabel = "Helm";
+export const kPadHelmLabel = kTexts.commands.helm;
 
 export class PadBoat {
   /** Of this visitor; 0: none. */
@@ -36,12 +37,12 @@ export class PadBoat {
     if (!limits) return;
     const { draughtM, ...hull } = boatOfLength(limits.lengthM.default);
     const place = greeting.course ? {} : spawnPlace(greeting, hull.lengthM, draughtM, others);
-    this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, "Boat");
+    this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, kTexts.commands.boat);
   }
 
   /** Takes the boat off the water. */
   remove(): void {
-    if (this.boatId !== 0) this.send({ case: "removeBoat", value: { boatId: this.boatId } }, "Boat");
+    if (this.boatId !== 0) this.send({ case: "removeBoat", value: { boatId: this.boatId } }, kTexts.commands.boat);
   }
 
   steer(setting: HelmSetting): void {

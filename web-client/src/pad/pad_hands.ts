@@ -9,6 +9,7 @@ import { HoldSender, kHoldLabel } from "../ui/hold_sender";
 import type { SenderWorld } from "../ui/latest_sender";
 import { kStrokeLabel, StrokeSender, type FingerPoint } from "../ui/stroke_sender";
 import { heldRatio, kTapStrokeS, kTools, paddleWave, splashOf, strokeSize, type Tool, type WaterPlace } from "../ui/tools";
+import { kTexts } from "../ui/texts";
 
 /** A finger that has moved less is where it came down. */
 const kStillPx = 10;
@@ -122,17 +123,17 @@ export class PadHands {
       const limits = effectLimits(greeting);
       if (!limits) return;
       const usual = { splashRadiusM: limits.splashRadiusM.default, splashDepthM: limits.splashDepthM.default };
-      this.send(splashOf(at, usual, limits, { ...kScale, sizeRatio: heldRatio((heldMs - kPadTapMs) / 1000) }), "Splash");
+      this.send(splashOf(at, usual, limits, { ...kScale, sizeRatio: heldRatio((heldMs - kPadTapMs) / 1000) }), kTexts.commands.splash);
     } else if (tool.name === "paddle") {
       const wave = paddleWave(from, at, greeting, kScale);
-      if (wave) this.send(wave, "Wave");
+      if (wave) this.send(wave, kTexts.commands.wave);
     } else if (tool.name === "throw") {
       const thrown = isMoved ? flickOf(from, at, heldMs / 1000, heightAtM(from), greeting, kScale) : tossTo(at, { xM: at.xM, zM: greeting.widthM }, heightAtM(at), greeting);
-      if (thrown) this.send(throwOf(thrown, floaterSizeM("throw", greeting, kScale)!, greeting), "Stone");
+      if (thrown) this.send(throwOf(thrown, floaterSizeM("throw", greeting, kScale)!, greeting), kTexts.commands.stone);
     } else if (tool.name === "float" && !isMoved) {
       const kind = kDropped[Math.floor(this.random() * kDropped.length)]!;
       const headingDeg = Math.round(360 * this.random() - 180);
-      this.send(dropOf(kind, at, heightAtM(at), floaterSizeM("float", greeting, kScale)!, 0, headingDeg, greeting), "Object");
+      this.send(dropOf(kind, at, heightAtM(at), floaterSizeM("float", greeting, kScale)!, 0, headingDeg, greeting), kTexts.commands.object);
     } else if (size && stayS !== undefined && heldMs < kPadTapMs) {
       this.strokes.stay(at, size, stayS, 1);
     }

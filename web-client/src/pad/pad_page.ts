@@ -4,6 +4,7 @@ import "./pad.css";
 import { takeLinkToken } from "../app/address";
 import { CommandSender } from "../app/command_sender";
 import { Haptics } from "../app/haptics";
+import { connectKeyboardTools } from "../app/keyboard_tools";
 import { GamepadTools } from "../app/virtual_pointer";
 import type { GreetingInfo } from "../codec/greeting";
 import type { LessonTool } from "../codec/lesson";
@@ -13,7 +14,7 @@ import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { CommandAction, ConnectionState, PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { setText } from "../ui/dom";
-import { kTeamColors, kTeamLabels } from "../ui/game_texts";
+import { kTeamColors } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import { keepChoice, keptChoice } from "../ui/kept";
 import { LessonState } from "../ui/lesson_state";
@@ -27,6 +28,7 @@ import { makePadLayout } from "./pad_layout";
 import { PadMap } from "./pad_map";
 import { PadWords } from "./pad_words";
 import { Stick } from "./stick";
+import { kTexts } from "../ui/texts";
 
 const kNameKey = "pad-name";
 const kModeKey = "pad-mode";
@@ -35,16 +37,6 @@ const kRatesHz = { boat: 15, other: 10 };
 /** Labels of commands that are sent many times per second: only the lesson's refusals are shown. */
 const kQuietLabels = [kPadHelmLabel, kStrokeLabel, kHoldLabel];
 const kHintMs = 3500;
-/** What a finger does with each tool. */
-const kDoes: Record<LessonTool, string> = {
-  finger: "Draw in the water with your fingers.",
-  splash: "Tap for a splash; hold for a larger one.",
-  wave: "Drag to send a wave that way.",
-  rain: "Drag a rain cloud; tap to leave one behind.",
-  float: "Tap to drop an object; drag one to move it.",
-  throw: "Flick to throw a stone; tap to toss one.",
-  boat: "Push the stick ahead and steer.",
-};
 
 export function openPad(): void {
   const pad = new PadPage();
@@ -103,6 +95,7 @@ class PadPage {
     this.lessons.watch(() => this.refresh());
     this.connectPage();
     this.connectMap();
+    connectKeyboardTools({ canvas: this.elements.canvas, isHelm: () => this.mode === "boat", isPaddle: () => this.mode === "wave" });
     this.client.start(url, this.identity);
     this.client.call("setLayers", ["surface", "bodies", "floaters"]);
     this.client.call("setDetail", "coarse");
@@ -157,7 +150,7 @@ class PadPage {
         if (this.greeting) this.greeting.boats = boats;
       },
       clock: ({ leadS }) => this.map.sync(leadS + performance.timeOrigin / 1000),
-      draining: () => this.hint("The server restarts; the pad comes back by itself."),
+      draining: () => this.hint(kTexts.pad.restarts),
       roomEvent: nothing,
       roomState: nothing,
       parameterChanged: nothing,
@@ -182,8 +175,8 @@ class PadPage {
   private rejected(commandId: number, reason: string, message: string): void {
     this.hands.answered(commandId, true);
     const label = this.commands.takeLabel(commandId);
-    if (reason === "NOT_NOW") this.hint(message || "The lesson does not allow this at present.");
-    else if (!kQuietLabels.includes(label)) this.hint(`${label}: ${message}`);
+    if (reason === "NOT_NOW") this.hint(message || kTexts.notNow);
+    else if (!kQuietLabels.includes(label)) this.hint(kTexts.failed(label, message));
   }
 
   private send(action: CommandAction, label: string): number {
@@ -235,7 +228,7 @@ class PadPage {
     document.body.style.setProperty("--own", me?.color ?? "#5fd4e6");
     if (me?.team) document.body.style.setProperty("--team", kTeamColors[me.team]);
     else document.body.style.removeProperty("--team");
-    elements.me.title = me?.team ? `Team ${kTeamLabels[me.team]}` : "";
+    elements.me.title = me?.team ? kTexts.teamOf(me.team) : kTexts.myName;
     elements.helm.hidden = this.mode !== "boat";
     elements.launch.hidden = this.boat.boatId !== 0;
     elements.launch.disabled = elements.remove.disabled = reason !== undefined || this.state.name !== "live";
@@ -255,7 +248,7 @@ class PadPage {
     for (const [tool, button] of elements.buttons)
       button.addEventListener("click", () => {
         this.choose(tool);
-        this.hint(kDoes[tool]);
+        this.hint(kTexts.pad.does[tool]);
       });
     elements.retry.addEventListener("click", () => this.client.call("retryNow"));
     elements.launch.addEventListener("click", () => this.greeting && this.boat.launch(this.greeting, this.map.boats()));

@@ -1,11 +1,13 @@
 // The pad's lines: connection, place in a race, score, countdown, result, and why nothing can be done.
 import type { ConnectionState } from "../net/messages";
 import { setText } from "../ui/dom";
-import { countdownText, gameHeadline, goalText, GoalNews, kTeamLabels, standingText, taskText } from "../ui/game_texts";
+import { countdownText, gameHeadline, GoalNews, standingText, taskText } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import type { LessonState } from "../ui/lesson_state";
 import type { PadElements } from "./pad_layout";
 import type { OwnPose } from "./pad_map";
+import { fixed } from "../ui/numbers";
+import { kTexts } from "../ui/texts";
 
 /** Compass heading of a boat: +x is east, and -z north. */
 export function compassText(headingRad: number): string {
@@ -28,12 +30,12 @@ export class PadWords {
     const isLive = state.name === "live";
     setText(elements.state, isLive ? "" : describeState(state));
     elements.retry.hidden = state.name !== "retrying" && state.name !== "refused";
-    const offline = state.name === "refused" ? state.reason : state.name === "retrying" ? "The connection was lost. The pad comes back by itself." : "Connecting to the water…";
-    const veil = isLive ? (lessons.role === "viewer" && lessons.ownId !== 0 ? "You may watch here. Ask the teacher for a link to play." : reason) : offline;
+    const offline = state.name === "refused" ? state.reason : state.name === "retrying" ? kTexts.pad.lost : kTexts.pad.connecting;
+    const veil = isLive ? (lessons.role === "viewer" && lessons.ownId !== 0 ? kTexts.pad.mayWatch : reason) : offline;
     setText(elements.veil, veil ?? "");
     elements.veil.hidden = veil === undefined;
     const team = lessons.me?.team;
-    setText(elements.standing, (game && standingText(game, ownId)) ?? (game?.kind === "ball" ? `Red ${game.redGoalsCount} : ${game.blueGoalsCount} Blue` : team ? `Team ${kTeamLabels[team].toLowerCase()}` : ""));
+    setText(elements.standing, (game && standingText(game, ownId)) ?? (game?.kind === "ball" ? kTexts.score(game.redGoalsCount, game.blueGoalsCount) : team ? kTexts.teamOf(team) : ""));
     elements.headline.hidden = !game;
   }
 
@@ -42,10 +44,10 @@ export class PadWords {
     const { elements, lessons: { game, people, ownId, me } } = this;
     this.news.take(game, simTimeS);
     const team = this.news.teamAt(simTimeS);
-    if (game) setText(elements.headline, team ? goalText(team) : (taskText(game, ownId, me?.team) ?? gameHeadline(game, people)));
+    if (game) setText(elements.headline, team ? kTexts.goalFor(team) : (taskText(game, ownId, me?.team) ?? gameHeadline(game, people)));
     elements.headline.classList.toggle("over", game?.phase === "over" || team !== undefined);
     setText(elements.count, game ? countdownText(game, simTimeS) : "");
-    setText(elements.speed, pose ? `${Math.abs(pose.speedMps).toFixed(1)} m/s` : "–");
+    setText(elements.speed, pose ? `${fixed(Math.abs(pose.speedMps), 1)} m/s` : "–");
     setText(elements.heading, pose ? compassText(pose.headingRad) : "–");
   }
 }

@@ -18,8 +18,3 @@ export function pitchHz(elevationM: number, octaveM: number): number {
 export function octaveForDepthM(depthM: number): number {
   return kOctavesM.findLast((octaveM) => octaveM <= kDefaultDepths * depthM) ?? kOctavesM[0];
 }
-
-/** Returns the mapping in words. */
-export function describeOctave(octaveM: number): string {
-  return `±${octaveM < 1 ? `${Math.round(100 * octaveM)} cm` : `${octaveM} m`} = ±1 octave`;
-}

@@ -11,11 +11,10 @@ import { LatestSender } from "./latest_sender";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
 import { spawnPlace } from "./spawn_place";
+import { kTexts } from "./texts";
 
 /** At most 20 helm commands per second. */
 const kHelmEveryMs = 50;
-/** Label of the helm's commands. */
-const kHelmLabel = "Helm";
 /** Length of a boat whose hull is not known yet. */
 const kUnknownLengthM = 2;
 
@@ -58,12 +57,12 @@ export class BoatPanel {
     /** `mineId` has changed. */
     private readonly chosen: () => void,
   ) {
-    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, kHelmLabel), {
+    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, kTexts.commands.helm), {
       nowMs: () => performance.now(),
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kHelmEveryMs);
-    this.mine = new SelectRow("my-boat", "My boat", "The boat that you steer and that the boat view follows.", (value) => this.request(Number(value)));
+    this.mine = new SelectRow("my-boat", kTexts.boat.mine, (value) => this.request(Number(value)));
     byId("my-boat-row").append(this.reasonLine, this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());
     for (const button of document.querySelectorAll<HTMLElement>("#pad [data-helm]")) {
@@ -76,7 +75,7 @@ export class BoatPanel {
       button.addEventListener("contextmenu", (event) => event.preventDefault());
     }
     this.remove.addEventListener("click", () => {
-      if (this.mineId) send({ case: "removeBoat", value: { boatId: this.mineId } }, `Remove boat ${this.mineId}`);
+      if (this.mineId) send({ case: "removeBoat", value: { boatId: this.mineId } }, kTexts.commands.removeBoat(this.mineId));
     });
   }
 
@@ -211,7 +210,7 @@ export class BoatPanel {
   private request(boatId: number): void {
     if (boatId === 0 || this.owners.get(boatId) === this.myPersonId) return this.choose(boatId);
     this.takeBoatId = boatId;
-    this.takeId = this.send({ case: "takeBoat", value: { boatId } }, `Take boat ${boatId}`);
+    this.takeId = this.send({ case: "takeBoat", value: { boatId } }, kTexts.commands.takeBoat(boatId));
   }
 
   private launch(): void {
@@ -220,12 +219,12 @@ export class BoatPanel {
     const { draughtM, ...hull } = boat;
     // A course has a grid at its start.
     if (this.greeting.course) {
-      this.spawnId = this.send({ case: "spawnBoat", value: { boat: hull } }, "New boat");
+      this.spawnId = this.send({ case: "spawnBoat", value: { boat: hull } }, kTexts.commands.newBoat);
       return;
     }
     const others = this.boats.flatMap(({ boatId }) => this.poseOf(boatId) ?? []).map(({ xM, zM }) => ({ xM, zM }));
     const place = spawnPlace(this.greeting, boat.lengthM, draughtM, others);
-    this.spawnId = this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, "New boat");
+    this.spawnId = this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, kTexts.commands.newBoat);
   }
 
   private order(): void {
@@ -242,17 +241,17 @@ export class BoatPanel {
     this.lengthM = clampTo(this.lengthM || limits.lengthM.default, limits.lengthM);
     if (!this.rows) {
       this.rows = {
-        length: new SliderRow("boat-length", limits.lengthM, this.lengthM, "Length of the next boat.", (value) => (this.lengthM = value)),
-        throttle: new SliderRow("throttle", limits.throttleRatio, 0, "Engine: ahead to the right, astern to the left. Keys W and S or up and down in the boat view.", (value) => {
+        length: new SliderRow("boat-length", { ...limits.lengthM, ...kTexts.boat.length }, this.lengthM, (value) => (this.lengthM = value)),
+        throttle: new SliderRow("throttle", { ...limits.throttleRatio, ...kTexts.boat.throttle }, 0, (value) => {
           this.helm.setThrottle(value);
           this.order();
         }),
-        rudder: new SliderRow("rudder", limits.rudderRatio, 0, "Rudder. Keys A and D or left and right in the boat view.", (value) => {
+        rudder: new SliderRow("rudder", { ...limits.rudderRatio, ...kTexts.boat.rudder }, 0, (value) => {
           this.helm.setRudder(value);
           this.order();
         }),
       };
-      byId("helm").append(this.rows.throttle.element, this.rows.rudder.element, make("p", { class: "hint" }, ["In the boat view: arrow keys or WASD."]));
+      byId("helm").append(this.rows.throttle.element, this.rows.rudder.element, make("p", { class: "hint" }, [kTexts.boat.keys]));
       byId("new-boat").append(this.rows.length.element);
     }
     this.rows.length.setRange(limits.lengthM, this.lengthM);
@@ -261,7 +260,7 @@ export class BoatPanel {
 
   private refresh(): void {
     const open = this.boats.filter(({ boatId }) => boatId === this.mineId || [undefined, this.myPersonId].includes(this.owners.get(boatId)));
-    const choices = [{ value: "0", label: open.length ? "none" : "no free boat" }, ...open.map(({ boatId, lengthM }) => ({ value: String(boatId), label: `Boat ${boatId} (${lengthM.toFixed(1)} m)${this.owners.has(boatId) || boatId === this.mineId ? "" : ", free"}` }))];
+    const choices = [{ value: "0", label: open.length ? kTexts.none : kTexts.boat.noneFree }, ...open.map(({ boatId, lengthM }) => ({ value: String(boatId), label: kTexts.boat.choice(boatId, lengthM, !this.owners.has(boatId) && boatId !== this.mineId) }))];
     this.mine.setChoices(choices, String(this.mineId));
     const isOn = this.isLive && this.isAllowed && this.reason === undefined;
     const hasMine = isOn && this.mineId !== 0;

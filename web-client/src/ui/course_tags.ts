@@ -6,8 +6,9 @@ import type { CourseInfo, CourseMark } from "../codec/course";
 import type { GameInfo } from "../codec/game";
 import type { PixelRect } from "../scene/camera/framing";
 import { make } from "./dom";
-import { kTeamColors, kTeamLabels } from "./game_texts";
+import { kTeamColors } from "./game_texts";
 import { tagPlace } from "./tag_place";
+import { kTexts } from "./texts";
 
 /** Height of a goal's label over the water, in lengths of its longer side. */
 const kGoalTopSides = 0.08;
@@ -40,7 +41,7 @@ export class CourseTags {
     const marks = (course?.marks ?? []).map((mark, n): Tag => ({ ...mark, label: make("span", { hidden: "" }, [String(n + 1)]), kind: "race", topM: 1.15 * this.topM(mark) }));
     const goals = (course?.goals ? (["red", "blue"] as const) : []).map((team): Tag => {
       const { xM, zM, lengthM, widthM } = course!.goals![team];
-      const label = make("span", { hidden: "" }, [`${kTeamLabels[team]} goal`]);
+      const label = make("span", { hidden: "" }, [kTexts.goalOf(team)]);
       label.style.background = kTeamColors[team];
       return { label, kind: "ball", xM, zM, topM: kGoalTopSides * Math.max(lengthM, widthM) };
     });

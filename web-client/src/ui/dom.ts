@@ -1,4 +1,5 @@
 // Small helpers for the page's elements.
+import { fixed } from "./numbers";
 
 /** Returns the element with this id; a missing one is a bug of the page. */
 export function byId<T extends HTMLElement = HTMLElement>(id: string): T {
@@ -31,5 +32,5 @@ export function isTyping(target: EventTarget | null): boolean {
 /** Formats a value with as many decimals as the step has, at most four. */
 export function formatBy(step: number, value: number): string {
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 4);
-  return value.toFixed(decimals);
+  return fixed(value, decimals);
 }

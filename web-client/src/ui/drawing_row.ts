@@ -2,16 +2,17 @@
 import { byId } from "./dom";
 import { keepChoice, keptChoice } from "./kept";
 import { SelectRow } from "./select_row";
+import { kTexts } from "./texts";
 
 const kDragKey = "drag";
 
 export class DrawingRow {
-  private readonly row = new SelectRow("drag", "Drag", "What a drag on the water does. The right button, or two fingers, turn the view where a drag draws.", (value) => keepChoice(kDragKey, value));
+  private readonly row = new SelectRow("drag", kTexts.drag, (value) => keepChoice(kDragKey, value));
 
   constructor() {
     const choices = [
-      { value: "draw", label: "uses the tool" },
-      { value: "turn", label: "turns the view" },
+      { value: "draw", label: kTexts.drags.draw },
+      { value: "turn", label: kTexts.drags.turn },
     ];
     this.row.setChoices(choices, keptChoice(kDragKey) === "turn" ? "turn" : "draw");
     byId("drag-row").append(this.row.element);
@@ -30,6 +31,6 @@ export class DrawingRow {
   /** How the view is turned, as a sentence; empty where a drag turns it. */
   describeTurning(): string {
     if (!this.drawsFirst) return "";
-    return window.matchMedia("(pointer: coarse)").matches ? "Two fingers turn the view." : "The right button turns the view.";
+    return window.matchMedia("(pointer: coarse)").matches ? kTexts.turnsByTouch : kTexts.turnsByMouse;
   }
 }

@@ -13,28 +13,28 @@ import { splashOf, type ToolScale, type WaterPlace } from "./tools";
 
 type EffectKey = keyof EffectLimits;
 const kKeys: EffectKey[] = ["splashRadiusM", "splashDepthM", "waveAmplitudeM", "waveLengthM", "waveDirectionDeg"];
-const kHelp: Record<EffectKey, string> = {
-  splashRadiusM: "Radius of the disc that a splash pushes down.",
-  splashDepthM: "Distance that a splash pushes the surface down.",
-  waveAmplitudeM: "Height of the crest at the start.",
-  waveLengthM: "Width of the crest at the start.",
-  waveDirectionDeg: "Direction in which the wave travels: 0 is +x, 90 is +z.",
+const kRows: Record<EffectKey, { label: string; help: string }> = {
+  splashRadiusM: kTexts.splashRadius,
+  splashDepthM: kTexts.splashDepth,
+  waveAmplitudeM: kTexts.waveHeight,
+  waveLengthM: kTexts.waveLength,
+  waveDirectionDeg: kTexts.waveDirection,
 };
 /** The server decides. */
 const kOpenSide: Choice = { value: String(Side.UNSPECIFIED), label: kTexts.openSide };
 const kDirection: Choice = { value: String(Side.DIRECTION), label: kTexts.direction };
 const kSides: Record<SideName, Side> = { "+x": Side.PLUS_X, "-x": Side.MINUS_X, "+z": Side.PLUS_Z, "-z": Side.MINUS_Z };
 const kShapes: readonly Choice[] = [
-  { value: String(WaveShape.BREAKING), label: "breaking" },
-  { value: String(WaveShape.SWELL), label: "swell" },
+  { value: String(WaveShape.BREAKING), label: kTexts.shapes.breaking },
+  { value: String(WaveShape.SWELL), label: kTexts.shapes.swell },
 ];
 
 export class EffectsPanel {
   private limits: EffectLimits | undefined;
   private values: Record<EffectKey, number> | undefined;
   private readonly rows = new Map<EffectKey, SliderRow>();
-  private readonly side = new SelectRow("wave-side", "Wave from", "Side at which the wave starts. The open side is the one with the deepest water.", () => this.showDirection());
-  private readonly shape = new SelectRow("wave-shape", "Wave shape", "Breaking: a steep front. Swell: a symmetric crest.", () => {});
+  private readonly side = new SelectRow("wave-side", kTexts.waveFrom, () => this.showDirection());
+  private readonly shape = new SelectRow("wave-shape", kTexts.waveShape, () => {});
 
   constructor(private readonly root: HTMLElement) {
     this.side.setChoices([kOpenSide], kOpenSide.value);
@@ -60,10 +60,10 @@ export class EffectsPanel {
       this.values[key] = value;
       const row = this.rows.get(key);
       if (row) {
-        row.setRange(range, value);
+        row.setRange({ ...range, ...kRows[key] }, value);
         continue;
       }
-      const made = new SliderRow(key, range, value, kHelp[key], (moved) => {
+      const made = new SliderRow(key, { ...range, ...kRows[key] }, value, (moved) => {
         if (this.values) this.values[key] = moved;
       });
       this.rows.set(key, made);

@@ -7,8 +7,7 @@ import { make, setText } from "./dom";
 import { describeLevel, levelTable } from "./fidelity_texts";
 import { PaceWatch } from "./pace_watch";
 import { SelectRow } from "./select_row";
-
-const kHelp = "How finely the water is simulated, for everybody in the room. The water continues.";
+import { kTexts } from "./texts";
 
 export class FidelityRow {
   readonly element: HTMLElement;
@@ -17,7 +16,7 @@ export class FidelityRow {
   private readonly row: SelectRow;
   private readonly cost = make("p", { class: "hint", "data-testid": "fidelity-cost" });
   private readonly table = make("table", { "data-testid": "fidelity-table" });
-  private readonly costs = make("details", { class: "costs" }, [make("summary", {}, ["What each level costs"]), this.table]);
+  private readonly costs = make("details", { class: "costs" }, [make("summary", {}, [kTexts.levelCosts]), this.table]);
   private readonly watch = new PaceWatch();
   private sceneName = "";
   private level: FidelityName = "balanced";
@@ -26,13 +25,13 @@ export class FidelityRow {
   private changeId = 0;
 
   constructor(send: (action: CommandAction, label: string) => number) {
-    this.row = new SelectRow("fidelity", "Fidelity", kHelp, (value) => {
+    this.row = new SelectRow("fidelity", kTexts.fidelity, (value) => {
       const wanted = value as FidelityName;
-      this.changeId = send({ case: "changeScene", value: { name: this.sceneName, fidelity: wireFidelity(wanted) } }, `Fidelity ${wanted}`);
-      setText(this.cost, `Building the water at ${wanted}: until then it continues at ${this.level}.`);
+      this.changeId = send({ case: "changeScene", value: { name: this.sceneName, fidelity: wireFidelity(wanted) } }, kTexts.commands.fidelity(kTexts.fidelities[wanted]));
+      setText(this.cost, kTexts.buildingLevel(kTexts.fidelities[wanted], kTexts.fidelities[this.level]));
     });
     this.row.setChoices(
-      kFidelities.map(({ name }) => ({ value: name, label: name })),
+      kFidelities.map(({ name }) => ({ value: name, label: kTexts.fidelities[name] })),
       this.level,
     );
     this.element = make("div", {}, [this.row.element, this.cost, this.costs]);
@@ -61,8 +60,8 @@ export class FidelityRow {
 
   diagnostics({ realTimeFactor }: DiagnosticsInfo, nowS: number): void {
     const note = this.watch.note(realTimeFactor, this.speed, nowS);
-    const advice = this.level === kFidelities[0].name ? "" : " A coarser fidelity costs less.";
-    this.showPace(note && note + advice);
+    const advice = this.level === kFidelities[0].name ? [] : [kTexts.coarserCostsLess];
+    this.showPace(note && [note, ...advice].join(" "));
   }
 
   /** The greeting of the new water comes before its ack. */

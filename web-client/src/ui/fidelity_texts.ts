@@ -1,7 +1,9 @@
 // What each fidelity level costs and how far off it is, in words.
 import type { FidelityLevelInfo } from "../codec/fidelity";
+import { plain } from "./numbers";
+import { kTexts } from "./texts";
 
-const inTwoDigits = (value: number): number => Number(value.toPrecision(2));
+const inTwoDigits = (value: number): string => plain(Number(value.toPrecision(2)));
 
 const costText = ({ costMsPerS }: FidelityLevelInfo): string =>
   costMsPerS >= 1000 ? `${inTwoDigits(costMsPerS / 1000)} s` : `${inTwoDigits(costMsPerS)} ms`;
@@ -12,13 +14,12 @@ const errorText = (ratio: number): string => `${inTwoDigits(100 * ratio)} %`;
 export function describeLevel(level: FidelityLevelInfo | undefined): string {
   if (!level) return "";
   const { name, errorRatio, measuredOn } = level;
-  const cost = `At ${name}, a simulated second takes this server ${costText(level)}`;
-  if (errorRatio === undefined) return `${cost}. The error was not measured for this scene.`;
-  return `${cost}; the height of the water is ${errorText(errorRatio)} off (measured on ${measuredOn}).`;
+  if (errorRatio === undefined) return kTexts.levelCost(kTexts.fidelities[name], costText(level));
+  return kTexts.levelCostAndError(kTexts.fidelities[name], costText(level), errorText(errorRatio), measuredOn);
 }
 
 /** Cells of a table, the head first. */
 export function levelTable(levels: readonly FidelityLevelInfo[]): string[][] {
-  const rows = levels.map((level) => [level.name, costText(level), level.errorRatio === undefined ? "-" : errorText(level.errorRatio)]);
-  return [["level", "time per second, predicted", "error"], ...rows];
+  const rows = levels.map((level) => [kTexts.fidelities[level.name], costText(level), level.errorRatio === undefined ? "-" : errorText(level.errorRatio)]);
+  return [kTexts.levelHead, ...rows];
 }

@@ -5,20 +5,17 @@ import { make } from "./dom";
 import { densityName } from "./floater_tools";
 import { keepChoice, keptChoice } from "./kept";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 
 const kKindKey = "object";
-const kDensityRange = { label: "Density", unit: "", min: 0, max: 3, step: 0.01, describe: (ratio: number) => (ratio > 0 ? `${ratio.toFixed(2)}, as ${densityName(ratio)}` : densityName(ratio)) };
-
-export function floaterLabel(kind: FloaterKindName): string {
-  return kind[0]!.toUpperCase() + kind.slice(1);
-}
+const kDensityRange = { ...kTexts.density, unit: "", min: 0, max: 3, step: 0.01, describe: (ratio: number) => (ratio > 0 ? kTexts.densityAs(ratio, densityName(ratio)) : densityName(ratio)) };
 
 export class FloaterRows {
   /** Over the water's; 0: what suits the kind. */
   densityRatio = 0;
   kind: FloaterKindName = "crate";
   private readonly buttons = new Map<FloaterKindName, HTMLButtonElement>();
-  private readonly removeAll = make("button", { type: "button", "data-testid": "remove-objects", title: "Takes all objects out of the water, for everybody." }, ["Remove all objects"]);
+  private readonly removeAll = make("button", { type: "button", "data-testid": "remove-objects", title: kTexts.removeObjectsTip }, [kTexts.removeObjects]);
   private readonly folded: HTMLElement;
 
   /** `bar`: where the kinds go; `rows`: where the rest goes. */
@@ -28,14 +25,14 @@ export class FloaterRows {
     send: (action: CommandAction, label: string) => number,
   ) {
     for (const kind of kFloaterKinds) {
-      const button = make("button", { type: "button", "data-testid": `object-${kind}`, title: "What a tap drops (keys , and .)", class: "glass" }, [floaterLabel(kind)]);
+      const button = make("button", { type: "button", "data-testid": `object-${kind}`, title: kTexts.kindTip, class: "glass" }, [kTexts.kinds[kind]]);
       button.addEventListener("click", () => this.choose(kind));
       this.buttons.set(kind, button);
       bar.append(button);
     }
-    const density = new SliderRow("object-density", kDensityRange, 0, "Density of the next objects over that of the water: balsa 0.15, oak 0.7, ice 0.92, stone 2.6. At 0 each kind has its own.", (ratio) => (this.densityRatio = ratio));
-    this.removeAll.addEventListener("click", () => send({ case: "removeFloater", value: { all: true } }, "Remove all objects"));
-    this.folded = make("details", { "data-testid": "object-rows" }, [make("summary", {}, ["Objects"]), density.element, this.removeAll]);
+    const density = new SliderRow("object-density", kDensityRange, 0, (ratio) => (this.densityRatio = ratio));
+    this.removeAll.addEventListener("click", () => send({ case: "removeFloater", value: { all: true } }, kTexts.commands.removeObjects));
+    this.folded = make("details", { "data-testid": "object-rows" }, [make("summary", {}, [kTexts.objects]), density.element, this.removeAll]);
     rows.append(this.folded);
     const kept = keptChoice(kKindKey);
     this.choose(kFloaterKinds.find((kind) => kind === kept) ?? "crate");

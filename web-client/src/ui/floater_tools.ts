@@ -9,6 +9,7 @@ import { kFloaterKinds, type FloaterKindName } from "../scene/frames/floaters";
 import { clamp } from "../scene/maths/interpolate";
 import { clampTo } from "./effect_limits";
 import type { ToolName, ToolScale, WaterPlace } from "./tools";
+import { kTexts } from "./texts";
 
 type Water = Pick<GreetingInfo, "waterExtents" | "sideM" | "widthM" | "gravityMps2">;
 type Velocity = readonly [x: number, y: number, z: number];
@@ -37,11 +38,11 @@ const gravityOf = ({ gravityMps2 }: Water): number => gravityMps2 || kEarthMps2;
 const shareOf = (water: Water, { sides, limitsM }: { sides: number; limitsM: readonly [number, number] }): number => clamp(sides * water.waterExtents.sideM, ...limitsM);
 
 /** Names for densities over the water's, up to these. */
-const kDensityNames: readonly (readonly [upTo: number, name: string])[] = [[0, "what suits its kind"], [0.4, "balsa"], [0.8, "oak"], [0.97, "ice"], [Infinity, "stone"]];
+const kDensityNames: readonly (readonly [upTo: number, name: keyof typeof kTexts.densities])[] = [[0, "own"], [0.4, "balsa"], [0.8, "oak"], [0.97, "ice"], [Infinity, "stone"]];
 
 /** What a density over the water's is like. */
 export function densityName(densityRatio: number): string {
-  return kDensityNames.find(([upTo]) => densityRatio <= upTo)![1];
+  return kTexts.densities[kDensityNames.find(([upTo]) => densityRatio <= upTo)![1]];
 }
 
 /** Size of the tool's objects; undefined for a tool without objects. */

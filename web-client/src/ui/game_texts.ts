@@ -1,11 +1,12 @@
 // A game in words: countdown, order of a race, score, result. Pure.
 import type { GameInfo, RacerInfo } from "../codec/game";
 import type { PersonInfo, TeamName } from "../codec/people";
+import { fixed } from "./numbers";
+import { kTexts } from "./texts";
 
 /** "Go!" is shown so long after the beginning. */
 const kGoS = 1.5;
 
-export const kTeamLabels: Record<TeamName, string> = { red: "Red", blue: "Blue" };
 export const kTeamColors: Record<TeamName, string> = { red: "#f2545b", blue: "#4d9bff" };
 
 type Person = Pick<PersonInfo, "personId" | "name" | "color" | "team">;
@@ -26,20 +27,14 @@ export interface RaceRow {
 export function raceTime(seconds: number): string {
   const tenths = Math.round(10 * Math.max(seconds, 0));
   const minutes = Math.floor(tenths / 600);
-  const rest = ((tenths % 600) / 10).toFixed(1);
+  const rest = fixed((tenths % 600) / 10, 1);
   return `${minutes}:${rest.padStart(4, "0")}`;
-}
-
-export function ordinal(place: number): string {
-  const tens = place % 100;
-  const ending = tens >= 11 && tens <= 13 ? "th" : (["th", "st", "nd", "rd"][place % 10] ?? "th");
-  return `${place}${ending}`;
 }
 
 function progressOf(racer: RacerInfo, game: GameInfo): string {
   if (racer.finishedS > 0) return raceTime(racer.finishedS);
   if (game.phase === "over") return "–";
-  return `lap ${Math.min(racer.lapsCount + 1, game.lapsCount)} of ${game.lapsCount}`;
+  return kTexts.lapOf(Math.min(racer.lapsCount + 1, game.lapsCount), game.lapsCount);
 }
 
 /** The race, best first. People who have left have no name. */
@@ -49,7 +44,7 @@ export function raceRows(game: GameInfo, people: readonly Person[]): RaceRow[] {
     return {
       place: n + 1,
       personId: racer.personId,
-      name: person?.name ?? "left",
+      name: person?.name ?? kTexts.left,
       color: person?.color ?? "#8fa3ad",
       team: person?.team,
       progress: progressOf(racer, game),
@@ -61,16 +56,16 @@ export function raceRows(game: GameInfo, people: readonly Person[]): RaceRow[] {
 /** Returns the number of a countdown, "Go!" just after it, and otherwise nothing. `simTimeS`: the newest time of the simulation. */
 export function countdownText(game: GameInfo, simTimeS: number): string {
   const leftS = game.beginsS - simTimeS;
-  if (game.phase === "countdown") return leftS > 0 ? String(Math.ceil(leftS)) : "Go!";
-  return game.phase === "running" && -leftS >= 0 && -leftS < kGoS ? "Go!" : "";
+  if (game.phase === "countdown") return leftS > 0 ? String(Math.ceil(leftS)) : kTexts.go;
+  return game.phase === "running" && -leftS >= 0 && -leftS < kGoS ? kTexts.go : "";
 }
 
 /** What a game is about, or how it ended. */
 export function gameHeadline(game: GameInfo, people: readonly Person[]): string {
   const { kind, phase, lapsCount, goalsCount, winnerTeam } = game;
   if (phase === "over") return resultText(game, people);
-  if (kind === "race") return `Race: ${lapsCount} ${lapsCount === 1 ? "lap" : "laps"}`;
-  return winnerTeam === undefined ? `Ball into the other goal: first to ${goalsCount}` : resultText(game, people);
+  if (kind === "race") return kTexts.race(lapsCount);
+  return winnerTeam === undefined ? kTexts.ballTo(goalsCount) : resultText(game, people);
 }
 
 const kOtherTeam: Record<TeamName, TeamName> = { red: "blue", blue: "red" };
@@ -78,9 +73,9 @@ const kOtherTeam: Record<TeamName, TeamName> = { red: "blue", blue: "red" };
 /** What a person of a team has to do in a game now; undefined: there is nothing to do. */
 export function taskText(game: GameInfo, ownId: number, team: TeamName | undefined): string | undefined {
   if (game.phase === "over" || game.winnerTeam !== undefined) return undefined;
-  if (game.kind === "ball") return team && `Team ${team}: push the ball into the ${kOtherTeam[team]} goal`;
+  if (game.kind === "ball") return team && kTexts.ballTask(team, kOtherTeam[team]);
   const mark = nextMarkOf(game, ownId);
-  return mark === undefined ? undefined : `Steer to buoy ${mark + 1}, the yellow one`;
+  return mark === undefined ? undefined : kTexts.buoyTask(mark + 1);
 }
 
 /** Returns the goal that a team has to push the ball into; undefined outside of a ball game. */
@@ -114,17 +109,12 @@ export class GoalNews {
   }
 }
 
-export function goalText(team: TeamName): string {
-  return `Goal for ${kTeamLabels[team].toLowerCase()}!`;
-}
-
 function resultText({ kind, winnerPersonId, winnerTeam, racers, redGoalsCount, blueGoalsCount }: GameInfo, people: readonly Person[]): string {
-  if (kind === "ball") return winnerTeam ? `${kTeamLabels[winnerTeam]} wins ${Math.max(redGoalsCount, blueGoalsCount)} : ${Math.min(redGoalsCount, blueGoalsCount)}` : "The game has ended in a draw";
+  if (kind === "ball") return winnerTeam ? kTexts.teamWins(winnerTeam, Math.max(redGoalsCount, blueGoalsCount), Math.min(redGoalsCount, blueGoalsCount)) : kTexts.drawn;
   const winner = people.find(({ personId }) => personId === winnerPersonId);
-  if (!winner) return winnerPersonId === 0 ? "The race has ended" : "The winner has left";
+  if (!winner) return winnerPersonId === 0 ? kTexts.raceEnded : kTexts.winnerLeft;
   const finishedS = racers.find(({ personId }) => personId === winnerPersonId)?.finishedS ?? 0;
-  const team = winnerTeam ? ` for ${kTeamLabels[winnerTeam].toLowerCase()}` : "";
-  return `${winner.name} wins${team}${finishedS > 0 ? ` in ${raceTime(finishedS)}` : ""}`;
+  return kTexts.wins(winner.name, winnerTeam, finishedS > 0 ? raceTime(finishedS) : undefined);
 }
 
 /** Time since the beginning, or of the whole game; empty before. */
@@ -139,8 +129,8 @@ export function standingText(game: GameInfo, ownId: number): string | undefined 
   const at = game.racers.findIndex(({ personId }) => personId === ownId);
   const racer = game.racers[at];
   if (!racer || game.phase === "countdown") return undefined;
-  const place = `${ordinal(at + 1)} of ${game.racers.length}`;
-  return racer.finishedS > 0 ? `Finished ${place}, ${raceTime(racer.finishedS)}` : `${place}, ${progressOf(racer, game)}`;
+  const count = game.racers.length;
+  return racer.finishedS > 0 ? kTexts.finished(at + 1, count, raceTime(racer.finishedS)) : kTexts.standing(at + 1, count, progressOf(racer, game));
 }
 
 /** Returns the mark that this person's boat has to round next; undefined outside of a race and after the finish. */

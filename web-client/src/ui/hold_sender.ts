@@ -5,9 +5,10 @@ import type { HoldFloaterSchema } from "../gen/spindrift/v1/wire_pb";
 import { clamp } from "../scene/maths/interpolate";
 import type { SenderWorld } from "./latest_sender";
 import type { WaterPlace } from "./tools";
+import { kTexts } from "./texts";
 
 /** Label of its commands. */
-export const kHoldLabel = "Hold";
+export const kHoldLabel = kTexts.commands.hold;
 
 export type HoldMessage = MessageInitShape<typeof HoldFloaterSchema>;
 

@@ -5,19 +5,20 @@ import type { ConnectionState, LinkStats } from "../net/messages";
 import { byId, make, setText } from "./dom";
 import { showRooms } from "./room_links";
 import { kTexts } from "./texts";
+import { fixed, grouped } from "./numbers";
 
 export function describeState(state: ConnectionState): string {
   switch (state.name) {
     case "connecting":
-      return "connecting";
+      return kTexts.states.connecting;
     case "opening":
-      return `opening the room ${state.room}`;
+      return kTexts.states.opening(state.room);
     case "live":
-      return "live";
+      return kTexts.states.live;
     case "retrying":
-      return `retrying in ${state.inS < 1 ? state.inS.toFixed(1) : Math.round(state.inS)} s`;
+      return kTexts.states.retrying(state.inS);
     case "refused":
-      return `refused: ${state.reason}`;
+      return kTexts.states.refused(state.reason);
   }
 }
 
@@ -63,38 +64,37 @@ export class Hud {
 
   diagnostics(d: DiagnosticsInfo): void {
     setText(this.boats, String(d.boatCount));
-    setText(this.breaking, `${(100 * d.breakingRatio).toFixed(2)} %`);
-    setText(this.volumeError, `${d.volumeErrorUnits} units`);
+    setText(this.breaking, `${fixed(100 * d.breakingRatio, 2)} %`);
+    setText(this.volumeError, kTexts.volumeUnits(d.volumeErrorUnits));
     this.volumeError.classList.toggle("trouble", d.volumeErrorUnits !== 0n);
-    setText(this.exchanged, `${d.emittedM3.toFixed(3)} / ${d.absorbedM3.toFixed(3)} m³`);
-    setText(this.simTime, `${d.timeS.toFixed(2)} s`);
-    setText(this.rtf, `${d.realTimeFactor.toFixed(2)} ×`);
-    setText(this.particles, d.particleCount.toLocaleString("en"));
-    setText(this.stepMs, `${d.stepMs.toFixed(2)} ms`);
+    setText(this.exchanged, `${fixed(d.emittedM3, 3)} / ${fixed(d.absorbedM3, 3)} m³`);
+    setText(this.simTime, `${fixed(d.timeS, 2)} s`);
+    setText(this.rtf, `${fixed(d.realTimeFactor, 2)} ×`);
+    setText(this.particles, grouped(d.particleCount));
+    setText(this.stepMs, `${fixed(d.stepMs, 2)} ms`);
     setText(this.substeps, String(d.substepsCount));
-    const counts: [bigint, string][] = [
-      [d.nonfiniteCount, "non-finite values"],
-      [d.escapedCount, "escaped particles"],
-      [d.recoveredCount, "recoveries"],
+    const counts: [bigint, (count: bigint) => string][] = [
+      [d.nonfiniteCount, kTexts.nonfinite],
+      [d.escapedCount, kTexts.escaped],
+      [d.recoveredCount, kTexts.recovered],
     ];
     const trouble = counts.filter(([count]) => count > 0n);
-    setText(this.health, trouble.map(([count, what]) => `${count} ${what}`).join(", ") || "healthy");
+    setText(this.health, trouble.map(([count, what]) => what(count)).join(", ") || kTexts.healthy);
     this.health.classList.toggle("trouble", trouble.length > 0);
     this.writePasses(d);
   }
 
   link(stats: LinkStats): void {
-    setText(this.netFps, stats.framesPerS.toFixed(1));
-    setText(this.kbps, stats.kilobytesPerS.toFixed(stats.kilobytesPerS < 10 ? 1 : 0));
-    setText(this.latency, stats.latencyMs === undefined ? "–" : `${stats.latencyMs.toFixed(1)} ms`);
-    const why = { none: "", choice: "", link: " (slow link)", device: " (busy device)" }[stats.levelLimitedBy];
-    setText(this.level, stats.level + why);
+    setText(this.netFps, fixed(stats.framesPerS, 1));
+    setText(this.kbps, fixed(stats.kilobytesPerS, stats.kilobytesPerS < 10 ? 1 : 0));
+    setText(this.latency, stats.latencyMs === undefined ? "–" : `${fixed(stats.latencyMs, 1)} ms`);
+    setText(this.level, kTexts.levels[stats.level] + kTexts.levelLimits[stats.levelLimitedBy]);
   }
 
   /** `delayS`: age of the water shown. */
   display(framesPerS: number, delayS: number | undefined): void {
-    setText(this.delay, delayS === undefined ? "–" : `${(1000 * delayS).toFixed(0)} ms`);
-    setText(this.displayFps, framesPerS.toFixed(0));
+    setText(this.delay, delayS === undefined ? "–" : `${fixed(1000 * delayS, 0)} ms`);
+    setText(this.displayFps, fixed(framesPerS, 0));
   }
 
   connection(state: ConnectionState): void {
@@ -110,7 +110,7 @@ export class Hud {
   }
 
   acked(commandId: number, appliedTick: number): void {
-    setText(this.lastAck, `command ${commandId} at tick ${appliedTick}`);
+    setText(this.lastAck, kTexts.commandAt(commandId, appliedTick));
   }
 
   private showState(): void {
@@ -131,7 +131,7 @@ export class Hud {
       }
       const [label, bar, value] = [...row.children] as HTMLElement[];
       setText(label!, name);
-      setText(value!, `${ms.toFixed(2)} ms`);
+      setText(value!, `${fixed(ms, 2)} ms`);
       bar!.style.setProperty("--share", `${Math.min((ms / Math.max(d.stepMs, 1e-6)) * 100, 100)}%`);
     });
   }

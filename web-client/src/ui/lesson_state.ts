@@ -3,6 +3,7 @@ import type { GameInfo } from "../codec/game";
 import { kFreeLesson, type LessonInfo, type LessonTool } from "../codec/lesson";
 import type { PersonInfo, RoleName } from "../codec/people";
 import type { ToolName } from "./tools";
+import { kTexts } from "./texts";
 
 /** What the server asks the lesson for when a tool of the page is used; undefined: for nothing. */
 const kLessonTools: Record<ToolName, LessonTool | undefined> = { finger: "finger", splash: "splash", paddle: "wave", rain: "rain", calm: undefined, float: "float", throw: "throw" };
@@ -10,9 +11,6 @@ const kLessonTools: Record<ToolName, LessonTool | undefined> = { finger: "finger
 export function lessonToolOf(tool: ToolName): LessonTool | undefined {
   return kLessonTools[tool];
 }
-
-/** Names of tools in sentences, and on the operator's buttons. */
-export const kLessonToolLabels: Record<LessonTool, string> = { finger: "Finger", splash: "Splash", wave: "Wave", rain: "Rain", float: "Objects", throw: "Throw", boat: "Boat" };
 
 interface Rules {
   lesson: LessonInfo;
@@ -24,9 +22,9 @@ interface Rules {
 /** Returns why a player may not use a tool now, as a line for people; undefined if nothing is against it. */
 export function whyNot(tool: LessonTool | undefined, { lesson, role, isMuted }: Rules): string | undefined {
   if (role === "operator") return undefined;
-  if (lesson.frozen) return "The teacher has paused the pads.";
-  if (isMuted) return "The teacher has muted you for now.";
-  if (tool !== undefined && !lesson.tools.includes(tool)) return `${kLessonToolLabels[tool]}: not handed out in this lesson.`;
+  if (lesson.frozen) return kTexts.teacherPaused;
+  if (isMuted) return kTexts.teacherMuted;
+  if (tool !== undefined && !lesson.tools.includes(tool)) return kTexts.notHandedOut(kTexts.lessonTools[tool]);
   return undefined;
 }
 

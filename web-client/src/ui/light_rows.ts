@@ -3,6 +3,7 @@ import { kPresetNames, type Daylight, type PresetName } from "../scene/light/day
 import { byId } from "./dom";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 
 /** Shown after the slider was moved. */
 const kByHour = "hour";
@@ -22,19 +23,18 @@ export function lightOf(search: string): PresetName | number {
 
 /** Adds both rows. `first`: chosen at the beginning. `chosen` gets what the address has to say then, undefined for automatic. */
 export function addLightRows(daylight: Daylight, first: PresetName | number, chosen: (light: string | undefined) => void): void {
-  const help = "Light on this page. Automatic: the scene's hour, darker and grey in a storm of the room.";
-  const select = new SelectRow("light", "Light", help, (name) => {
+  const select = new SelectRow("light", kTexts.light, (name) => {
     if (!isPreset(name)) return;
     hour.show(daylight.choose(name), "");
     chosen(name === "automatic" ? undefined : name.replaceAll(" ", "-"));
   });
-  const hour = new SliderRow("hour", { label: "Hour", unit: "h", min: 0, max: 24, step: 0.25 }, 12, "Hour of the day on this page.", (value) => {
+  const hour = new SliderRow("hour", { ...kTexts.hour, unit: "h", min: 0, max: 24, step: 0.25 }, 12, (value) => {
     daylight.chooseHour(value);
     select.value = kByHour;
     chosen(String(value));
   });
   const isHour = typeof first === "number";
-  select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: name as string })), { value: kByHour, label: "by hour" }], isHour ? kByHour : first);
+  select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: kTexts.lights[name] })), { value: kByHour, label: kTexts.byHour }], isHour ? kByHour : first);
   if (isHour) daylight.chooseHour(first);
   hour.show(isHour ? first : daylight.choose(first), "");
   byId("light-rows").append(select.element, hour.element);

@@ -2,6 +2,8 @@
 import { colourMap, kColoursCount } from "../scene/looks/colour_map";
 import type { Legend } from "../scene/looks/look_room";
 import { byId, make, setText } from "./dom";
+import { plain } from "./numbers";
+import { kTexts } from "./texts";
 
 export class LookKey {
   private readonly root = byId("look-key");
@@ -21,19 +23,20 @@ export class LookKey {
     this.root.hidden = !legend;
     if (!legend) return !wasHidden;
     const { quantity, range, ticks, follows } = legend;
-    const what = `${quantity.title} ${quantity.map} ${range.low} ${range.high}`;
+    const what = `${quantity.look} ${quantity.map} ${range.low} ${range.high}`;
     if (what === this.shown) return wasHidden;
-    const isOther = !this.shown.startsWith(`${quantity.title} `);
+    const isOther = !this.shown.startsWith(`${quantity.look} `);
     this.shown = what;
-    setText(this.title, quantity.unit ? `${quantity.title} [${quantity.unit}]` : quantity.title);
+    const { title } = kTexts.looks[quantity.look];
+    setText(this.title, quantity.unit ? `${title} [${quantity.unit}]` : title);
     this.bar.getContext("2d")!.putImageData(new ImageData(new Uint8ClampedArray(colourMap(quantity.map)), kColoursCount, 1), 0, 0);
     this.ticks.replaceChildren(...ticks.map((value) => this.makeTick(value, (value - range.low) / (range.high - range.low))));
-    setText(this.note, follows ? "The range follows the values." : "The range is fixed.");
+    setText(this.note, follows ? kTexts.rangeFollows : kTexts.rangeFixed);
     return wasHidden || isOther;
   }
 
   private makeTick(value: number, share: number): HTMLElement {
-    const tick = make("li", {}, [String(value)]);
+    const tick = make("li", {}, [plain(value)]);
     tick.style.setProperty("--at", `${100 * share}%`);
     return tick;
   }

@@ -1,4 +1,5 @@
 // Tells from the diagnostics whether the room's time runs slower than wanted. No DOM.
+import { kTexts } from "./texts";
 
 /** As the server's warning: below this share of the wanted speed the machine does not keep up. */
 const kSlowPace = 0.9;
@@ -24,7 +25,7 @@ export class PaceWatch {
       if (this.slowSinceS !== undefined && nowS - this.slowSinceS >= kPatienceS) this.isSlow = true;
       if (this.fullSinceS !== undefined && nowS - this.fullSinceS >= kPatienceS) this.isSlow = false;
     }
-    return this.isSlow ? `Time runs at ${Math.round(100 * this.slowPace)} % of the wanted speed: the server's machine cannot keep up.` : "";
+    return this.isSlow ? kTexts.runsSlow(Math.round(100 * this.slowPace)) : "";
   }
 
   /** Other water: what was measured does not count. */

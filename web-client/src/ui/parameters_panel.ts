@@ -30,7 +30,7 @@ export class ParametersPanel {
     for (const root of Object.values(this.featured)) root.replaceChildren();
     for (const info of parameters) {
       const { path } = info;
-      const row: SliderRow = new SliderRow(path, info, info.value, info.help, (value) => model.input(value));
+      const row: SliderRow = new SliderRow(path, info, info.value, (value) => model.input(value));
       const model: SliderModel = new SliderModel(info.value, {
         send: (value) => this.send({ case: "setParameter", value: { path, value } }),
         setTimer: (callback, ms) => window.setTimeout(callback, ms),

@@ -2,6 +2,7 @@
 import type { PersonInfo, WelcomeInfo } from "../codec/people";
 import type { Identity } from "../net/messages";
 import { byId, make } from "./dom";
+import { kTexts } from "./texts";
 
 /** The server cuts longer names. */
 const kNameMaxLength = 32;
@@ -19,11 +20,11 @@ export class PeoplePanel {
     this.name.value = identity.name;
     this.token.value = identity.token;
     const form = make("form", { class: "me" }, [
-      make("label", { for: "my-name" }, ["My name"]),
+      make("label", { for: "my-name" }, [kTexts.myName]),
       this.name,
-      make("label", { for: "my-token", title: "A token gives a role: viewer, player or operator. Without a token you are a guest." }, ["Token"]),
+      make("label", { for: "my-token", title: kTexts.token.help }, [kTexts.token.label]),
       this.token,
-      make("button", { type: "submit", "data-testid": "introduce" }, ["Join with this name"]),
+      make("button", { type: "submit", "data-testid": "introduce" }, [kTexts.join]),
     ]);
     form.addEventListener("submit", (event) => {
       event.preventDefault();
@@ -53,16 +54,16 @@ export class PeoplePanel {
 
   private show(): void {
     const count = this.people.length + this.unlistedCount;
-    this.summary.textContent = count > 1 ? `People (${count})` : "People";
+    this.summary.textContent = kTexts.people(count);
     this.list.replaceChildren(
       ...this.people.map((person) => {
         const swatch = make("span", { class: "swatch", "aria-hidden": "true" });
         swatch.style.background = person.color;
         const isMe = person.personId === this.me?.personId;
-        const facts = [isMe ? "you" : "", person.role, person.boatIds.length ? `boat ${person.boatIds.join(", ")}` : "", person.away ? "away" : ""];
+        const facts = [isMe ? kTexts.you : "", kTexts.roles[person.role], person.boatIds.length ? kTexts.boatsOf(person.boatIds) : "", person.away ? kTexts.away : ""];
         return make("li", person.away ? { class: "away" } : {}, [swatch, make("b", {}, [person.name]), ` ${facts.filter(Boolean).join(", ")}`]);
       }),
-      ...(this.unlistedCount > 0 ? [make("li", { class: "unlisted" }, [`and ${this.unlistedCount} more watching`])] : []),
+      ...(this.unlistedCount > 0 ? [make("li", { class: "unlisted" }, [kTexts.moreWatching(this.unlistedCount)])] : []),
     );
   }
 }

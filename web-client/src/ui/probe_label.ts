@@ -1,6 +1,7 @@
 // The label of the probe: value, unit and position of the water under the pointer, the finger, or the middle of the picture.
 import type { Reading } from "../scene/looks/look_room";
 import { byId, formatBy, setText } from "./dom";
+import { kTexts } from "./texts";
 
 const kPlaceStepM = 0.01;
 const kEdgePx = 8;
@@ -17,9 +18,10 @@ export interface ProbePlace {
 
 /** Returns the value with its unit, with as many decimals as the stream can tell apart. */
 export function describeValue({ quantity, value, step, bound }: Pick<Reading, "quantity" | "value" | "step" | "bound">): string {
+  const shortest = formatBy(Math.min(step, 1), 0);
   const number = formatBy(Math.min(step, 1), value);
   const sign = bound === "low" ? "≤ " : bound === "high" ? "≥ " : "";
-  return `${sign}${Number(number) === 0 ? number.replace("-", "") : number}${quantity.unit ? ` ${quantity.unit}` : ""}`;
+  return `${sign}${number === `-${shortest}` ? shortest : number}${quantity.unit ? ` ${quantity.unit}` : ""}`;
 }
 
 /** Returns the position with its unit; the height only of particles, which lie anywhere. */
@@ -40,7 +42,7 @@ export class ProbeLabel {
     if (!reading) return;
     setText(this.value, describeValue(reading));
     setText(this.place, describePlace(reading));
-    this.label.setAttribute("aria-label", `${reading.quantity.title}: ${this.value.textContent} at ${this.place.textContent}`);
+    this.label.setAttribute("aria-label", kTexts.valueAt(kTexts.looks[reading.quantity.look].title, this.value.textContent, this.place.textContent));
     this.root.style.transform = `translate(${Math.round(xPx)}px, ${Math.round(yPx)}px)`;
     const { offsetWidth: widthPx, offsetHeight: heightPx } = this.label;
     const leftPx = isTouch ? -widthPx / 2 : xPx + kBesidePx + widthPx + kEdgePx > window.innerWidth ? -kBesidePx - widthPx : kBesidePx;

@@ -2,8 +2,7 @@
 import { kTierNames, type QualityChoice, type TierName } from "../scene/drawing/quality";
 import { byId, make, setText } from "./dom";
 import { SelectRow } from "./select_row";
-
-const kHelp = "Quality of the drawing, on this page only. Automatic: the best with which pictures come fast enough.";
+import { kTexts } from "./texts";
 
 export class QualityRow {
   private readonly row: SelectRow;
@@ -13,17 +12,17 @@ export class QualityRow {
     private readonly isSoftwareRenderer: boolean,
     chosen: (choice: QualityChoice) => void,
   ) {
-    this.row = new SelectRow("quality", "Quality", kHelp, (value) => chosen(value as QualityChoice));
+    this.row = new SelectRow("quality", kTexts.quality, (value) => chosen(value as QualityChoice));
     byId("quality-row").append(this.row.element, this.remark);
   }
 
   /** `resolutionShare`: of the tier's own resolution. */
   show({ tier, resolutionShare, isAutomatic }: { tier: TierName; resolutionShare: number; isAutomatic: boolean }): void {
-    const automatic = { value: "automatic", label: isAutomatic ? `automatic: ${tier}` : "automatic" };
-    this.row.setChoices([automatic, ...kTierNames.map((name) => ({ value: name as string, label: name as string }))], isAutomatic ? "automatic" : tier);
+    const automatic = { value: "automatic", label: isAutomatic ? kTexts.automaticNow(kTexts.qualities[tier]) : kTexts.automatic };
+    this.row.setChoices([automatic, ...kTierNames.map((name) => ({ value: name as string, label: kTexts.qualities[name] }))], isAutomatic ? "automatic" : tier);
     const remarks = [
-      ...(this.isSoftwareRenderer ? ["This browser draws without graphics hardware."] : []),
-      ...(resolutionShare < 1 ? [`Resolution lowered to ${Math.round(100 * resolutionShare)} %, to keep up.`] : []),
+      ...(this.isSoftwareRenderer ? [kTexts.drawsInSoftware] : []),
+      ...(resolutionShare < 1 ? [kTexts.resolutionLowered(Math.round(100 * resolutionShare))] : []),
     ];
     setText(this.remark, remarks.join(" "));
     this.remark.hidden = remarks.length === 0;

@@ -28,7 +28,7 @@ export class RoomNews {
   enter({ room, sceneName, title, paused, speed, repeats }: Pick<GreetingInfo, "room" | "sceneName" | "title" | "paused" | "speed" | "repeats">): void {
     const isOther = this.room === room && this.sceneName !== sceneName;
     Object.assign(this, { room, sceneName, paused, speed, repeats });
-    if (isOther && !this.world.isChanging()) this.world.say(kTexts.otherScene(title), "good");
+    if (isOther && !this.world.isChanging()) this.world.say(kTexts.otherScene(kTexts.scenes[sceneName]?.title ?? title), "good");
   }
 
   state({ paused, speed, personId }: RoomState): void {

@@ -8,6 +8,7 @@ import { FidelityRow } from "./fidelity_row";
 import { SelectRow } from "./select_row";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 
 export class RoomPanel {
   paused = false;
@@ -27,21 +28,20 @@ export class RoomPanel {
 
   constructor(send: (action: CommandAction, label: string) => number) {
     this.pause.addEventListener("click", () => {
-      send({ case: "setPaused", value: { paused: !this.paused } }, this.paused ? "Resume" : "Pause");
+      send({ case: "setPaused", value: { paused: !this.paused } }, this.paused ? kTexts.commands.resume : kTexts.commands.pause);
     });
-    this.step.addEventListener("click", () => send({ case: "step", value: { tickCount: 1 } }, "Step"));
-    this.reset.addEventListener("click", () => send({ case: "reset", value: {} }, "Reset"));
-    const range = speedRange();
-    this.speedRow = new SliderRow("speed", range, 1, "Simulated seconds per second, for everybody in the room.", (value) => this.speed.input(value));
+    this.step.addEventListener("click", () => send({ case: "step", value: { tickCount: 1 } }, kTexts.commands.step));
+    this.reset.addEventListener("click", () => send({ case: "reset", value: {} }, kTexts.commands.reset));
+    this.speedRow = new SliderRow("speed", { ...speedRange(), ...kTexts.speed }, 1, (value) => this.speed.input(value));
     this.speed = new SliderModel(1, {
-      send: (value) => send({ case: "setSpeed", value: { speed: value } }, "Speed"),
+      send: (value) => send({ case: "setSpeed", value: { speed: value } }, kTexts.commands.speed),
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
       changed: () => this.speedRow.show(this.speed.shownValue, this.speed.error),
     });
-    this.scenes = new SelectRow("scene", "Scene", "Changes the scene for everybody in the room.", (name) => {
-      this.changeId = send({ case: "changeScene", value: { name } }, `Scene ${name}`);
-      setText(this.opening, `Building the water of ${name}: until then this one continues.`);
+    this.scenes = new SelectRow("scene", kTexts.scene, (name) => {
+      this.changeId = send({ case: "changeScene", value: { name } }, kTexts.commands.scene(sceneLabel(name)));
+      setText(this.opening, kTexts.building(sceneLabel(name)));
       this.opening.hidden = false;
     });
     this.fidelity = new FidelityRow(send);
@@ -53,7 +53,7 @@ export class RoomPanel {
   enter(greeting: GreetingInfo): void {
     this.sceneName = greeting.sceneName;
     const names = greeting.scenes.includes(greeting.sceneName) || greeting.scenes.length === 0 ? greeting.scenes : [greeting.sceneName, ...greeting.scenes];
-    this.scenes.setChoices(names.map((name) => ({ value: name, label: name.replaceAll("_", " ") })), this.sceneName);
+    this.scenes.setChoices(names.map((name) => ({ value: name, label: sceneLabel(name) })), this.sceneName);
     this.scenes.element.hidden = names.length < 2;
     this.fidelity.enter(greeting);
     this.roomState(greeting.paused, greeting.speed);
@@ -76,12 +76,12 @@ export class RoomPanel {
     const isOff = !this.isLive || !this.isAllowed;
     this.pause.disabled = this.reset.disabled = this.scenes.disabled = this.fidelity.disabled = this.speedRow.disabled = isOff;
     this.step.disabled = isOff || !this.paused;
-    this.step.title = this.paused ? "One tick" : "Pause first";
+    this.step.title = this.paused ? kTexts.oneTick : kTexts.pauseFirst;
   }
 
   roomState(paused: boolean, speed: number): void {
     this.paused = paused;
-    setText(this.pause, paused ? "Resume" : "Pause");
+    setText(this.pause, paused ? kTexts.commands.resume : kTexts.commands.pause);
     this.pause.setAttribute("aria-pressed", String(paused));
     if (speed > 0) {
       this.speed.setServerValue(speed);
@@ -117,4 +117,9 @@ export class RoomPanel {
     this.changeId = 0;
     this.opening.hidden = true;
   }
+}
+
+/** Name of a scene in the list: its title where the language has one. */
+function sceneLabel(name: string): string {
+  return kTexts.scenes[name]?.title ?? name.replaceAll("_", " ");
 }

@@ -10,7 +10,7 @@ export class SelectRow {
   readonly element: HTMLElement;
   private readonly select: HTMLSelectElement;
 
-  constructor(id: string, label: string, help: string, chosen: (value: string) => void) {
+  constructor(id: string, { label, help }: { label: string; help: string }, chosen: (value: string) => void) {
     this.select = make("select", { id, "data-testid": id });
     this.element = make("div", { class: "select", title: help }, [make("label", { for: id }, [label]), this.select]);
     this.select.addEventListener("change", () => chosen(this.select.value));

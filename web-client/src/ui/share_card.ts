@@ -10,20 +10,13 @@ import { drawQrCode } from "./qr_code";
 import { SelectRow } from "./select_row";
 import { addressAt, linkWith } from "./share_link";
 import "./share_card.css";
+import { kTexts } from "./texts";
 
 /** Longer links make codes so fine that phones do not read them from a screen. */
 const kQrMaxLength = 1200;
 const kLoopbackHost = /^(localhost|.*\.localhost|127(\.\d+){3}|\[::1\])$/;
-const kOnlyHereText = "Only this computer can open this link: start the server with --address 0.0.0.0 for phones and other computers.";
-const kTargets = { room: "this room, with everybody in it", copy: "a room of its own like this one", roles: "a new room, by roles", embed: "a page of yours, as code" } as const;
-type Target = keyof typeof kTargets;
-const kRoles: Record<RoleName, string> = { operator: "the presenter", player: "players", viewer: "watchers" };
-const kTargetNotes: Record<Target, string> = {
-  room: "",
-  copy: "Everybody with this link comes into one room, apart from this one. An operator has to open it first.",
-  roles: "Whoever has the link has the role, until the room ends. The links are shown until this page is closed.",
-  embed: "The server shows its water only in pages that it lists: start it with --embed and the origin of your page, such as https://school.example.",
-};
+const kCard = kTexts.shareCard;
+type Target = keyof typeof kCard.targets;
 
 /** What the card needs of the page. */
 export interface ShareSource {
@@ -49,20 +42,20 @@ export class ShareCard {
   private target: Target = "room";
   private role: RoleName = "player";
   private made: RoomWithTokens | undefined;
-  private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": "QR code of the link" });
-  private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": "Link" });
-  private readonly targetRow = new SelectRow("share-target", "Leads to", "Where the link leads.", (value) => this.choose(value as Target));
-  private readonly roleRow = new SelectRow("share-role", "For", "The role of those who open the link.", (value) => {
+  private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": kCard.qr });
+  private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": kCard.link });
+  private readonly targetRow = new SelectRow("share-target", kCard.target, (value) => this.choose(value as Target));
+  private readonly roleRow = new SelectRow("share-role", kCard.role, (value) => {
     this.role = value as RoleName;
     this.show();
   });
-  private readonly copyButton = make("button", { type: "button", class: "primary", "data-testid": "share-copy" }, ["Copy"]);
-  private readonly sendButton = make("button", { type: "button", "data-testid": "share-send" }, ["Send …"]);
-  private readonly closeButton = make("button", { type: "button", "data-testid": "share-close" }, ["Close"]);
+  private readonly copyButton = make("button", { type: "button", class: "primary", "data-testid": "share-copy" }, [kCard.copy]);
+  private readonly sendButton = make("button", { type: "button", "data-testid": "share-send" }, [kCard.send]);
+  private readonly closeButton = make("button", { type: "button", "data-testid": "share-close" }, [kCard.close]);
   private readonly note = make("p", { class: "hint", "data-testid": "share-note", role: "status" });
-  private readonly dialog = make("dialog", { class: "share-card", "data-testid": "share-card", "aria-label": "Share this view" }, [
+  private readonly dialog = make("dialog", { class: "share-card", "data-testid": "share-card", "aria-label": kCard.title }, [
     make("div", {}, [
-      make("h2", {}, ["Share this view"]),
+      make("h2", {}, [kCard.title]),
       this.targetRow.element,
       this.roleRow.element,
       this.qr,
@@ -74,7 +67,7 @@ export class ShareCard {
 
   constructor(private readonly source: ShareSource) {
     this.sendButton.hidden = typeof navigator.share !== "function";
-    this.roleRow.setChoices(Object.entries(kRoles).map(([value, label]) => ({ value, label })), this.role);
+    this.roleRow.setChoices(Object.entries(kCard.roles).map(([value, label]) => ({ value, label })), this.role);
     this.copyButton.addEventListener("click", () => void (this.isReady ? this.copy() : this.openForRoles()));
     this.sendButton.addEventListener("click", () => void this.send());
     this.closeButton.addEventListener("click", () => this.dialog.close());
@@ -90,7 +83,7 @@ export class ShareCard {
     this.target = "room";
     this.values = [];
     const targets: Target[] = ["room", ...(this.source.scene() === undefined ? [] : ["copy" as const, ...(this.source.mayOpen() ? ["roles" as const] : [])]), "embed"];
-    this.targetRow.setChoices(targets.map((value) => ({ value, label: kTargets[value] })), this.target);
+    this.targetRow.setChoices(targets.map((value) => ({ value, label: kCard.targets[value] })), this.target);
     this.show();
     this.dialog.showModal();
     this.copyButton.focus();
@@ -119,20 +112,20 @@ export class ShareCard {
 
   private async openForRoles(): Promise<void> {
     this.copyButton.disabled = true;
-    this.tell("Opening the room: this takes some seconds.");
+    this.tell(kCard.opening);
     try {
       this.made = await this.source.openForRoles();
       this.show();
     } catch (error) {
       this.copyButton.disabled = false;
-      if (this.target === "roles") this.tell(`The room could not be opened: ${error instanceof Error ? error.message : String(error)}`);
+      if (this.target === "roles") this.tell(kCard.notOpened(error instanceof Error ? error.message : String(error)));
     }
   }
 
   private show(): void {
     const { target, isReady } = this;
     this.roleRow.element.hidden = target !== "roles" || !isReady;
-    setText(this.copyButton, isReady ? "Copy" : "Open the room");
+    setText(this.copyButton, isReady ? kCard.copy : kCard.openRoom);
     this.copyButton.disabled = false;
     this.sendButton.disabled = !isReady;
     const link = isReady ? this.linkNow() : "";
@@ -140,7 +133,7 @@ export class ShareCard {
     const isDrawn = link !== "" && link.length <= kQrMaxLength && target !== "embed";
     this.qr.hidden = !isDrawn;
     if (isDrawn) drawQrCode(this.qr, link);
-    this.tell([link.length > kQrMaxLength && target !== "embed" ? "The link is too long for a QR code." : "", kTargetNotes[target], this.isOnlyHere ? kOnlyHereText : ""].filter(Boolean).join(" "));
+    this.tell([link.length > kQrMaxLength && target !== "embed" ? kCard.tooLong : "", kCard.notes[target], this.isOnlyHere ? kCard.onlyHere : ""].filter(Boolean).join(" "));
   }
 
   private linkNow(): string {
@@ -156,7 +149,7 @@ export class ShareCard {
   }
 
   private async copy(): Promise<void> {
-    this.tell((await this.isCopied()) ? "It is copied." : "The browser does not allow to copy: select the text and copy it by hand.");
+    this.tell((await this.isCopied()) ? kCard.copied : kCard.notCopied);
   }
 
   private async isCopied(): Promise<boolean> {
@@ -175,7 +168,7 @@ export class ShareCard {
       await navigator.share({ title: document.title, url: this.link.value });
     } catch (error) {
       // Who closes the browser's list has changed one's mind.
-      if (!(error instanceof DOMException && error.name === "AbortError")) this.tell("The browser cannot send the link: copy it.");
+      if (!(error instanceof DOMException && error.name === "AbortError")) this.tell(kCard.notSent);
     }
   }
 }

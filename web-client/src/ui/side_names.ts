@@ -5,6 +5,8 @@ import { hasRockyShores, kSideNames, type SideName } from "../codec/scene_info";
 export type SideWhat = "beach" | "sea" | "rocks" | "quay" | "wall" | "end";
 /** As seen from the first view. */
 export type SideWhere = "left" | "right" | "near" | "far";
+/** Where something is in the picture. */
+export type PictureSide = "left" | "middle" | "right";
 
 /** Sides in the order of their headings, from +x toward +z, and what is there for a camera that looks along +x. */
 const kRound: readonly SideName[] = ["+x", "+z", "-x", "-z"];

@@ -3,6 +3,8 @@ import { formatBy, make, setText } from "./dom";
 
 export interface SliderRange {
   label: string;
+  /** What it does, as a tooltip. */
+  help?: string;
   unit: string;
   min: number;
   max: number;
@@ -21,14 +23,13 @@ export class SliderRow {
     id: string,
     private range: SliderRange,
     value: number,
-    help: string,
     moved: (value: number) => void,
   ) {
     this.input = make("input", { type: "range", id: `slider-${id}`, "data-testid": `slider-${id}`, "aria-describedby": `error-${id}` });
     this.output = make("output", { for: `slider-${id}` });
     this.error = make("p", { id: `error-${id}`, class: "slider-error", "data-testid": `slider-error-${id}`, role: "alert" });
     const label = make("label", { for: `slider-${id}` }, [range.label]);
-    this.element = make("div", { class: "slider", title: help }, [make("div", { class: "slider-head" }, [label, this.output]), this.input, this.error]);
+    this.element = make("div", { class: "slider", ...(range.help ? { title: range.help } : {}) }, [make("div", { class: "slider-head" }, [label, this.output]), this.input, this.error]);
     this.input.addEventListener("input", () => {
       this.writeOutput(this.input.valueAsNumber);
       moved(this.input.valueAsNumber);

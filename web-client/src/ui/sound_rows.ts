@@ -1,18 +1,17 @@
 // Sound in the panel: its volume, the wave tone, and whether devices vibrate. The button for sound is beside the panel.
-import { describeOctave, kOctavesM } from "../sound/wave_tone";
+import { kOctavesM } from "../sound/wave_tone";
 import { byId, make, setText } from "./dom";
 import { keepChoice, keptChoice } from "./kept";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
+import { kTexts } from "./texts";
 
 const kVolumeKey = "volume";
-const kVolumeRange = { label: "Volume", unit: "%", min: 0, max: 100, step: 5 };
+const kVolumeRange = { ...kTexts.volume, unit: "%", min: 0, max: 100, step: 5 };
 const kDefaultPercent = 70;
 const kNoTone = "";
 /** Value of the middle of the view; gauges have no name with a space. */
 const kMiddle = "the middle";
-const kRestText = "The water's rest level is A (440 Hz).";
-const kWaitsText = "The browser lets the page sound after the next click or key.";
 
 export class SoundRows {
   /** What the tone reads: the middle of the view, a gauge, or undefined for no tone. */
@@ -27,22 +26,22 @@ export class SoundRows {
   /** `changed`: volume, tone or its range. `vibration`: whether the user wants it. */
   constructor(changed: () => void, vibration: { wanted: boolean }) {
     if (!(this.volumePercent >= 0 && this.volumePercent <= 100)) this.volumePercent = kDefaultPercent;
-    const volume = new SliderRow("volume", kVolumeRange, this.volumePercent, "Volume of the sound on this page.", (percent) => {
+    const volume = new SliderRow("volume", kVolumeRange, this.volumePercent, (percent) => {
       this.volumePercent = percent;
       keepChoice(kVolumeKey, String(percent));
       changed();
     });
-    this.toneRow = new SelectRow("tone", "Wave tone", "The elevation of the water at one place as a note.", (value) => {
+    this.toneRow = new SelectRow("tone", kTexts.tone, (value) => {
       this.tone = value === kNoTone ? undefined : { gauge: value === kMiddle ? undefined : value };
       this.show();
       changed();
     });
-    this.octaveRow = new SelectRow("tone-octave", "Its range", "The elevation that raises the note by an octave.", (value) => {
+    this.octaveRow = new SelectRow("tone-octave", kTexts.toneRange, (value) => {
       this.octaveM = Number(value);
       changed();
     });
-    const felt = new SelectRow("vibration", "Vibration", "Splashes, objects and your boat are felt on phones and gamepads that can.", (value) => (vibration.wanted = value === "on"));
-    felt.setChoices(["on", "off"].map((value) => ({ value, label: value })), vibration.wanted ? "on" : "off");
+    const felt = new SelectRow("vibration", kTexts.vibration, (value) => (vibration.wanted = value === "on"));
+    felt.setChoices((["on", "off"] as const).map((value) => ({ value, label: kTexts[value] })), vibration.wanted ? "on" : "off");
     byId("sound-rows").append(volume.element, this.toneRow.element, this.octaveRow.element, this.remark, felt.element);
     this.show();
   }
@@ -59,9 +58,9 @@ export class SoundRows {
     const kept = gauges && names.includes(chosen) ? chosen : kNoTone;
     if (kept === kNoTone) this.tone = undefined;
     this.toneRow.element.hidden = gauges === undefined;
-    this.toneRow.setChoices(names.map((name) => ({ value: name, label: name === kNoTone ? "none" : name === kMiddle ? "middle of the view" : `gauge ${name}` })), kept);
+    this.toneRow.setChoices(names.map((name) => ({ value: name, label: name === kNoTone ? kTexts.none : name === kMiddle ? kTexts.toneMiddle : kTexts.toneGauge(name) })), kept);
     this.octaveM = octaveM;
-    this.octaveRow.setChoices(kOctavesM.map((eachM) => ({ value: String(eachM), label: describeOctave(eachM) })), String(octaveM));
+    this.octaveRow.setChoices(kOctavesM.map((eachM) => ({ value: String(eachM), label: kTexts.octave(eachM) })), String(octaveM));
     this.show();
   }
 
@@ -74,7 +73,7 @@ export class SoundRows {
 
   private show(): void {
     this.octaveRow.element.hidden = this.tone === undefined;
-    setText(this.remark, [...(this.tone ? [kRestText] : []), ...(this.isWaiting ? [kWaitsText] : [])].join(" "));
+    setText(this.remark, [...(this.tone ? [kTexts.toneRest] : []), ...(this.isWaiting ? [kTexts.soundWaits] : [])].join(" "));
     this.remark.hidden = this.remark.textContent === "";
   }
 }

@@ -4,6 +4,7 @@ import type { MessageInitShape } from "@bufbuild/protobuf";
 import type { StrokeSchema } from "../gen/spindrift/v1/wire_pb";
 import type { SenderWorld } from "./latest_sender";
 import type { StrokeSize } from "./tools";
+import { kTexts } from "./texts";
 
 export interface FingerPoint {
   timeMs: number;
@@ -14,7 +15,7 @@ export interface FingerPoint {
 }
 
 /** Label of its commands. */
-export const kStrokeLabel = "Stroke";
+export const kStrokeLabel = kTexts.commands.stroke;
 
 export type StrokeMessage = MessageInitShape<typeof StrokeSchema>;
 

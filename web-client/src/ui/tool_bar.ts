@@ -9,15 +9,15 @@ import { kTools, type Tool, type ToolName, type ToolScale } from "./tools";
 const kToolKey = "tool";
 const kHintKey = "has-drawn";
 const kHintS = 12;
-const kSizeRange = { label: "Tool size", unit: "%", min: 40, max: 250, step: 5 };
-const kStrengthRange = { label: "Tool strength", unit: "%", min: 20, max: 100, step: 5 };
+const kSizeRange = { ...kTexts.toolSize, unit: "%", min: 40, max: 250, step: 5 };
+const kStrengthRange = { ...kTexts.toolStrength, unit: "%", min: 20, max: 100, step: 5 };
 
 export class ToolBar {
   private readonly hint = byId("hint");
   private readonly buttons = new Map<ToolName, HTMLButtonElement>();
   private readonly scales = new Map<ToolName, ToolScale>(kTools.map(({ name }) => [name, { sizeRatio: 1, strengthRatio: 1 }]));
-  private readonly size = new SliderRow("tool-size", kSizeRange, 100, "Size of the chosen tool; 100 % suits this water.", (percent) => (this.scale.sizeRatio = percent / 100));
-  private readonly strength = new SliderRow("tool-strength", kStrengthRange, 100, "Strength of the chosen tool.", (percent) => (this.scale.strengthRatio = percent / 100));
+  private readonly size = new SliderRow("tool-size", kSizeRange, 100, (percent) => (this.scale.sizeRatio = percent / 100));
+  private readonly strength = new SliderRow("tool-strength", kStrengthRange, 100, (percent) => (this.scale.strengthRatio = percent / 100));
   private current: Tool = kTools[0]!;
   private hintTimer = 0;
   private isGreeted = false;
@@ -32,8 +32,8 @@ export class ToolBar {
     /** Called with the tool that is chosen, or undefined while no tool can be chosen. */
     private readonly changed: (name: ToolName | undefined) => void,
   ) {
-    for (const { name, label } of kTools) {
-      const button = make("button", { type: "button", "data-testid": `tool-${name}`, class: "glass" }, [label]);
+    for (const { name } of kTools) {
+      const button = make("button", { type: "button", "data-testid": `tool-${name}`, class: "glass" }, [kTexts.tools[name].label]);
       button.addEventListener("click", () => this.choose(name, true));
       this.buttons.set(name, button);
       bar.append(button);
@@ -122,9 +122,10 @@ export class ToolBar {
   }
 
   private get does(): string {
-    if (this.current.name !== "finger" || !this.hasFloaters) return this.current.does;
+    const { does } = kTexts.tools[this.current.name];
+    if (this.current.name !== "finger" || !this.hasFloaters) return does;
     const isTouch = window.matchMedia("(pointer: coarse)").matches;
-    return `${this.current.does} ${isTouch ? kTexts.movesObjectsByTouch : kTexts.movesObjectsByMouse}`;
+    return [does, isTouch ? kTexts.movesObjectsByTouch : kTexts.movesObjectsByMouse].join(" ");
   }
 
   private showRows(): void {
@@ -142,5 +143,5 @@ export class ToolBar {
 }
 
 function titleOf(tool: Tool): string {
-  return `${tool.does} (key ${kTools.indexOf(tool) + 1})`;
+  return kTexts.toolKey(kTexts.tools[tool.name].does, kTools.indexOf(tool) + 1);
 }

@@ -12,9 +12,6 @@ export type ToolName = "finger" | "splash" | "paddle" | "rain" | "calm" | "float
 
 export interface Tool {
   name: ToolName;
-  label: string;
-  /** Said before it is used. */
-  does: string;
   /** For tools that are drawn as strokes. */
   stroke?: StrokeTool;
   /** Only operators may use it. */
@@ -24,13 +21,13 @@ export interface Tool {
 }
 
 export const kTools: readonly Tool[] = [
-  { name: "finger", label: "Finger", does: "Drag to draw in the water; tap for a splash.", stroke: StrokeTool.FINGER },
-  { name: "splash", label: "Splash", does: "Tap for a splash; hold for a larger one." },
-  { name: "paddle", label: "Paddle", does: "Drag to send a wave that way; a longer drag makes it higher." },
-  { name: "rain", label: "Rain", does: "Drag to move the rain; tap for a cloud of 8 seconds.", stroke: StrokeTool.RAIN },
-  { name: "calm", label: "Calm", does: "Drag to smooth the water; tap to calm a place for 4 seconds.", stroke: StrokeTool.CALM, isOperators: true },
-  { name: "float", label: "Float", does: "Tap to drop an object; drag one to move it, the wheel or a second finger turns it; hold one still to take it out.", needsFloaters: true },
-  { name: "throw", label: "Throw", does: "Flick to throw a stone that way, faster the quicker the flick; tap to toss one there.", needsFloaters: true },
+  { name: "finger", stroke: StrokeTool.FINGER },
+  { name: "splash" },
+  { name: "paddle" },
+  { name: "rain", stroke: StrokeTool.RAIN },
+  { name: "calm", stroke: StrokeTool.CALM, isOperators: true },
+  { name: "float", needsFloaters: true },
+  { name: "throw", needsFloaters: true },
 ];
 
 /** What the user chose for a tool, over what suits the water. */

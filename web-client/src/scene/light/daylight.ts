@@ -52,6 +52,11 @@ export class Daylight {
     this.sceneHour = hour;
   }
 
+  /** The storm of the room, 0..1, whatever light the user chose. */
+  get roomStormRatio(): number {
+    return this.roomStorm;
+  }
+
   /** Follows the storm of the room, 0..1. `atOnce`: the room is new. */
   setRoomStorm(storm: number, atOnce = false): void {
     this.roomStorm = clamp(storm, 0, 1);
