@@ -65,6 +65,8 @@ class DirectedCamera {
   private readonly floatersBefore = new Map<number, { xM: number; zM: number; timeS: number; speedMps: number }>();
   private splash: { at: Sight["splash"]; seenS: number } = { at: undefined, seenS: -Infinity };
   private room: unknown;
+  /** Who wants no motion sees the whole water. */
+  private readonly isStill = window.matchMedia("(prefers-reduced-motion: reduce)");
 
   constructor(private readonly app: App) {
     const hold = (): void => void (this.handsUntilS = this.atS + kHandsS);
@@ -89,9 +91,9 @@ class DirectedCamera {
     this.room = room;
     if (isNew) this.floatersBefore.clear();
     const sight = this.see(atS);
-    this.state = this.state && !isNew ? direct(this.state, sight) : beginDirecting(sight);
+    this.state = this.state && !isNew && !this.isStill.matches ? direct(this.state, sight) : beginDirecting(sight);
     const { positionM, targetM } = display.views.frame(this.state.now);
-    const back = this.left ? smooth(clamp((atS - this.left.sinceS) / kReturnS, 0, 1)) : 1;
+    const back = this.left && !this.isStill.matches ? smooth(clamp((atS - this.left.sinceS) / kReturnS, 0, 1)) : 1;
     if (this.left && back < 1) {
       positionM.lerpVectors(this.left.eyeM, positionM.clone(), back);
       targetM.lerpVectors(this.left.targetM, targetM.clone(), back);
