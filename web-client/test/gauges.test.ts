@@ -58,6 +58,7 @@ describe("the record of gauges", () => {
       "1.5,0.5,1,-0.5,1,2,-1",
       "",
     ]);
+    expect(record.toCsv(["toe"], 1).split("\n").slice(1)).toEqual(["1,0.25,0.5,-0.25", ""]);
   });
 });
 

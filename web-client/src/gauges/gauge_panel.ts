@@ -196,9 +196,11 @@ export class GaugePanel {
   }
 
   private async saveCsv(): Promise<void> {
+    // What comes meanwhile has gaps.
+    const untilS = this.record.newestS;
     await this.readHistory();
     const names = this.gauges.map(({ name }) => name).filter((name) => this.chosen.has(name));
-    this.world.save(new Blob([this.record.toCsv(names)], { type: "text/csv" }), "csv");
+    this.world.save(new Blob([this.record.toCsv(names, untilS)], { type: "text/csv" }), "csv");
   }
 
   private async savePng(): Promise<void> {

@@ -86,12 +86,12 @@ export class GaugeRecord {
     return { timesS, columns: names.map((name) => this.columns.get(name)?.[quantity].slice(from) ?? timesS.map(() => null)) };
   }
 
-  /** Returns all that is known of these gauges as a table with units in its header. Times without any reading of them are left out. */
-  toCsv(names: readonly string[]): string {
+  /** Returns what is known of these gauges until a time as a table with units in its header. Times without any reading of them are left out. */
+  toCsv(names: readonly string[], untilS = Infinity): string {
     const columns = names.flatMap((name) => kQuantities.map((quantity) => ({ head: `${name} ${kQuantityInfos[quantity].column}`, values: this.view([name], quantity).columns[0]! })));
     const rows = this.timesS.flatMap((timeS, n) => {
       const values = columns.map(({ values: all }) => all[n] ?? null);
-      return values.every((value) => value === null) ? [] : [[timeS, ...values.map((value) => value ?? "")].join(",")];
+      return timeS > untilS || values.every((value) => value === null) ? [] : [[timeS, ...values.map((value) => value ?? "")].join(",")];
     });
     return [["time [s]", ...columns.map(({ head }) => head)].join(","), ...rows, ""].join("\n");
   }
