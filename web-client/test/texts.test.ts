@@ -12,8 +12,8 @@ import { kGerman } from "../src/ui/texts_de";
 
 const kRoot = join(import.meta.dirname, "..");
 /** Folders whose literals are looked through; what people see is made there. What `embed` says is for the program of the page around. */
-const kFolders = ["app", "class", "net", "pad", "ui"];
-const kTables = ["ui/texts.ts", "ui/texts_de.ts", "ui/scene_texts_de.ts", "net/net_texts.ts", "net/net_texts_de.ts"];
+const kFolders = ["app", "class", "front", "gauges", "kiosk", "net", "pad", "ui"];
+const kTables = ["ui/texts.ts", "ui/visit_texts.ts", "ui/texts_de.ts", "ui/scene_texts_de.ts", "net/net_texts.ts", "net/net_texts_de.ts"];
 
 /** A text for people: two words, or one with a capital and then a small letter. */
 const isText = (literal: string): boolean => /\p{L}{2,}[,.:;]? \p{L}/u.test(literal) || /^[^\p{L}]*\p{Lu}\p{Ll}+[^\p{L}]*$/u.test(literal);
@@ -29,6 +29,14 @@ const kExceptions: Record<string, string> = {
   Enter: "a key's code", Space: "a key's code",
   "700 12px system-ui, sans-serif": "a font", "600 12px system-ui, sans-serif": "a font",
   "… ms": "a unit",
+  "spindrift: kiosk: …; the page is not loaded again before the server answers": "in the console",
+  "spindrift: kiosk: …; the page loads again (reload … in a row)": "in the console",
+  "spindrift: the picture of … is drawn without land: …": "in the console",
+  "no picture for … s": "in the console", "no connection for … s": "in the console",
+  Spindrift: "the program's name",
+  "velocity x [m/s]": "in a table that programs read", "velocity z [m/s]": "in a table that programs read",
+  "kiosk=… in the address: expected seconds from … to …; … are used": "for who sets the kiosk up, as other parameters of the address",
+  "12px system-ui, sans-serif": "a font",
   "read back": "a stage of drawing, in the console",
   "a text message": "what was malformed, in the console",
   "the middle": "the value of a choice",
@@ -83,7 +91,7 @@ function entries(table: object, prefix = ""): Map<string, string> {
 const kSame = [
   "languages.en", "languages.de", "failed", "detail.label", "page.detail", "kinds.ball", "commands.parameter", "commands.team", "shareCard.link", "token.label", "tools.finger.label", "lessonTools.finger",
   "class.teams", "qualities.minimal", "page.pause", "commands.pause", "levelLimits.none", "levelLimits.choice", "looks.natural.title", "looks.thesis.title", "shareCard.notes.room", "vibration.label",
-  "pad.nameAnimals.0",
+  "pad.nameAnimals.0", "gauges.csv", "gauges.picture", "refusedRoom",
 ];
 
 describe("the tables", () => {

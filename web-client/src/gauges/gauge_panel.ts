@@ -206,7 +206,7 @@ export class GaugePanel {
   private async savePng(): Promise<void> {
     const blob = await this.chart.toPng(`${this.world.title()} – ${kTexts.gauges.gauges}`, `${kTexts.gauges[this.quantity]} [${kQuantityInfos[this.quantity].unit}]`);
     if (blob) this.world.save(blob, "png");
-    else this.world.fail(kTexts.gauges.pictureFailed("the canvas gives no picture"));
+    else this.world.fail(kTexts.gauges.pictureFailed(kTexts.gauges.noPicture));
   }
 }
 

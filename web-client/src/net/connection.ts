@@ -217,8 +217,7 @@ export class Connection implements ConnectionCalls {
       case "diagnostics":
         this.meter.diagnostics();
         return this.sink.event(parsed);
-      case "ack":
-      case "reject":
+      case "ack": case "reject":
         if (this.pending.answered(Number(parsed.commandId))) this.sink.event(parsed);
         return;
       case "welcome":

@@ -1,4 +1,5 @@
 // Asks the server for what a gauge measured at the last ticks.
+import { kNetTexts } from "./net_texts";
 
 /** Values of one gauge, oldest first; lists of one length. */
 export interface GaugeSeries {
@@ -14,7 +15,7 @@ export async function requestSeries(room: string, gauge: string, token: string):
   const url = `api/v1/rooms/${encodeURIComponent(room)}/gauges/${encodeURIComponent(gauge)}`;
   const answer = await fetch(url, { cache: "no-store", headers: token ? { Authorization: `Bearer ${token}` } : {} });
   const body = (await answer.json().catch(() => ({}))) as Record<string, unknown>;
-  if (!answer.ok) throw new Error(typeof body["message"] === "string" ? body["message"] : `the server answers ${answer.status}`);
+  if (!answer.ok) throw new Error(typeof body["message"] === "string" ? body["message"] : kNetTexts.answers(answer.status));
   return readSeries(body);
 }
 
@@ -22,12 +23,12 @@ export async function requestSeries(room: string, gauge: string, token: string):
 export function readSeries(body: Record<string, unknown>): GaugeSeries {
   const list = (name: string): number[] => {
     const values = body[name] ?? [];
-    if (!Array.isArray(values) || !values.every((value) => Number.isFinite(value))) throw new Error(`${name} is not a list of numbers`);
+    if (!Array.isArray(values) || !values.every((value) => Number.isFinite(value))) throw new Error(kNetTexts.notNumbers(name));
     return values;
   };
   const series = { timeS: list("time_s"), elevationM: list("elevation_m"), velocityXMps: list("velocity_x_mps"), velocityZMps: list("velocity_z_mps") };
   const counts = Object.values(series).map(({ length }) => length);
-  if (new Set(counts).size > 1) throw new Error(`lists of ${counts.join(", ")} numbers have to be of one length`);
-  if (series.timeS.some((timeS, n) => n > 0 && timeS <= series.timeS[n - 1]!)) throw new Error("time_s has to ascend");
+  if (new Set(counts).size > 1) throw new Error(kNetTexts.unequalLists(counts.join(", ")));
+  if (series.timeS.some((timeS, n) => n > 0 && timeS <= series.timeS[n - 1]!)) throw new Error(kNetTexts.notAscending("time_s"));
   return series;
 }

@@ -21,6 +21,9 @@ const kEnglish = {
   notOperator: (why: string) => `${why}. Open the operator's link first, enter a token under People, or choose one of these rooms`,
   serverSilent: "the server does not answer",
   answers: (status: number) => `the server answers ${status}`,
+  notNumbers: (list: string) => `${list} is not a list of numbers`,
+  unequalLists: (counts: string) => `lists of ${counts} numbers have to be of one length`,
+  notAscending: (list: string) => `${list} has to ascend`,
   noGround: (room: string, status: string) => `the ground of ${room}: ${status}`,
   noJoin: (status: number) => `The server does not say how to join (${status}).`,
 };

@@ -21,6 +21,9 @@ export const kGermanNetTexts: NetTexts = {
   notOperator: (why) => `${why}. Zuerst den Link der Leitung öffnen, unter „Leute“ ein Token eingeben oder einen dieser Räume wählen`,
   serverSilent: "der Server antwortet nicht",
   answers: (status) => `der Server antwortet mit ${status}`,
+  notNumbers: (list) => `${list} ist keine Liste von Zahlen`,
+  unequalLists: (counts) => `die Listen haben ${counts} Zahlen und nicht gleich viele`,
+  notAscending: (list) => `${list} muss ansteigen`,
   noGround: (room, status) => `der Grund von ${room}: ${status}`,
   noJoin: (status) => `Der Server sagt nicht, wie man mitmacht (${status}).`,
 };

@@ -12,12 +12,7 @@ import { translation } from "../net/translation";
 import { fixed, length, plain } from "./numbers";
 import type { PictureSide, SideWhat, SideWhere } from "./side_names";
 import type { ToolName } from "./tools";
-
-/** A row of the panel: its label, and what it does, as a tooltip. */
-interface Row {
-  label: string;
-  help: string;
-}
+import { kVisitTexts, type Row } from "./visit_texts";
 
 /** A scene's title and line in this language; the server's own where a scene is not listed. */
 type SceneTexts = Record<string, { title: string; description: string }>;
@@ -117,56 +112,7 @@ const kEnglish = {
   filmHasNoCodec: "This browser encodes neither H.264, VP9 nor VP8; try a current Chrome, Edge, Firefox or Safari.",
   filmFailed: (why: string) => `The film was not saved (${why}); try again.`,
 
-  // Gauges
-  gauges: {
-    gauges: "Gauges",
-    open: "What the gauges in the water measure, as a chart",
-    elevation: "Elevation",
-    velocityX: "Velocity along x",
-    velocityZ: "Velocity along z",
-    shows: { label: "Shows", help: "Elevation over the still water, or the velocity of the flow as a mean over the depth." } as Row,
-    span: { label: "Last", help: "The time that the chart shows. The page keeps at most the last 4,800 readings." } as Row,
-    pause: "Pause",
-    pauseHelp: "Holds the chart; the water runs on.",
-    resume: "Continue",
-    csv: "CSV",
-    csvHelp: "Saves the readings of the chosen gauges as a table.",
-    picture: "PNG",
-    pictureHelp: "Saves the chart as a picture.",
-    close: "Close",
-    at: (timeS: number) => `at ${fixed(timeS, 2)} s`,
-    newest: "now",
-    time: "Time since the start [s]",
-    noReadings: "No readings yet.",
-    none: "Choose a gauge below.",
-    notLoaded: "The chart could not be loaded: try again when the server can be reached.",
-    noHistory: (gauge: string, why: string) => `The history of the gauge ${gauge} could not be read: ${why}`,
-    pictureFailed: (why: string) => `The picture of the chart was not saved (${why}); try again.`,
-  },
-
-  // The front page
-  frontLead: "Choose a water.",
-  frontRooms: "Rooms of this server",
-  noSuchRoom: (name: string) => `There is no room ${name}. These are the rooms of this server.`,
-  refusedRoom: (why: string) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
-  listFailed: (why: string) => `The list of rooms is not up to date (${why}). It is asked for again every few seconds.`,
-  tryNow: "Try now",
-  noAnswer: "the server does not answer",
-  noRooms: "This server has no room that you may enter. One may be opened at any time; this page shows it then.",
-  open: "Open",
-  openRoom: "Open a room",
-  openRoomWhy: "A room of the scene; everybody with its link comes into the same one.",
-  openScene: { label: "Scene", help: "The scene of the room that is opened." } as Row,
-  sceneOfRoom: (scene: string, room: string) => (scene === room ? scene : `${scene} · room ${room}`),
-  peopleCount: (count: number) => (count === 0 ? "nobody in it" : count === 1 ? "1 person" : `${count} people`),
-  roomState: { running: "running", paused: "paused", asleep: "asleep until somebody enters" },
-
-  // A kiosk
-  kioskInvite: "Touch the water",
-  kioskCountdown: (leftS: number) => `Back to the start in ${leftS} s – touch to continue`,
-  kioskBoat: "To my boat",
-  kioskWhole: "Whole water",
-  kioskPutAway: "Putting away",
+  ...kVisitTexts,
 
   // Sides of the water
   /** `where`: as seen from the first view; undefined for the only side of its kind. */

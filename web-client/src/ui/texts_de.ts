@@ -96,6 +96,7 @@ export const kGerman: Texts = {
     none: "Unten einen Pegel wählen.",
     notLoaded: "Das Diagramm ließ sich nicht laden: bitte noch einmal versuchen, wenn der Server erreichbar ist.",
     noHistory: (gauge, why) => `Der Verlauf des Pegels ${gauge} ließ sich nicht lesen: ${why}`,
+    noPicture: "die Zeichenfläche gibt keines",
     pictureFailed: (why) => `Das Bild des Diagramms wurde nicht gespeichert (${why}); bitte noch einmal versuchen.`,
   },
 
