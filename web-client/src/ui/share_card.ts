@@ -4,6 +4,7 @@
 import type { RoleName } from "../codec/people";
 import { textOfValues, type ParameterValue } from "../net/room_address";
 import type { RoomWithTokens } from "../net/room_requests";
+import { makeCard } from "./card";
 import { make, setText } from "./dom";
 import { embedCode } from "./embed_code";
 import { drawQrCode } from "./qr_code";
@@ -53,7 +54,7 @@ export class ShareCard {
   private readonly sendButton = make("button", { type: "button", "data-testid": "share-send" }, [kCard.send]);
   private readonly closeButton = make("button", { type: "button", "data-testid": "share-close" }, [kCard.close]);
   private readonly note = make("p", { class: "hint", "data-testid": "share-note", role: "status" });
-  private readonly dialog = make("dialog", { class: "share-card", "data-testid": "share-card", "aria-label": kCard.title }, [
+  private readonly dialog = makeCard("share-card", kCard.title, [
     make("div", {}, [
       make("h2", {}, [kCard.title]),
       this.targetRow.element,
@@ -63,19 +64,14 @@ export class ShareCard {
       make("div", { class: "share-buttons" }, [this.copyButton, this.sendButton, this.closeButton]),
       this.note,
     ]),
-  ]);
+  ], this.closeButton);
 
   constructor(private readonly source: ShareSource) {
     this.sendButton.hidden = typeof navigator.share !== "function";
     this.roleRow.setChoices(Object.entries(kCard.roles).map(([value, label]) => ({ value, label })), this.role);
     this.copyButton.addEventListener("click", () => void (this.isReady ? this.copy() : this.openForRoles()));
     this.sendButton.addEventListener("click", () => void this.send());
-    this.closeButton.addEventListener("click", () => this.dialog.close());
     this.link.addEventListener("focus", () => this.link.select());
-    this.dialog.addEventListener("click", ({ target }) => target === this.dialog && this.dialog.close());
-    // The page's own keys choose tools.
-    this.dialog.addEventListener("keydown", (event) => event.stopPropagation());
-    document.body.append(this.dialog);
   }
 
   open(): void {
