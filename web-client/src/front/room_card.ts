@@ -40,7 +40,7 @@ export class RoomCard {
 
   show(room: RoomSummary): void {
     const state = stateOf(room);
-    setText(this.title, room.title);
+    setText(this.title, kTexts.scenes[room.scene]?.title ?? room.title);
     setText(this.scene, kTexts.sceneOfRoom(room.scene, room.name));
     setText(this.people, kTexts.peopleCount(peopleCountOf(room, this.picture?.isLive ?? false)));
     setText(this.state, kTexts.roomState[state]);
