@@ -4,6 +4,7 @@
 
 #include <cstdlib>
 #include <memory>
+#include <stdexcept>
 
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/context.h>
@@ -15,10 +16,11 @@ inline core::Result<DeviceChoice> testDevice() {
   return parseDeviceChoice(wanted ? wanted : "software");
 }
 
-/// A context on that device; an error if there is none, for which tests are skipped.
+/// A context on that device; an error if the machine does not have it, for which tests are skipped. Throws, so that
+/// tests fail, if the variable cannot be read.
 inline core::Result<std::unique_ptr<Context>> testContext() {
   const auto choice = testDevice();
-  if (!choice) return choice.error();
+  if (!choice) throw std::invalid_argument("SPINDRIFT_TEST_DEVICE: " + choice.error().message);
   return Context::create(*choice);
 }
 

@@ -30,6 +30,7 @@ export function openWaterPage(): void {
   else if (isProjectorAddress(location)) void import("./projector").then(({ openProjector }) => openProjector(app));
   if (isKiosk) openKiosk(app);
   else addVisitorControls(app);
+  openWaterSpeaker(app);
   const isStepped = wantsSteppedPictures(location.search);
   installTestHooks(app, isStepped);
   app.start(!isStepped);
@@ -42,7 +43,6 @@ function addVisitorControls(app: App): void {
   addShareButton(app);
   keepChangesInAddress(app);
   openOperatorPanel(app);
-  openWaterSpeaker(app);
   addLanguageRow(() => app.address, (text) => app.warn(text));
 }
 

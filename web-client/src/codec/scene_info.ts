@@ -226,9 +226,6 @@ export interface GaugeInfo {
   name: string;
   xM: number;
   zM: number;
-  /** Of one that a person has placed: what people read instead of its name, and the person's CSS colour. */
-  label?: string;
-  color?: string;
 }
 
 export function readGauges(scene: Scene): GaugeInfo[] {

@@ -4,6 +4,7 @@ import { takeLinkToken } from "../app/address";
 import { takeRefusal } from "../app/to_front";
 import type { RoleName } from "../codec/people";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
+import { kNetTexts } from "../net/net_texts";
 import { roomOf } from "../net/room_address";
 import { requestRooms, type RoomSummary } from "../net/room_requests";
 import { socketUrl } from "../net/water_client";
@@ -44,7 +45,7 @@ class FrontPage {
     this.token = linkToken === undefined ? identities.token : identities.load(linkToken).token;
     this.openCard = new OpenCard(this.token);
     this.list.append(this.openCard.element);
-    const retry = make("button", { type: "button", "data-testid": "front-retry" }, [kTexts.tryNow]);
+    const retry = make("button", { type: "button", "data-testid": "front-retry" }, [kTexts.page.retry]);
     retry.addEventListener("click", () => this.ask());
     this.failed.append(retry);
     const main = make("main", { class: "front" }, [
@@ -95,7 +96,7 @@ class FrontPage {
     requestRooms(this.token)
       .then(
         (rooms) => this.show(rooms),
-        (error: unknown) => this.fail(error instanceof TypeError ? kTexts.noAnswer : error instanceof Error ? error.message : String(error)),
+        (error: unknown) => this.fail(error instanceof TypeError ? kNetTexts.serverSilent : error instanceof Error ? error.message : String(error)),
       )
       .finally(() => {
         this.isAsking = false;

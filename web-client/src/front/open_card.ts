@@ -2,6 +2,7 @@
 import { posterOf } from "../app/poster";
 import { requestScenes } from "../net/room_requests";
 import { make, setText } from "../ui/dom";
+import { sceneLabel } from "../ui/room_panel";
 import { linkWith } from "../ui/share_link";
 import { SelectRow } from "../ui/select_row";
 import { kTexts } from "../ui/texts";
@@ -25,7 +26,7 @@ export class OpenCard {
     this.element.hidden = false;
     requestScenes(this.token).then(
       (scenes) => {
-        this.scene.setChoices(scenes.map((name) => ({ value: name, label: name })), scenes[0] ?? "");
+        this.scene.setChoices(scenes.map((name) => ({ value: name, label: sceneLabel(name) })), scenes[0] ?? "");
         this.choose(scenes[0] ?? "");
       },
       (error: unknown) => setText(this.line, kTexts.failed(kTexts.openRoom, error instanceof Error ? error.message : String(error))),

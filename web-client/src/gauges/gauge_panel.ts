@@ -11,7 +11,7 @@ import { GaugeRecord, kQuantities, kQuantityInfos, type GaugeReadingInfo, type Q
 const kSpansS = [10, 30, 60];
 /** Lines of the first gauges, then again from the first one. */
 const kColors = ["#5fd4e6", "#f2c562", "#8be8b0", "#ff9d8a", "#c3a6ff", "#f58fd0", "#b7d36a", "#8fb3ff"];
-/** More lines are not read: the others are chosen by hand. */
+/** Lines that are shown at first; more are hard to tell apart. */
 const kFirstChosen = 5;
 const kValueStep = 0.001;
 
@@ -89,9 +89,9 @@ export class GaugePanel {
     this.chosen = new Set([...chosen, ...added.slice(0, Math.max(kFirstChosen - chosen.length, 0)).map(({ name }) => name)]);
     this.gauges = gauges;
     this.keys.clear();
-    for (const { name, label } of gauges) {
+    for (const { name } of gauges) {
       const value = make("span", { class: "gauge-value" });
-      const key = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), label ?? name, value]);
+      const key = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), name, value]);
       key.style.setProperty("--line", this.lineOf(name).color);
       key.addEventListener("click", () => this.toggle(name));
       this.keys.set(name, { button: key, value });
@@ -124,7 +124,7 @@ export class GaugePanel {
 
   private lineOf(name: string): Line {
     const at = this.gauges.findIndex((gauge) => gauge.name === name);
-    return { label: this.gauges[at]?.label ?? name, color: this.gauges[at]?.color ?? kColors[at % kColors.length]! };
+    return { label: name, color: kColors[at % kColors.length]! };
   }
 
   private toggle(name: string): void {

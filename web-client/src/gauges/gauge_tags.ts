@@ -14,9 +14,8 @@ export class GaugeTags {
 
   setGauges(gauges: readonly GaugeInfo[]): void {
     this.labels.clear();
-    for (const { name, label, color } of gauges) {
-      const tag = make("span", { hidden: "" }, [label ?? name]);
-      if (color !== undefined) tag.style.borderBottomColor = color;
+    for (const { name } of gauges) {
+      const tag = make("span", { hidden: "" }, [name]);
       this.labels.set(name, tag);
     }
     this.element.replaceChildren(...this.labels.values());

@@ -1,5 +1,6 @@
 // Asks the server for what a gauge measured at the last ticks.
 import { kNetTexts } from "./net_texts";
+import { ask } from "./room_requests";
 
 /** Values of one gauge, oldest first; lists of one length. */
 export interface GaugeSeries {
@@ -12,11 +13,7 @@ export interface GaugeSeries {
 
 /** Throws an Error with a line for people. */
 export async function requestSeries(room: string, gauge: string, token: string): Promise<GaugeSeries> {
-  const url = `api/v1/rooms/${encodeURIComponent(room)}/gauges/${encodeURIComponent(gauge)}`;
-  const answer = await fetch(url, { cache: "no-store", headers: token ? { Authorization: `Bearer ${token}` } : {} });
-  const body = (await answer.json().catch(() => ({}))) as Record<string, unknown>;
-  if (!answer.ok) throw new Error(typeof body["message"] === "string" ? body["message"] : kNetTexts.answers(answer.status));
-  return readSeries(body);
+  return readSeries((await ask(`api/v1/rooms/${encodeURIComponent(room)}/gauges/${encodeURIComponent(gauge)}`, token)) as Record<string, unknown>);
 }
 
 /** Throws an Error if the answer is not a series. */

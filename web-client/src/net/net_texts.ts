@@ -18,7 +18,7 @@ const kEnglish = {
   noRoom: (room: string) => `there is no room ${room}`,
   noRoomBecause: (room: string, why: string) => `there is no room ${room}: ${why}`,
   unreadableName: "its name cannot be read",
-  notOperator: (why: string) => `${why}. Open the operator's link first, enter a token under People, or choose one of these rooms`,
+  notOperator: (why: string) => `${why}. Open the operator's link first, or choose one of these rooms`,
   serverSilent: "the server does not answer",
   answers: (status: number) => `the server answers ${status}`,
   notNumbers: (list: string) => `${list} is not a list of numbers`,

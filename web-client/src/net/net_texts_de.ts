@@ -18,7 +18,7 @@ export const kGermanNetTexts: NetTexts = {
   noRoom: (room) => `es gibt keinen Raum ${room}`,
   noRoomBecause: (room, why) => `es gibt keinen Raum ${room}: ${why}`,
   unreadableName: "sein Name ist nicht lesbar",
-  notOperator: (why) => `${why}. Zuerst den Link der Leitung öffnen, unter „Leute“ ein Token eingeben oder einen dieser Räume wählen`,
+  notOperator: (why) => `${why}. Zuerst den Link der Leitung öffnen oder einen dieser Räume wählen`,
   serverSilent: "der Server antwortet nicht",
   answers: (status) => `der Server antwortet mit ${status}`,
   notNumbers: (list) => `${list} ist keine Liste von Zahlen`,

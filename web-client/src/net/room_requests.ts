@@ -47,7 +47,8 @@ export async function openRoomWithTokens(room: string, { scene, parameters }: Ro
   return { room, tokens };
 }
 
-async function ask(url: string, token: string, init: RequestInit & { headers?: Record<string, string> } = {}): Promise<unknown> {
+/** Asks the REST API; `url` is relative to the page. Throws an Error with a line for people. */
+export async function ask(url: string, token: string, init: RequestInit & { headers?: Record<string, string> } = {}): Promise<unknown> {
   const answer = await fetch(url, { ...init, cache: "no-store", headers: { ...init.headers, ...(token ? { Authorization: `Bearer ${token}` } : {}) } });
   const body: unknown = await answer.json().catch(() => ({}));
   if (!answer.ok) throw new Error((body as { message?: string }).message ?? kNetTexts.answers(answer.status));

@@ -120,6 +120,6 @@ export class RoomPanel {
 }
 
 /** Name of a scene in the list: its title where the language has one. */
-function sceneLabel(name: string): string {
+export function sceneLabel(name: string): string {
   return kTexts.scenes[name]?.title ?? name.replaceAll("_", " ");
 }

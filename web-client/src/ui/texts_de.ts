@@ -105,8 +105,6 @@ export const kGerman: Texts = {
   noSuchRoom: (name) => `Den Raum ${name} gibt es nicht. Dies sind die Räume dieses Servers.`,
   refusedRoom: (why) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
   listFailed: (why) => `Die Liste der Räume ist nicht auf dem neuesten Stand (${why}). Sie wird alle paar Sekunden neu erfragt.`,
-  tryNow: "Jetzt versuchen",
-  noAnswer: "der Server antwortet nicht",
   noRooms: "Dieser Server hat keinen Raum, den man betreten darf. Jederzeit kann einer geöffnet werden; dann erscheint er hier.",
   open: "Öffnen",
   openRoom: "Einen Raum öffnen",

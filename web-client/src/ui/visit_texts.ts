@@ -42,8 +42,6 @@ export const kVisitTexts = {
   noSuchRoom: (name: string) => `There is no room ${name}. These are the rooms of this server.`,
   refusedRoom: (why: string) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
   listFailed: (why: string) => `The list of rooms is not up to date (${why}). It is asked for again every few seconds.`,
-  tryNow: "Try now",
-  noAnswer: "the server does not answer",
   noRooms: "This server has no room that you may enter. One may be opened at any time; this page shows it then.",
   open: "Open",
   openRoom: "Open a room",

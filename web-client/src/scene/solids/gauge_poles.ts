@@ -1,9 +1,8 @@
-// Gauges as slender poles, graduated from the bed to above the water; one mesh for all. Those that people have placed have their colours.
+// Gauges as slender poles, graduated from the bed to above the water; one mesh for all.
 import { Mesh, type BufferGeometry, type Material } from "three";
 
 import type { GreetingInfo } from "../../codec/greeting";
 import type { GaugeInfo } from "../../codec/scene_info";
-import { paintOf } from "../boats/livery";
 import { bedOf, depthAtM } from "../landscape/terrain";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
@@ -46,12 +45,11 @@ export function bandHeightM(leastM: number): number {
 /** A border of bands is at the still water. */
 function makeGeometry(poles: readonly Pole[], halfM: number): BufferGeometry {
   const builder = new MeshBuilder();
-  for (const { xM, zM, lowM, topM, color } of poles) {
+  for (const { xM, zM, lowM, topM } of poles) {
     const heightM = bandHeightM(Math.max(kBandHalfWidths * halfM, (topM - lowM) / kMostBands));
-    const own = (color !== undefined && paintOf(color)) || kRed;
     const size = { halfX: halfM, halfZ: halfM };
     for (let n = Math.floor(lowM / heightM); n * heightM < topM; ++n)
-      builder.block(xM, zM, { yM: Math.max(n * heightM, lowM), ...size }, { yM: Math.min((n + 1) * heightM, topM), ...size }, n % 2 === 0 ? own : kLight);
+      builder.block(xM, zM, { yM: Math.max(n * heightM, lowM), ...size }, { yM: Math.min((n + 1) * heightM, topM), ...size }, n % 2 === 0 ? kRed : kLight);
   }
   return builder.build();
 }

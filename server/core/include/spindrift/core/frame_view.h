@@ -95,7 +95,7 @@ struct DiagnosticsView {
     double lowest_m = 0.0;
   };
   std::vector<GaugeNow> gauges;  ///< in the order of the scene
-  double gauges_time_s = 0.0;    ///< simulation time of their readings; 0: there are none yet
+  double gauges_time_s = 0.0;    ///< simulation time of their readings; 0 before the first
 };
 
 /// The layers of a frame that have levels of detail, at one level. Below Level::kFull the surface and the foam have
