@@ -73,16 +73,19 @@ part_tests() {
   done | xargs -P "$(nproc)" -L 1 bash -c 'run_suite "$1" "$2"' - | sort | tee "$logs/tests.txt"
 }
 
-# The same scene twice, and with another order of the work groups: the states must be equal bit for bit.
+# The same scene twice, and with another order of the work groups: the states must be equal bit for bit. Where they are not,
+# the scene runs two times side by side, which names the first buffers that differ.
 part_hash() {
-  local scene checks hashes
+  local scene file checks hashes equal=true
   for scene in pool splash harbor flotsam; do
-    hashes="$(for checks in "" "" shuffle=7; do
-      SPINDRIFT_GPU_CHECKS="$checks" "$bundle/state_hash" "$bundle/share/spindrift/scenes/$scene.textproto" 200 2>/dev/null
-    done)"
+    file="$bundle/share/spindrift/scenes/$scene.textproto"
+    hashes="$(for checks in "" "" shuffle=7; do SPINDRIFT_GPU_CHECKS="$checks" "$bundle/state_hash" "$file" 200 2>/dev/null; done)"
     printf '%s %s\n' "$scene" "$(tr '\n' ' ' <<<"$hashes")"
-    [[ "$(sort -u <<<"$hashes" | wc -l)" == 1 ]]
+    [[ "$(sort -u <<<"$hashes" | wc -l)" != 1 ]] || continue
+    equal=false
+    "$bundle/state_hash" "$file" 200 twice 2>/dev/null | sed 's/^/  /' || true
   done
+  "$equal"
 }
 
 part_step() {
@@ -156,6 +159,10 @@ for scene, cases in steps.items():
         passes = " ".join(f"{k} {v:.3f}" for k, v in case["tick_ms_by_pass"].items())
         rows.append(f"| {scene} | {case['name']} | {case['particle_count']} | {case['substeps_count']} | {case['tick_ms']:.3f} "
                     f"| {case['real_time_factor']:.2f} | {passes} |")
+for part, pattern in (("hash", r"\S+ [0-9a-f]{16} .*|  tick .*"), ("rooms", r"delay_p99_ms.*|answer_p99_ms.*|.*real-time factor.*"), ("study", r"\d+ within bounds.*")):
+    log = logs / f"{part}.log"
+    found = [line for line in (log.read_text().splitlines() if log.exists() else []) if re.fullmatch(pattern, line)]
+    rows += ["", f"{part}:", ""] + [f"    {line}" for line in found] if found else []
 (output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "failed": failed, "tests": tests, "parts": parts}, indent=1))
 (output / f"{name}.md").write_text("\n".join(rows) + "\n")
 print(f"\n{output / name}.json and .md")
