@@ -12,6 +12,7 @@ import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
 describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, () => {
   let desk;
   let phone;
+  let reset;
   let close;
 
   /** Presses, moves along the points and leaves the button down. */
@@ -22,10 +23,13 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
       if (k === 0) await page.mouse.down({ button });
     }
   };
-  const waitForStill = (page) => waitFor(page, "still water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM < 0.02);
+  const stillWater = async (page) => {
+    await reset();
+    return page.evaluate(() => window.spindrift.stats());
+  };
 
   before(async () => {
-    ({ desk, phone, close } = await twoPeople(`${repository}/tests/browser/scene.textproto`));
+    ({ desk, phone, reset, close } = await twoPeople(`${repository}/tests/browser/scene.textproto`));
   });
   after(() => close?.());
 
@@ -36,7 +40,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("draws with the mouse, at once on one's own screen, and shows the other whose finger it is", async () => {
-    const { view } = await waitForStill(desk);
+    const { view } = await stillWater(desk);
     const line = Array.from({ length: 20 }, (_, k) => [-1.5 + 0.15 * k, 0.5]);
     // From now on: it may have calmed down when everything else has been seen.
     const wake = waitFor(phone, "the wake in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.02);
@@ -64,7 +68,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("draws one's own ripple at most two pictures after the finger has moved", async () => {
-    await waitForStill(desk);
+    await stillWater(desk);
     await desk.evaluate(() => {
       const ripple = (window.ripple = {});
       let picture = 0;
@@ -85,7 +89,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("turns the view with the right button, and with the left one where the water ends", async () => {
-    await waitForStill(desk);
+    await stillWater(desk);
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", ({ view }) => view === "start");
     await sleep(1200);
@@ -117,7 +121,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("says what the paddle does, outlines its wave while it is dragged, and sends it", async () => {
-    const { lastAck } = await waitForStill(desk);
+    const { lastAck } = await stillWater(desk);
     await desk.getByTestId("tool-paddle").click();
     assert.match(await desk.getByTestId("hint").textContent(), /Drag to send a wave that way/);
     assert.equal(await desk.getByTestId("tool-paddle").getAttribute("aria-pressed"), "true");
@@ -134,7 +138,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("makes a splash larger the longer it is held", async () => {
     const deepest = async (heldMs) => {
-      await waitForStill(desk);
+      await stillWater(desk);
       await drag(desk, [[0, 0]]);
       await sleep(heldMs);
       await desk.mouse.up();
@@ -155,7 +159,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("lets it rain for a while where one taps, in everybody's water", async () => {
-    await waitForStill(phone);
+    await stillWater(phone);
     await phone.getByTestId("tool-rain").tap();
     const [xPx, yPx] = await pixelOf(phone, 0.5, 0);
     await phone.touchscreen.tap(xPx, yPx);
@@ -168,7 +172,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("works without a pointer: Enter in the middle of the picture, a gamepad where its cursor is", async () => {
     const acked = async (what, act) => {
-      const { lastAck } = await waitForStill(desk);
+      const { lastAck } = await stillWater(desk);
       await act();
       return (await waitFor(desk, what, (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0))).lastCommand;
     };
@@ -195,7 +199,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("takes each finger of a touch for itself, and two that come down together for the view", async () => {
-    const { view } = await waitForStill(phone);
+    const { view } = await stillWater(phone);
     const touch = await phone.context().newCDPSession(phone);
     const at = async (id, xM, zM) => {
       const [x, y] = await pixelOf(phone, xM, zM);

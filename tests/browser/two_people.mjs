@@ -45,7 +45,13 @@ export async function twoPeople(scene, first = () => {}) {
     browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
     const desk = await open({ viewport: { width: 900, height: 600 } });
     const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
-    return { desk, phone, close };
+    /** Begins the scene again, and waits until both pages show the still water. */
+    const reset = async () => {
+      const answer = await fetch(new URL("api/v1/rooms/main/commands", server.url), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ reset: {} }) });
+      assert.equal(answer.status, 200, await answer.text());
+      for (const page of [desk, phone]) await waitFor(page, "still water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM < 0.02);
+    };
+    return { desk, phone, reset, close };
   } catch (error) {
     await close();
     throw error;
