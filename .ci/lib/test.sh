@@ -3,7 +3,7 @@
 # by ./dev.
 
 # Limits against hanging parts: far above their times on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=2700 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=2700 python_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
 # writes build/reports/NAME.xml.
@@ -105,6 +105,16 @@ test_wire() {
     --root tests/wire --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/wire.xml"
 }
 
+# Installs the Python client as a user would, into a virtual environment with Debian's numpy, websockets and protobuf, and runs its tests.
+test_python() {
+  local environment="$root/build/python"
+  [[ -x "$environment/bin/python" ]] || /usr/bin/python3 -m venv --system-site-packages "$environment"
+  step python-client "installing the Python client into build/python" "$environment/bin/python" -m pip install --quiet --no-deps --no-build-isolation \
+    --force-reinstall ./python-client
+  run_part python "$python_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" "$environment/bin/python" -m pytest --quiet -p no:cacheprovider \
+    "--junitxml=$root/build/reports/python.xml" python-client/tests
+}
+
 test_tidy() {
   local files=()
   mapfile -t files < <(list_tidy_sources)
@@ -138,7 +148,7 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…] [-R REGEX]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
-own tests), wire (the npm package ws against the real server), browser (the page in Chromium against it), tools
+own tests), wire (the npm package ws against the real server), python (the Python client against it), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents, Compose and Kubernetes files), fuzz (parsers and decoders under hostile input, some
 seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those with MEMORY in tests/unit, or
 all of them when the part is named), threads (network, encoder, access and files of the state under the thread sanitizer).
@@ -165,13 +175,13 @@ TEXT
   [[ -z "$test_regex" ]] || ((${#parts[@]} > 0)) || parts=(native)
   local memory_label=unit containers_when_named=true
   if ((${#parts[@]} == 0)); then
-    parts=(native zink web wire browser tools fuzz memory threads containers)
+    parts=(native zink web wire python browser tools fuzz memory threads containers)
     memory_label=memory
     containers_when_named=false
   fi
   for part in "${parts[@]}"; do
     case "$part" in
-      native | unit | integration | accuracy | stability | gpu | zink | web | wire | browser | tools | fuzz | memory | threads | containers | tidy) ;;
+      native | unit | integration | accuracy | stability | gpu | zink | web | wire | python | browser | tools | fuzz | memory | threads | containers | tidy) ;;
       *) fail 2 "there is no test part '$part'; see ./dev test --help" ;;
     esac
   done
@@ -189,6 +199,7 @@ TEXT
       threads) test_native threads tsan threads ;;
       web) test_web ;;
       wire) test_wire ;;
+      python) test_python ;;
       browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
       tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs tests/containers/deployment.test.mjs ;;
       containers) test_containers ;;
@@ -212,6 +223,7 @@ prepare_tests() {
   [[ ! "$wanted" =~ \ (native|integration)\  ]] || groups+=(faults)
   [[ "$wanted" != *" zink "* ]] || groups+=(zink)
   [[ "$wanted" != *" browser "* ]] || groups+=(browser)
+  [[ "$wanted" != *" python "* ]] || groups+=(python)
   [[ "$wanted" != *" tools "* ]] || groups+=(bundle format lint)
   # Without root the image cannot be built, and its tests say so.
   [[ "$wanted" != *" containers "* ]] || ! "$containers_when_named" || ((EUID != 0)) || groups+=(containers)
@@ -232,7 +244,7 @@ prepare_tests() {
     build_server "$preset"
   elif [[ "$wanted" == *" tools "* ]]; then
     build_server "$preset" "${bundled_programs[@]}"
-  elif [[ "$wanted" =~ \ (wire|browser)\  ]]; then
+  elif [[ "$wanted" =~ \ (wire|python|browser)\  ]]; then
     build_server "$preset" spindrift
   fi
   [[ "$wanted" != *" fuzz "* ]] || build_fuzz

@@ -1,0 +1,179 @@
+"""Both interfaces against the real server."""
+import asyncio
+import os
+import signal
+import threading
+
+import numpy as np
+import pytest
+from conftest import ENVIRONMENT, PROJECT
+
+import spindrift
+from spindrift import aio
+
+
+def test_every_layer_arrives_in_metres(water):
+    surface = water.surface()
+    assert surface.heights_m.shape == (64, 64) and surface.heights_m.dtype == np.float32
+    assert (surface.x_m[0], surface.x_m[-1]) == pytest.approx((-4 + 1 / 16, 4 - 1 / 16))
+    particles = water.particles()
+    assert particles.positions_m.shape == particles.velocities_mps.shape == (len(particles.foam), 3)
+    assert np.all(np.abs(particles.positions_m) < 5)
+    boat_id = water.spawn_boat(x_m=1, z_m=-2, heading_deg=90).boat_id
+    floater_id = water.spawn_floater(kind="crate", x_m=-1, z_m=2).floater_id
+    assert water.foam().white.shape[0] > 8
+    for boats in water.frames("bodies"):
+        if boats.index_of(boat_id) is not None:
+            break
+    k = boats.index_of(boat_id)
+    assert boats.positions_m[k][[0, 2]] == pytest.approx([1, -2], abs=0.2)
+    assert boats.heading_rad[k] == pytest.approx(np.pi / 2, abs=0.1)
+    for floaters in water.frames("floaters"):
+        if floater_id in floaters.ids:
+            break
+    assert np.linalg.norm(floaters.rotations, axis=1) == pytest.approx(1)
+    assert water.next("diagnostics").boat_count == 1
+    water.remove_boat(boat_id=boat_id)
+
+
+def test_packed_and_plain_surfaces_are_equal_to_the_bit(server, water):
+    water.splash(x_m=1, z_m=1, depth_m=0.3)
+    water.set_paused(paused=True)
+    with server.connect() as other:
+        other.subscribe("surface", packed=False)
+        packed = water.advance(20)
+        plain = other.surface_at(packed.tick)
+        assert (plain.tick, plain.state_id) == (packed.tick, packed.state_id)
+        np.testing.assert_array_equal(plain.samples, packed.samples)
+        assert np.ptp(packed.heights_m) > 0.05
+
+
+def test_a_splash_is_acknowledged_and_seen_where_it_was(water):
+    water.set_paused(paused=True)
+    ack = water.splash(x_m=-2, z_m=1, radius_m=0.5, depth_m=0.3)
+    after = water.advance(6)
+    assert after.tick >= ack.applied_tick
+    k, i = np.unravel_index(np.argmin(after.heights_m), after.heights_m.shape)
+    assert (after.x_m[i], after.z_m[k]) == pytest.approx((-2, 1), abs=0.4)
+
+
+def test_what_cannot_be_is_rejected_with_field_and_bound(water):
+    with pytest.raises(spindrift.Rejected, match="100 m") as rejected:
+        water.splash(x_m=0, radius_m=1000)
+    assert (rejected.value.reason, rejected.value.field) == ("OUT_OF_RANGE", "splash.radius_m")
+    with pytest.raises(spindrift.Rejected) as rejected:
+        water.splash(x_m=float("nan"))
+    assert rejected.value.reason == "NOT_FINITE"
+    with pytest.raises(spindrift.Rejected):
+        water.set_parameter(path="wave.nothing", value=1)
+
+
+def test_parameters_follow_what_is_set(water):
+    damping = water.parameters["wave.damping_per_s"]
+    assert (damping.unit, damping.value) == ("1/s", pytest.approx(0.2))
+    water.set_parameter(path="wave.damping_per_s", value=0.3)
+    for event in water.events():
+        if event.kind == "parameter_changed":
+            break
+    assert water.parameters["wave.damping_per_s"].value == pytest.approx(0.3)
+
+
+def test_a_gauge_agrees_with_the_surface(water):
+    water.set_paused(paused=True)
+    water.splash(x_m=0.5, z_m=0, depth_m=0.3)
+    frame = water.advance(30)
+    water.advance(3)  # readings come some ticks later
+    gauge = water.gauge("middle")
+    at = np.argmin(np.abs(gauge.time_s - frame.time_s))
+    assert gauge.time_s[at] == pytest.approx(frame.time_s)
+    assert abs(gauge.elevation_m[at]) > 0.01
+    assert gauge.elevation_m[at] == pytest.approx(float(frame.height_m(gauge.x_m, gauge.z_m)), abs=2 * frame.quantum_m)
+    with pytest.raises(spindrift.SpindriftError, match="HTTP 404"):
+        water.gauge("nowhere")
+
+
+def test_a_room_that_does_not_exist_is_refused(server):
+    with pytest.raises(spindrift.Refused, match="there is no such room"):
+        server.connect(room="nowhere")
+
+
+def test_a_hundred_clients_in_one_process(server, water):
+    async def one(k):
+        async with aio.connect(server.url, name=f"client {k}", patience_s=120, answer_within_s=120) as client:
+            await client.subscribe("surface", rate_hz=10, level="coarse")
+            answered = 0
+            for _ in range(3):
+                try:
+                    answered += (await client.splash(x_m=0, depth_m=0.01, radius_m=0.2)).applied_tick > 0
+                except spindrift.Rejected as rejected:
+                    assert rejected.reason == "BUSY"
+                    answered += 1
+            frame = await client.surface()
+            return answered, frame.tick, client.damaged_count
+
+    async def run():
+        return await asyncio.gather(*(one(k) for k in range(100)))
+
+    results = asyncio.run(run())
+    assert [answered for answered, _, _ in results] == [3] * 100
+    assert all(tick > 0 and damaged == 0 for _, tick, damaged in results)
+
+
+def test_several_threads_may_use_one_room(water):
+    acks, errors = [], []
+
+    def work():
+        try:
+            acks.extend(water.splash(x_m=0, depth_m=0.01).command_id for _ in range(3))
+        except Exception as error:  # pylint: disable=broad-except
+            errors.append(error)
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not errors and len(set(acks)) == 12
+
+
+def test_it_goes_on_when_the_server_ends_and_comes_back():
+    scene = str(PROJECT / "python-client" / "tests" / "tank.textproto")
+    with spindrift.Server(scene, environment=ENVIRONMENT) as first:
+        port = first.url.rstrip("/").rsplit(":", 1)[1]
+        with first.connect(answer_within_s=60) as water:
+            before = water.surface()
+            first.stop()
+            kinds = []
+            again = None
+            try:
+                for event in water.events():
+                    kinds.append(event.kind)
+                    if event.kind in ("lost", "moving") and again is None:
+                        again = spindrift.Server(scene, environment=ENVIRONMENT, port=int(port))
+                    if event.kind == "live" and "lost" in kinds:
+                        break
+                after = water.surface()
+                assert after.heights_m.shape == before.heights_m.shape
+                assert water.splash(x_m=0).applied_tick >= 0
+            finally:
+                if again:
+                    again.stop()
+
+
+def test_a_server_that_does_not_start_says_why():
+    with pytest.raises(spindrift.ServerFailed, match="no_such_scene"):
+        spindrift.Server("no_such_scene")
+    with pytest.raises(spindrift.ServerFailed, match="No such file"):
+        spindrift.Server(program="/nonexistent/spindrift")
+
+
+def test_a_server_that_dies_is_a_lost_connection():
+    with spindrift.Server(str(PROJECT / "python-client" / "tests" / "tank.textproto"), environment=ENVIRONMENT) as server, server.connect() as water:
+        water.surface()
+        os.kill(server.pid, signal.SIGKILL)
+        for event in water.events():
+            if event.kind == "lost":
+                break
+        with pytest.raises(spindrift.ConnectionLost, match="was not sent"):
+            water.splash(x_m=0)
+
