@@ -157,7 +157,7 @@ export class GaugePanel {
     const value = make("span", { class: "gauge-value" });
     const button = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), name, value]);
     button.addEventListener("click", () => this.toggle(name));
-    const removal = placed && make("button", { type: "button", "data-testid": `gauge-remove-${name}`, title: kTexts.gauges.remove(name), "aria-label": kTexts.gauges.remove(name) }, ["×"]);
+    const removal = placed && make("button", { type: "button", class: "gauge-remove", "data-testid": `gauge-remove-${name}`, title: kTexts.gauges.remove(name), "aria-label": kTexts.gauges.remove(name) }, ["×"]);
     removal?.addEventListener("click", () => this.world.remove(placed!.gaugeId));
     const key = { element: make("span", { class: "gauge-key" }, removal ? [button, removal] : [button]), button, value, removal };
     this.keys.set(name, key);
