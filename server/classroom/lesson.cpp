@@ -78,7 +78,10 @@ std::optional<wire::CommandRejection> refuse(const v1::Lesson& lesson, bool is_m
   if (lesson.frozen()) return notNow("the room is frozen: it takes no commands of players");
   if (is_muted) return notNow("you are muted: the room takes no commands from you");
   const v1::Tool tool = toolOf(command);
-  if (lesson.tools().empty() || std::ranges::find(lesson.tools(), tool) != lesson.tools().end()) return std::nullopt;
+  // Gauges need no tool: they do nothing to the water.
+  if (tool == v1::TOOL_UNSPECIFIED || lesson.tools().empty() ||
+      std::ranges::find(lesson.tools(), tool) != lesson.tools().end())
+    return std::nullopt;
   return notNow(fmt::format("{} not handed out at present", nameOf(tool)));
 }
 

@@ -87,6 +87,11 @@ void writeGauge(const core::DiagnosticsView::GaugeNow& gauge, v1::GaugeReading& 
   out.set_velocity_z_mps(gauge.velocity_z_mps);
   out.set_highest_m(gauge.highest_m);
   out.set_lowest_m(gauge.lowest_m);
+  out.set_x_m(gauge.x_m);
+  out.set_z_m(gauge.z_m);
+  out.set_gauge_id(gauge.gauge_id);
+  out.set_person_id(gauge.person_id);
+  out.set_unread(gauge.is_unread);
 }
 
 core::SharedBytes serializeDiagnostics(const core::FrameView& frame) {

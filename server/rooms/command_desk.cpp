@@ -68,6 +68,8 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kSetTeam, {kOperator, kLight}, &Act::setTeam, nullptr},
       {C::kStartGame, {kOperator, kLight}, &Act::startGame, nullptr},
       {C::kEndGame, {kOperator, kLight}, &Act::endGame, nullptr},
+      {C::kPlaceGauge, {kPlayer, kLight}, &Act::placeGauge, nullptr},
+      {C::kRemoveGauge, {kPlayer, kLight}, &Act::removeGauge, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action

@@ -197,7 +197,7 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
       data_.referee.end();
       data_.roster.keepOnly({});  // the boats of a new scene have no owner yet, whatever their ids
     }
-    actions_.boatsChanged();
+    actions_.waterChanged(built.water == Water::kContinues);
     publishVitals(now);
     reports_.sceneChanged();
   }
@@ -219,6 +219,7 @@ void Room::standStill() {
 void Room::settlePeople(TimePoint now) {
   const Roster::Turn turn = data_.roster.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) actions_.stopBoat(boat_id);
+  if (turn.is_news) actions_.removeGaugesOfGone();
   reports_.tellPeople(turn.is_news, now);
 }
 

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <utility>
@@ -15,19 +16,39 @@ using namespace std::chrono_literals;
 /// A paused room's frame that found no free slot is asked for again.
 constexpr auto kDroppedFrameRetry = 10ms;
 
-std::vector<core::DiagnosticsView::GaugeNow> gaugesNow(const sim::WaterSim& water) {
-  std::vector<core::DiagnosticsView::GaugeNow> out;
-  if (!water.gauges()) return out;
-  const std::vector<sim::GaugeHistory::Now> now = water.gauges()->now();
-  for (std::size_t k = 0; k < now.size(); ++k) {
-    out.push_back({.name = water.scene().gauges[k].name,
-                   .elevation_m = now[k].reading.elevation_m,
-                   .velocity_x_mps = now[k].reading.velocity_x_mps,
-                   .velocity_z_mps = now[k].reading.velocity_z_mps,
-                   .highest_m = now[k].highest_m,
-                   .lowest_m = now[k].lowest_m});
+using GaugeNow = core::DiagnosticsView::GaugeNow;
+
+/// Writes what gauges have read, in the order of their history.
+void setReadings(const sim::GaugeHistory& history, std::span<GaugeNow> gauges) {
+  const std::vector<sim::GaugeHistory::Now> now = history.now();
+  for (std::size_t k = 0; k < gauges.size(); ++k) {
+    gauges[k].elevation_m = now[k].reading.elevation_m;
+    gauges[k].velocity_x_mps = now[k].reading.velocity_x_mps;
+    gauges[k].velocity_z_mps = now[k].reading.velocity_z_mps;
+    gauges[k].highest_m = now[k].highest_m;
+    gauges[k].lowest_m = now[k].lowest_m;
+    gauges[k].is_unread = history.newestTime_s() == 0.0;
   }
-  return out;
+}
+
+/// Adds the gauges of the scene and those of people.
+void addGauges(const RoomData& room, core::DiagnosticsView& out) {
+  const sim::WaterSim& water = room.water->sim();
+  for (const core::Gauge& gauge : water.scene().gauges)
+    out.gauges.push_back({.name = gauge.name, .x_m = gauge.x_m, .z_m = gauge.z_m});
+  if (const auto history = water.gauges()) {
+    setReadings(*history, out.gauges);
+    out.gauges_time_s = history->newestTime_s();
+  }
+  for (const PlacedGauge& gauge : room.gauges) {
+    out.gauges.push_back({.name = gauge.name,
+                          .x_m = gauge.x_m,
+                          .z_m = gauge.z_m,
+                          .gauge_id = gauge.gauge_id,
+                          .person_id = gauge.person_id});
+    setReadings(*gauge.history, std::span(out.gauges).last(1));
+    out.gauges_time_s = std::max(out.gauges_time_s, gauge.history->newestTime_s());
+  }
 }
 
 /// Returns where the boat or the floater with this id is: BodiesFixed28 and FloatersFixed28 begin with id, x, y, z.
@@ -134,28 +155,28 @@ core::DiagnosticsView RoomFrames::diagnostics() {
   sim::WaterSim& water = room_.water->sim();
   const TickMeter::Means& means = room_.tick_meter.takeMeans(water);
   const sim::Health& h = water.health();
-  return {.step_ms = means.step_ms,
-          .real_time_factor = room_.time.realTimeFactor(),
-          .substeps_count = water.derived().substeps_count,
-          .particle_count = water.particleCount(),
-          .max_particle_speed_mps = h.max_speed_mps,
-          .max_elevation_m = h.max_elevation_m,
-          .kinetic_energy_j = h.kinetic_energy_j,
-          .potential_energy_j = h.potential_energy_j,
-          .wave_energy_j = h.wave_energy_j,
-          .mean_density_ratio = h.mean_density_ratio,
-          .max_density_ratio = h.max_density_ratio,
-          .nonfinite_count = water.nonfiniteCount(),
-          .escaped_count = water.escapedCount(),
-          .recovered_count = water.recoveredCount(),
-          .boat_count = water.boatCount(),
-          .volume_error_units = h.volume_error_units,
-          .emitted_m3 = h.emitted_m3,
-          .absorbed_m3 = h.absorbed_m3,
-          .breaking_ratio = h.breaking_ratio,
-          .passes = means.passes,
-          .gauges = gaugesNow(water),
-          .gauges_time_s = water.gauges() ? water.gauges()->newestTime_s() : 0.0};
+  core::DiagnosticsView out{.step_ms = means.step_ms,
+                            .real_time_factor = room_.time.realTimeFactor(),
+                            .substeps_count = water.derived().substeps_count,
+                            .particle_count = water.particleCount(),
+                            .max_particle_speed_mps = h.max_speed_mps,
+                            .max_elevation_m = h.max_elevation_m,
+                            .kinetic_energy_j = h.kinetic_energy_j,
+                            .potential_energy_j = h.potential_energy_j,
+                            .wave_energy_j = h.wave_energy_j,
+                            .mean_density_ratio = h.mean_density_ratio,
+                            .max_density_ratio = h.max_density_ratio,
+                            .nonfinite_count = water.nonfiniteCount(),
+                            .escaped_count = water.escapedCount(),
+                            .recovered_count = water.recoveredCount(),
+                            .boat_count = water.boatCount(),
+                            .volume_error_units = h.volume_error_units,
+                            .emitted_m3 = h.emitted_m3,
+                            .absorbed_m3 = h.absorbed_m3,
+                            .breaking_ratio = h.breaking_ratio,
+                            .passes = means.passes};
+  addGauges(room_, out);
+  return out;
 }
 
 }  // namespace spindrift::rooms

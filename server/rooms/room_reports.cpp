@@ -30,13 +30,13 @@ void RoomReports::sceneChanged() {
 
 void RoomReports::publishSnapshot() {
   snapshot_.publish({room_.water->scene(), room_.water->sceneVersion(), room_.time.isPaused(), room_.time.speed(),
-                     boats_, room_.water->sim().reducedCounts(), room_.water->sim().gauges()});
+                     boats_, room_.water->sim().reducedCounts(), room_.water->sim().gauges(), room_.gauges});
 }
 
 void RoomReports::tell() {
   const News news = std::exchange(room_.news, {});
   RoomOutlets& outlets = room_.outlets;
-  if (news.state || !news.parameters.empty()) publishSnapshot();
+  if (news.state || news.gauges || !news.parameters.empty()) publishSnapshot();
   if (news.state) outlets.timeChanged(room_.self, room_.time.isPaused(), room_.time.speed(), news.state_person_id);
   for (const auto& [path, value] : news.parameters) outlets.parameterChanged(room_.self, path, value);
   if (news.reset) outlets.wasReset(room_.self, news.reset_person_id);

@@ -60,7 +60,7 @@ void Roster::leave(core::SessionId session, Clock::time_point now) {
   const auto found = std::ranges::find_if(people_, [&](const auto& entry) { return entry.second.session == session; });
   if (session == 0 || found == people_.end()) return;
   changed();
-  if (found->second.boats.empty() && !found->second.is_muted) {
+  if (!found->second.isKept()) {
     people_.erase(found);
     return;
   }
@@ -96,6 +96,16 @@ void Roster::keepOnly(const std::set<std::uint32_t>& boat_ids) {
   for (auto& [id, person] : people_) {
     if (std::erase_if(person.boats, [&](std::uint32_t boat) { return !boat_ids.contains(boat); }) > 0) changed();
   }
+}
+
+bool Roster::isHere(std::uint32_t person_id) const {
+  const std::lock_guard lock(mutex_);
+  return people_.contains(person_id);
+}
+
+void Roster::setGaugeOwners(const std::set<std::uint32_t>& person_ids) {
+  const std::lock_guard lock(mutex_);
+  for (auto& [id, person] : people_) person.has_gauges = person_ids.contains(id);
 }
 
 std::vector<Roster::BoatOwner> Roster::boatOwners() const {
@@ -173,8 +183,7 @@ Roster::Turn Roster::settle(Clock::time_point now) {
       person.boats_stopped = true;
       out.boats_to_stop.insert(out.boats_to_stop.end(), person.boats.begin(), person.boats.end());
     }
-    const bool is_kept = person.waits || person.is_muted || !person.boats.empty();
-    if (person.session == 0 && (!is_kept || now - person.away_since >= grace_)) {
+    if (person.session == 0 && (!person.isKept() || now - person.away_since >= grace_)) {
       it = people_.erase(it);
       changed();
     } else {

@@ -265,11 +265,11 @@ std::vector<FieldIssue> checkStroke(const v1::Stroke& stroke, const v1::Scene& s
   return issues;
 }
 
-std::vector<FieldIssue> checkHold(double x_m, double z_m, const v1::Scene& scene) {
+std::vector<FieldIssue> checkPlace(double x_m, double z_m, const v1::Scene& scene, const std::string& prefix) {
   std::vector<FieldIssue> issues;
   const WaterExtents water = waterExtentsOf(scene);
-  checkPosition(x_m, water.side_x_m, "hold_floater.x_m", issues);
-  checkPosition(z_m, water.side_z_m, "hold_floater.z_m", issues);
+  checkPosition(x_m, water.side_x_m, prefix + "x_m", issues);
+  checkPosition(z_m, water.side_z_m, prefix + "z_m", issues);
   return issues;
 }
 

@@ -229,7 +229,7 @@ class Runner {
       const auto& gauges = client.received.diagnostics.gauges();
       const auto gauge = std::ranges::find(gauges, step.gauge(), &v1::GaugeReading::name);
       if (gauge == gauges.end()) {
-        seen = fmt::format("the scene has no gauge \"{}\"", step.gauge());
+        seen = fmt::format("there is no gauge \"{}\"", step.gauge());
         return false;
       }
       seen = fmt::format("elevation {:.4f} m, highest {:.4f} m, lowest {:.4f} m", gauge->elevation_m(),

@@ -19,9 +19,9 @@ bool isOperatorsCommand(const v1::Command& command) {
   return rooms::roleFor(command) >= core::Role::kOperator;
 }
 
-/// Players may do the same with their own boats; of an operator it may be anybody's.
-bool concernsBoatsOfOthers(const v1::Command& command) {
-  return command.has_take_boat() || command.has_remove_boat();
+/// Players may do the same with their own boats and gauges; of an operator it may be anybody's.
+bool concernsThingsOfOthers(const v1::Command& command) {
+  return command.has_take_boat() || command.has_remove_boat() || command.has_remove_gauge();
 }
 
 }  // namespace
@@ -47,7 +47,7 @@ void Audit::command(const rooms::Command& command, access::AuditEvent event) {
   const google::protobuf::FieldDescriptor* const action = actionOf(command.message);
   if (!sender.details || !action) return;  // the room's own
   const bool is_operator = sender.role >= core::Role::kOperator;
-  if (!isOperatorsCommand(command.message) && !(is_operator && concernsBoatsOfOthers(command.message))) return;
+  if (!isOperatorsCommand(command.message) && !(is_operator && concernsThingsOfOthers(command.message))) return;
   event.kind = action->name();
   event.content = wire::toJson(command.message.GetReflection()->GetMessage(command.message, action));
   event.who = *sender.details;

@@ -145,8 +145,10 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
   const auto eachGauge = [&](const char* name, const char* help, double Reading::*value) {
     page.head(name, "gauge", help);
     for (const RoomSample& room : rooms) {
-      for (const Reading& gauge : room.vitals->diagnostics.gauges)
+      for (const Reading& gauge : room.vitals->diagnostics.gauges) {
+        if (gauge.gauge_id != 0) continue;  // those of people come and go: each would be a new series of the scraper
         page.sample(room.label + "," + metricLabel("gauge", gauge.name), gauge.*value);
+      }
     }
   };
   eachGauge("room_gauge_elevation_meters", "Elevation of the water at a gauge of the scene.", &Reading::elevation_m);

@@ -48,6 +48,7 @@ unsigned httpStatusOf(v1::RejectReason reason) {
       return 403;
     case v1::REJECT_REASON_UNKNOWN_BOAT:
     case v1::REJECT_REASON_UNKNOWN_FLOATER:
+    case v1::REJECT_REASON_UNKNOWN_GAUGE:
     case v1::REJECT_REASON_UNKNOWN_PERSON:
     case v1::REJECT_REASON_UNKNOWN_SCENE:
     case v1::REJECT_REASON_UNKNOWN_PARAMETER:
@@ -201,15 +202,23 @@ void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpR
     return respond(json(200, out));
   }
   const auto snapshot = room.snapshot();
-  const auto& gauges = snapshot->scene.gauges();
-  const auto gauge = std::ranges::find(gauges, call.path[3], &v1::Gauge::name);
-  if (gauge == gauges.end() || !snapshot->gauges)
-    return respond(problem(404, "the scene has no such gauge; /api/v1/rooms/ROOM/gauges lists what there is"));
   v1::GaugeSeries out;
-  out.set_name(gauge->name());
-  out.set_x_m(gauge->x_m());
-  out.set_z_m(gauge->z_m());
-  const auto series = snapshot->gauges->series(static_cast<std::size_t>(gauge - gauges.begin()));
+  sim::GaugeHistory::Series series;
+  const auto& of_scene = snapshot->scene.gauges();
+  const auto gauge = std::ranges::find(of_scene, call.path[3], &v1::Gauge::name);
+  const auto placed = std::ranges::find(snapshot->placed_gauges, call.path[3], &rooms::PlacedGauge::name);
+  if (gauge != of_scene.end() && snapshot->gauges) {
+    out.set_x_m(gauge->x_m());
+    out.set_z_m(gauge->z_m());
+    series = snapshot->gauges->series(static_cast<std::size_t>(gauge - of_scene.begin()));
+  } else if (placed != snapshot->placed_gauges.end()) {
+    out.set_x_m(placed->x_m);
+    out.set_z_m(placed->z_m);
+    series = placed->history->series(0);
+  } else {
+    return respond(problem(404, "the room has no such gauge; /api/v1/rooms/ROOM/gauges lists what there is"));
+  }
+  out.set_name(call.path[3]);
   for (std::size_t k = 0; k < series.time_s.size(); ++k) {
     out.add_time_s(series.time_s[k]);
     out.add_elevation_m(series.readings[k].elevation_m);

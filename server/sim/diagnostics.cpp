@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cstring>
 #include <span>
 #include <utility>
@@ -57,15 +58,12 @@ Total total(std::span<const std::byte> bytes) {
 }
 
 using GaugeTexel = std::array<float, 4>;
+constexpr std::size_t kGaugeBytes = MAX_GAUGES * sizeof(GaugeTexel);
 
-std::vector<GaugeReading> gaugeReadings(std::span<const std::byte> bytes) {
-  std::vector<GaugeReading> out(bytes.size() / sizeof(GaugeTexel));
-  for (std::size_t k = 0; k < out.size(); ++k) {
-    GaugeTexel texel;
-    std::memcpy(texel.data(), bytes.data() + k * sizeof texel, sizeof texel);
-    out[k] = {.elevation_m = texel[0], .velocity_x_mps = texel[1], .velocity_z_mps = texel[2]};
-  }
-  return out;
+GaugeReading gaugeReading(std::span<const std::byte> bytes, std::size_t gauge) {
+  GaugeTexel texel;
+  std::memcpy(texel.data(), bytes.data() + gauge * sizeof texel, sizeof texel);
+  return {.elevation_m = texel[0], .velocity_x_mps = texel[1], .velocity_z_mps = texel[2]};
 }
 
 /// Number of invocations, and of partial results, for this many items: a whole number of groups.
@@ -96,24 +94,36 @@ Diagnostics::Diagnostics(Creation& create, const core::Scene& scene, const Deriv
     surface_shares_ = sharesFor(cells_, surface_pass_, ctx_);
     surface_sums_ = create.buffer("surface sums", surface_shares_ * sizeof(Partial), gpu::BufferContent::kScratch);
   }
-  if (!scene.gauges.empty()) createGauges(create, scene, *derived.wave);
+  if (!scene.gauges.empty()) placeGauges(create, scene, *derived.wave, {});
   resize(create, derived);
 }
 
-void Diagnostics::createGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout) {
+void Diagnostics::placeGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout,
+                              std::span<const GaugePlace> places) {
   static_assert(MAX_GAUGES == core::kMaxGauges);
-  shared::GaugeUniforms uniforms{};
-  uniforms.gauge_count = static_cast<std::uint32_t>(scene.gauges.size());
-  for (std::size_t k = 0; k < scene.gauges.size(); ++k) {
-    const core::Gauge& gauge = scene.gauges[k];
-    uniforms.gauges[k].column = static_cast<float>((gauge.x_m + layout.length_m / 2) / layout.cell_m - 0.5);
-    uniforms.gauges[k].row = static_cast<float>((gauge.z_m + layout.width_m / 2) / layout.cell_m - 0.5);
+  assert(scene.gauges.size() + places.size() <= MAX_GAUGES);
+  if (!gauge_readings_) {
+    auto uniforms = create.uniforms<shared::GaugeUniforms>("gauges");
+    auto readings = create.buffer("gauge readings", kGaugeBytes, gpu::BufferContent::kScratch);
+    auto pass = create.pass("diagnostics/gauges.comp");
+    if (create.error()) return;
+    gauge_places_ = std::move(uniforms);
+    gauge_readings_ = std::move(readings);
+    gauge_pass_ = std::move(pass);
   }
-  gauge_places_ = create.uniforms<shared::GaugeUniforms>("gauges");
-  gauge_readings_ =
-      create.buffer("gauge readings", scene.gauges.size() * sizeof(GaugeTexel), gpu::BufferContent::kScratch);
-  gauge_pass_ = create.pass("diagnostics/gauges.comp");
-  if (!create.error()) gauge_places_.uploadValue(uniforms);
+  shared::GaugeUniforms uniforms{};
+  const auto add = [&](double x_m, double z_m) {
+    shared::GaugePlace& place = uniforms.gauges[uniforms.gauge_count++];
+    place.column = static_cast<float>((x_m + layout.length_m / 2) / layout.cell_m - 0.5);
+    place.row = static_cast<float>((z_m + layout.width_m / 2) / layout.cell_m - 0.5);
+  };
+  for (const core::Gauge& gauge : scene.gauges) add(gauge.x_m, gauge.z_m);
+  placed_ids_.clear();
+  for (const GaugePlace& place : places) {
+    add(place.x_m, place.z_m);
+    placed_ids_.push_back(place.gauge_id);
+  }
+  gauge_places_.uploadValue(uniforms);
 }
 
 void Diagnostics::resize(Creation& create, const Derived& derived) {
@@ -123,7 +133,7 @@ void Diagnostics::resize(Creation& create, const Derived& derived) {
   if (shares > 0) sums = create.buffer("particle sums", shares * sizeof(Partial), gpu::BufferContent::kScratch);
   auto ring = create.ring(
       "diagnostics",
-      (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) + gauge_readings_.sizeBytes(),
+      (shares + surface_shares_) * sizeof(Partial) + (is_pooled_ ? POOL_WORDS * 4 : 0) + (cells_ > 0 ? kGaugeBytes : 0),
       kReadingSlotCount);
   if (create.error()) return;
   particle_sums_ = std::move(sums);
@@ -170,17 +180,20 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
   if (is_pooled_) {
     copied = copied && slot->copyFrom(population->pool()->words(), 0, POOL_WORDS * 4, poolOffset());
   }
-  if (gauge_readings_) {  // ELEVATION, FLOW and the basin are bound
+  const std::size_t gauge_count = scene.gauges.size() + placed_ids_.size();
+  if (gauge_count > 0) {  // ELEVATION, FLOW and the basin are bound
     gauge_places_.bindUniform(GAUGE_UNIFORMS);
     gauge_readings_.bindStorage(PARTIAL_SUM);
-    gauge_pass_.dispatch(static_cast<std::uint32_t>(gauge_readings_.sizeBytes() / sizeof(GaugeTexel)));
-    copied = copied && slot->copyFrom(gauge_readings_, 0, gauge_readings_.sizeBytes(), gaugeOffset());
+    gauge_pass_.dispatch(static_cast<std::uint32_t>(gauge_count));
+    copied = copied && slot->copyFrom(gauge_readings_, 0, gauge_count * sizeof(GaugeTexel), gaugeOffset());
+    scale.scene_gauge_count = scene.gauges.size();
+    scale.placed_ids = placed_ids_;
   }
   // The next tick's passes write the buffers that were read here.
   ctx_.barrier(gpu::Barrier::kStorageAndTexel);
   if (!copied) return;
   slot->submit(tick);
-  in_flight_.push_back(scale);
+  in_flight_.push_back(std::move(scale));
 }
 
 std::vector<Health> Diagnostics::poll() {
@@ -188,7 +201,7 @@ std::vector<Health> Diagnostics::poll() {
   for (const auto& slot : ring_->poll()) {
     // A slot whose fence failed is never returned: skip it.
     while (in_flight_.front().tick != slot->tag()) in_flight_.pop_front();
-    const Scale scale = in_flight_.front();
+    const Scale scale = std::move(in_flight_.front());
     in_flight_.pop_front();
     Health h;
     h.tick = slot->tag();
@@ -233,7 +246,10 @@ std::vector<Health> Diagnostics::poll() {
       h.wave_volume_m3 = static_cast<double>(h.surface_units) * ELEVATION_UNIT_M * area_m2;
       h.wave_energy_j = 0.5 * scale.density_kgpm3 * area_m2 * (scale.gravity_mps2 * t.sum[0] + t.sum[1]);
     }
-    h.gauges = gaugeReadings(bytes.subspan(gaugeOffset(), gauge_readings_.sizeBytes()));
+    const auto gauges = bytes.subspan(gaugeOffset());
+    for (std::size_t k = 0; k < scale.scene_gauge_count; ++k) h.gauges.push_back(gaugeReading(gauges, k));
+    for (std::size_t k = 0; k < scale.placed_ids.size(); ++k)
+      h.placed_gauges.push_back({scale.placed_ids[k], gaugeReading(gauges, scale.scene_gauge_count + k)});
     out.push_back(std::move(h));
   }
   return out;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include <spindrift/core/scene.h>
@@ -31,6 +32,11 @@ class Diagnostics {
   /// changes nothing.
   void resize(Creation& create, const Derived& derived);
 
+  /// Measures at these positions, beside the gauges of the scene, from the next measure() on; replaces those before.
+  /// Together they are at most core::kMaxGauges. An error changes nothing.
+  void placeGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout,
+                   std::span<const GaugePlace> places);
+
   /// Measures the state after `tick`; absent parts are null. What the sums mean is noted with them, because parameters
   /// may change before poll() returns the result. There is one slot per tick that may be in flight (TicksInFlight), so
   /// every tick is measured if poll() is called before each call.
@@ -50,9 +56,10 @@ class Diagnostics {
     double cell_area_m2 = 0.0;
     std::int64_t droplet_units = 0;
     std::int64_t resting_units = 0;  ///< Wave::restingUnits()
+    std::size_t scene_gauge_count = 0;
+    std::vector<std::uint32_t> placed_ids{};  ///< of the gauges that follow those of the scene
   };
 
-  void createGauges(Creation& create, const core::Scene& scene, const WaveLayout& layout);
   // Offsets in a slot [bytes]: words of the pool, and behind them readings of the gauges.
   [[nodiscard]] std::size_t poolOffset() const;
   [[nodiscard]] std::size_t gaugeOffset() const;
@@ -66,9 +73,10 @@ class Diagnostics {
   std::deque<Scale> in_flight_;       ///< of the slots that poll() has not returned, oldest first
   std::uint32_t crowded_before_ = 0;  ///< NeighborGrid::crowded() of the last result
   gpu::Buffer particle_sums_, surface_sums_;
-  // Gauges; empty in scenes without: their places, and 4 floats per gauge, as shaders/diagnostics/gauges.comp writes
+  // Gauges; empty until there is one: their places, and 4 floats per gauge, as shaders/diagnostics/gauges.comp writes
   // them.
   gpu::Buffer gauge_places_, gauge_readings_;
+  std::vector<std::uint32_t> placed_ids_;
   Pass particle_pass_, surface_pass_, gauge_pass_;
   std::unique_ptr<gpu::ReadbackRing> ring_;
 };

@@ -1,9 +1,13 @@
 // WaterSim: changes of its scene, and its start.
 
+#include <string>
+#include <utility>
+
 #include <shared/bindings.h>
 
 #include <spindrift/sim_state/relay_particles.h>
 
+#include "shader_defines.h"
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
@@ -111,6 +115,29 @@ core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
   return {};
 }
 
+core::Result<void> WaterSim::placeGauges(std::span<const GaugePlace> places) {
+  if (!derived_.wave) return core::invalid("the scene has no wave to measure");
+  if (scene_.gauges.size() + places.size() > core::kMaxGauges) {
+    return core::invalid(std::to_string(places.size()) + " gauges and " + std::to_string(scene_.gauges.size()) +
+                         " of the scene are more than " + std::to_string(core::kMaxGauges));
+  }
+  Creation create(ctx_, shaderDefines(scene_));
+  parts_->diagnostics->placeGauges(create, scene_, *derived_.wave, places);
+  if (create.error()) return *create.error();
+  PlacedGauges kept;
+  for (const GaugePlace& place : places) {
+    const auto known = placed_gauges_.find(place.gauge_id);
+    kept[place.gauge_id] = known != placed_gauges_.end() ? known->second : std::make_shared<GaugeHistory>(1);
+  }
+  placed_gauges_ = std::move(kept);
+  return {};
+}
+
+std::shared_ptr<const GaugeHistory> WaterSim::placedGauge(std::uint32_t gauge_id) const {
+  const auto found = placed_gauges_.find(gauge_id);
+  return found != placed_gauges_.end() ? found->second : nullptr;
+}
+
 void WaterSim::Parts::pressBodies() {
   if (!wave) return;
   wave->clearPressure();
@@ -157,6 +184,7 @@ void WaterSim::reset() {
   health_ = {};
   ledger_units_.reset();
   if (gauges_) gauges_->clear();
+  for (const auto& [gauge_id, history] : placed_gauges_) history->clear();
   setCareful(false);
   uploadStartingState();
   parts_->checkpoints->forget();

@@ -37,7 +37,7 @@ void WaterSim::watchHealth() {
   for (const Health& health : parts_->diagnostics->poll()) {
     if (health.tick <= abandoned_until_tick_) continue;
     health_ = health;
-    if (gauges_) gauges_->add(static_cast<double>(health.tick - start_tick_) * derived_.tick_s, health.gauges);
+    recordGauges(health);
     nonfinite_count_ += health.nonfinite_count;
     escaped_count_ += health.escaped_count;
     if (health.crowded_count > 0 && crowded_count_ == 0) {
@@ -56,6 +56,15 @@ void WaterSim::watchHealth() {
     }
   }
   if (is_careful_ && tick_ >= careful_until_tick_) setCareful(false);
+}
+
+void WaterSim::recordGauges(const Health& health) {
+  const double time_s = static_cast<double>(health.tick - start_tick_) * derived_.tick_s;
+  if (gauges_) gauges_->add(time_s, health.gauges);
+  for (const PlacedReading& placed : health.placed_gauges) {
+    const auto history = placed_gauges_.find(placed.gauge_id);
+    if (history != placed_gauges_.end()) history->second->add(time_s, std::span(&placed.reading, 1));
+  }
 }
 
 void WaterSim::saveCheckpoint() {

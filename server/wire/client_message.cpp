@@ -268,11 +268,23 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kHoldFloater:
       needFloaters("hold_floater");
-      if (issues.empty()) issues = scene::checkHold(command.hold_floater().x_m(), command.hold_floater().z_m(), scene);
+      if (issues.empty()) {
+        const v1::HoldFloater& hold = command.hold_floater();
+        issues = scene::checkPlace(hold.x_m(), hold.z_m(), scene, "hold_floater.");
+      }
       break;
     case v1::Command::kRemoveFloater:
       needFloaters("remove_floater");
       break;
+    case v1::Command::kPlaceGauge: {
+      const v1::PlaceGauge& gauge = command.place_gauge();
+      if (!scene.has_wave()) {
+        scene::addAbsent(issues, "place_gauge", "this scene has no wave to measure; choose a scene that has");
+      } else {
+        issues = scene::checkPlace(gauge.x_m(), gauge.z_m(), scene, "place_gauge.");
+      }
+      break;
+    }
     case v1::Command::kStartGame:
       checkGame(command.start_game().kind(), scene, issues);
       break;

@@ -171,3 +171,118 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     await phone.getByTestId("gauge-at").filter({ hasText: /^at / }).waitFor({ timeout: kPatienceMs });
   });
 });
+
+describe("gauges of one's own", { skip, concurrency: 1 }, () => {
+  let server;
+  let browser;
+  let desk;
+  let phone;
+
+  before(async () => {
+    server = await startServer(0, ["--scene", "pool", "--guests", "player", "--grace-s", "1"]);
+    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    desk = await open({ viewport: { width: 1280, height: 720 } });
+    phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+  }, slow);
+  after(async () => {
+    await browser?.close();
+    await server?.stop("SIGTERM");
+  });
+
+  async function open(options) {
+    const page = await (await browser.newContext(options)).newPage();
+    page.setDefaultTimeout(kPatienceMs);
+    await page.goto(`${server.url}?quality=minimal`, { timeout: kPatienceMs });
+    await waitFor(page, "a picture", ({ connectionState, shownTimeS, role }) => connectionState === "live" && shownTimeS !== null && role === "player");
+    return page;
+  }
+
+  const gaugesWhen = (page, what, names) => waitFor(page, what, ({ gauges }) => gauges.map(({ name }) => name).join() === names).then(({ gauges }) => gauges);
+  const isPlacing = (page) => page.getByTestId("gauge-place").getAttribute("aria-pressed").then((value) => value === "true");
+  const valueShows = (page, gauge) => page.getByTestId(`gauge-key-${gauge}`).locator(".gauge-value").filter({ hasText: /\d m$/ }).waitFor({ timeout: kPatienceMs });
+
+  /** Where the water can be seen and touched: a place on it, and the pixel. */
+  async function openWater(page) {
+    const found = await page.evaluate(() => {
+      for (const xM of [0, 1, -1, 2, -2, 3, -3])
+        for (const zM of [0, 1, -1, 2, -2, 3, -3]) {
+          const [xPx, yPx] = window.spindrift.pixelOf(xM, zM);
+          if (document.elementFromPoint(xPx, yPx)?.id === "view") return { xM, zM, xPx, yPx };
+        }
+      return undefined;
+    });
+    assert.ok(found, "no place on the water can be touched");
+    return found;
+  }
+  /** Waves of 0.7 m move what is seen under a pixel by 1.4 m. */
+  const isNear = ({ xM, zM }, place) => assert.ok(Math.hypot(xM - place.xM, zM - place.zM) < 2, `${xM}, ${zM} for ${place.xM}, ${place.zM}`);
+
+  it("are placed by a click, in a scene that has none, and others see them", slow, async () => {
+    await desk.getByTestId("gauges").click();
+    await desk.getByTestId("gauge-at").filter({ hasText: "no gauge" }).waitFor({ timeout: kPatienceMs });
+    assert.deepEqual((await desk.evaluate(() => window.spindrift.stats())).gauges, []);
+    await desk.getByTestId("gauge-place").click();
+    assert.ok(await isPlacing(desk));
+    assert.match(await desk.getByTestId("hint").textContent(), /Click the water/);
+    const place = await openWater(desk);
+    await desk.mouse.click(place.xPx, place.yPx);
+    const [gauge] = await gaugesWhen(desk, "the gauge", "G1");
+    isNear(gauge, place);
+    assert.ok(gauge.lowM < -1.4 && gauge.topM > 0.2, `${gauge.lowM} to ${gauge.topM} m`);
+    assert.ok(!(await isPlacing(desk)));
+    assert.equal((await desk.evaluate(() => window.spindrift.stats())).lastCommand.case, "placeGauge");
+    const [seen] = await gaugesWhen(phone, "the gauge of the other", "G1");
+    assert.deepEqual(seen, gauge);
+    await phone.getByTestId("gauge-tags").locator("span", { hasText: "G1" }).waitFor({ state: "attached", timeout: kPatienceMs });
+    await valueShows(desk, "G1");
+    const { time_s: times, x_m: xM } = await (await fetch(`${server.url}api/v1/rooms/main/gauges/G1`)).json();
+    assert.ok(times.length > 1 && xM === gauge.xM, `${times.length} ticks at ${xM} m`);
+  });
+
+  it("are not placed after Escape, and a tap is one of the tool again", slow, async () => {
+    await desk.getByTestId("gauge-place").click();
+    await desk.keyboard.press("Escape");
+    assert.ok(!(await isPlacing(desk)));
+    assert.ok(await desk.getByTestId("hint").isHidden());
+    const place = await openWater(desk);
+    await desk.mouse.click(place.xPx, place.yPx);
+    await waitFor(desk, "a splash", ({ lastCommand }) => lastCommand.case === "splash");
+    await gaugesWhen(desk, "the one gauge", "G1");
+  });
+
+  it("are placed by touch, and removed by who has placed them", slow, async () => {
+    await phone.getByTestId("gauges").tap();
+    await valueShows(phone, "G1");
+    assert.ok(await phone.getByTestId("gauge-remove-G1").isHidden(), "it is the other's");
+    assert.match(await phone.getByTestId("gauge-key-G1").getAttribute("title"), /^Placed by guest \d$/);
+    await phone.getByTestId("gauge-place").tap();
+    await phone.getByTestId("hint").filter({ hasText: "Tap the water" }).waitFor({ timeout: kPatienceMs });
+    const place = await openWater(phone);
+    await phone.touchscreen.tap(place.xPx, place.yPx);
+    isNear((await gaugesWhen(phone, "the second gauge", "G1,G2"))[1], place);
+    await gaugesWhen(desk, "the second gauge on the other page", "G1,G2");
+    await valueShows(phone, "G2");
+    const small = await phone.evaluate((least) => [...document.querySelectorAll(".gauge-card :is(button, select)")].filter((each) => each.checkVisibility() && (each.offsetWidth < least || each.offsetHeight < least)).map(({ textContent }) => textContent), kFingerPx);
+    assert.deepEqual(small, []);
+    await phone.getByTestId("gauge-remove-G2").tap();
+    for (const page of [phone, desk]) await gaugesWhen(page, "the first gauge alone", "G1");
+    await phone.getByTestId("gauge-key-G2").waitFor({ state: "detached", timeout: kPatienceMs });
+    assert.equal((await fetch(`${server.url}api/v1/rooms/main/gauges/G2`)).status, 404);
+  });
+
+  it("are placed by keys", slow, async () => {
+    await desk.getByTestId("gauge-place").focus();
+    await desk.keyboard.press("Enter");
+    assert.ok(await isPlacing(desk));
+    for (let k = 0; k < 5; ++k) await desk.keyboard.press("ArrowUp");
+    await desk.keyboard.press("Enter");
+    await gaugesWhen(desk, "the third gauge", "G1,G3");
+    await desk.getByTestId("gauge-remove-G3").click();
+    await gaugesWhen(desk, "its end", "G1");
+  });
+
+  it("are gone some time after their owner", slow, async () => {
+    await desk.close();
+    await gaugesWhen(phone, "a water without gauges", "");
+  });
+});

@@ -64,6 +64,9 @@ CLIENT_MESSAGES = {
     "start_ball": "command { command_id: 32 start_game { kind: GAME_KIND_BALL goals_count: 2 } }",
     "end_game": "command { command_id: 33 end_game { } }",
     "remove_floaters": "command { command_id: 26 remove_floater { all: true } }",
+    "place_gauge": "command { command_id: 34 place_gauge { x_m: 3.5 z_m: -2 } }",
+    "place_gauge_nan": "command { command_id: 35 place_gauge { x_m: nan z_m: 600 } }",
+    "remove_gauge": "command { command_id: 36 remove_gauge { gauge_id: 4294967295 } }",
 }
 
 # Commands and requests of the REST interface.

@@ -92,6 +92,33 @@ TEST_F(RoomFidelity, KeepsBoatsTheirOwnersAndTheParameters) {
   EXPECT_THAT(outlets_.rejected, testing::IsEmpty());
 }
 
+TEST_F(RoomFidelity, KeepsTheGaugesThatPeopleHavePlacedUntilAnotherSceneBegins) {
+  const std::uint32_t person_id =
+      room_->roster().arrive({.session = 1, .role = core::Role::kOperator, .name = "Ada"}).person_id;
+  send(1, placeGauge(-3, 2), 1, person_id);
+  ASSERT_TRUE(isAnswered(1));
+  ASSERT_TRUE(runTicks(20));
+  send(2, level(v1::FIDELITY_DRAFT));
+  ASSERT_TRUE(isAnswered(2));
+  ASSERT_TRUE(runTicks(20));
+  EXPECT_THAT(outlets_.rejected, testing::IsEmpty());
+  const auto placed = room_->snapshot()->placed_gauges;
+  ASSERT_EQ(placed.size(), 1u);
+  EXPECT_EQ(placed[0].x_m, -3.0);
+  EXPECT_EQ(placed[0].person_id, person_id);
+  const auto times_s = placed[0].history->series(0).time_s;
+  ASSERT_GT(times_s.size(), 5u) << "the new water measures it";
+  EXPECT_GT(times_s.front(), 0.2) << "time continues";
+  const auto later = Clock::now() + 1s;  // scenes follow each other at an interval
+  ASSERT_TRUE(runUntil([&] { return Clock::now() >= later; }));
+  send(3, changeScene("pond"));
+  ASSERT_TRUE(isAnswered(3));
+  EXPECT_THAT(outlets_.rejected, testing::IsEmpty());
+  EXPECT_THAT(room_->snapshot()->placed_gauges, testing::IsEmpty());
+  room_->roster().leave(1, Clock::now());
+  EXPECT_FALSE(room_->roster().isHere(person_id)) << "without a gauge nobody is kept";
+}
+
 TEST_F(RoomFidelity, PresentLevelChangesNothing) {
   send(1, level(v1::FIDELITY_BALANCED));
   ASSERT_TRUE(isAnswered(1));

@@ -119,6 +119,19 @@ inline v1::Command changeScene(const std::string& name) {
   return command;
 }
 
+inline v1::Command placeGauge(double x_m, double z_m) {
+  v1::Command command;
+  command.mutable_place_gauge()->set_x_m(x_m);
+  command.mutable_place_gauge()->set_z_m(z_m);
+  return command;
+}
+
+inline v1::Command removeGauge(std::uint32_t gauge_id) {
+  v1::Command command;
+  command.mutable_remove_gauge()->set_gauge_id(gauge_id);
+  return command;
+}
+
 inline v1::Command breakingWave(v1::Side side, double amplitude_m, double length_m) {
   v1::Command command;
   command.mutable_breaking_wave()->set_side(side);
@@ -129,12 +142,13 @@ inline v1::Command breakingWave(v1::Side side, double amplitude_m, double length
 
 /// The answer to a command that gave out these ids.
 inline v1::Ack ackOf(std::uint64_t command_id, std::uint64_t applied_tick, std::uint32_t boat_id = 0,
-                     std::uint32_t floater_id = 0) {
+                     std::uint32_t floater_id = 0, std::uint32_t gauge_id = 0) {
   v1::Ack out;
   out.set_command_id(command_id);
   out.set_applied_tick(applied_tick);
   out.set_boat_id(boat_id);
   out.set_floater_id(floater_id);
+  out.set_gauge_id(gauge_id);
   return out;
 }
 

@@ -1,7 +1,12 @@
 // Gauges: what the page keeps of their readings, the table that it saves, and the poles in the picture.
 import { describe, expect, it } from "vitest";
 
+import type { Display } from "../src/app/display";
+import { Gauges } from "../src/app/gauges";
 import type { GreetingInfo } from "../src/codec/greeting";
+import type { DiagnosticsInfo } from "../src/codec/parse";
+import type { GaugeInfo } from "../src/codec/scene_info";
+import type { GaugeView } from "../src/gauges/gauge_view";
 import { GaugeRecord, kMostTimes, type GaugeReadingInfo } from "../src/gauges/gauge_record";
 import { readSeries } from "../src/net/gauge_request";
 import { bandHeightM, polesOf } from "../src/scene/solids/gauge_poles";
@@ -74,6 +79,73 @@ describe("the answer of the server", () => {
     expect(() => readSeries({ ...answer, elevation_m: [0] })).toThrow("lists of 2, 1, 2, 2 numbers");
     expect(() => readSeries({ ...answer, velocity_x_mps: ["NaN", 0] })).toThrow("velocity_x_mps is not a list of numbers");
     expect(() => readSeries({ ...answer, time_s: [2, 1] })).toThrow("time_s has to ascend");
+  });
+});
+
+describe("the gauges of a room", () => {
+  const toe: GaugeInfo = { name: "toe", xM: 1, zM: 0 };
+  const own = (gaugeId: number, xM = 2): GaugeInfo => ({ name: `G${gaugeId}`, xM, zM: 0, placed: { gaugeId, personId: 5 } });
+  const greeting = (change: object = {}): GreetingInfo => ({ room: "main", sceneName: "pool", gauges: [toe], wave: {}, ...change }) as unknown as GreetingInfo;
+  const diagnostics = (gaugesTimeS: number, ...gauges: object[]): DiagnosticsInfo =>
+    ({ gaugesTimeS, gauges: gauges.map((gauge) => ({ gaugeId: 0, personId: 0, unread: false, zM: 0, elevationM: 0.5, ...gauge })) }) as unknown as DiagnosticsInfo;
+  const g1 = { name: "G1", xM: 2, gaugeId: 1, personId: 5 };
+
+  function rig() {
+    const drawn: (readonly GaugeInfo[])[] = [];
+    const told: { gauges: readonly GaugeInfo[]; isOtherWater: boolean }[] = [];
+    const taken: string[][] = [];
+    const view = {
+      setGauges: (gauges: readonly GaugeInfo[], isOtherWater: boolean) => void told.push({ gauges, isOtherWater }),
+      take: (_: number, readings: readonly GaugeReadingInfo[]) => void taken.push(readings.map(({ name }) => name)),
+    } as unknown as GaugeView;
+    const loads = { count: 0 };
+    const display = { scene: { setGauges: (gauges: readonly GaugeInfo[]) => void drawn.push(gauges) } } as unknown as Display;
+    const gauges = new Gauges(display, () => (++loads.count, Promise.resolve(view)));
+    return { gauges, drawn, told, taken, loads };
+  }
+
+  it("are those of the scene and those that people have placed, as these come and go", async () => {
+    const { gauges, drawn, told, loads } = rig();
+    gauges.enter(greeting());
+    await Promise.resolve();
+    for (const change of [diagnostics(1, { name: "toe", xM: 1 }), diagnostics(1.1, { name: "toe", xM: 1 }, g1), diagnostics(1.2, { name: "toe", xM: 1 }, g1), diagnostics(1.3, { name: "toe", xM: 1 })]) gauges.take(change);
+    expect(drawn).toEqual([[toe], [toe, own(1)], [toe]]);
+    expect(told.map((each) => each.isOtherWater)).toEqual([true, false, false]);
+    expect(loads.count).toBe(1);
+  });
+
+  it("stay while the same water continues, and are gone with another one", () => {
+    const { gauges, drawn } = rig();
+    gauges.enter(greeting());
+    gauges.take(diagnostics(1, g1));
+    gauges.enter(greeting());
+    expect(drawn.at(-1)).toEqual([toe, own(1)]);
+    gauges.enter(greeting({ sceneName: "sea", gauges: [] }));
+    expect(drawn.at(-1)).toEqual([]);
+  });
+
+  it("have no readings before the first tick that was measured", async () => {
+    const { gauges, taken } = rig();
+    gauges.enter(greeting());
+    await Promise.resolve();
+    gauges.take(diagnostics(0, { name: "toe", xM: 1, unread: true }, { ...g1, unread: true }));
+    gauges.take(diagnostics(1, { name: "toe", xM: 1 }, { ...g1, unread: true }));
+    gauges.take(diagnostics(1.1, { name: "toe", xM: 1 }, g1));
+    expect(taken).toEqual([["toe"], ["toe", "G1"]]);
+  });
+
+  it("are moved when the server has begun anew and gives its names again", () => {
+    const { gauges, drawn } = rig();
+    gauges.enter(greeting());
+    gauges.take(diagnostics(9, g1));
+    gauges.take(diagnostics(1, { ...g1, xM: -4 }));
+    expect(drawn.at(-1)).toEqual([toe, own(1, -4)]);
+  });
+
+  it("need nothing of the page where there is no wave", () => {
+    const { gauges, loads } = rig();
+    gauges.enter(greeting({ gauges: [], wave: undefined }));
+    expect(loads.count).toBe(0);
   });
 });
 

@@ -183,13 +183,14 @@ describe("golden bytes", () => {
     });
   });
 
-  it("reads the diagnostics to the last bit", () => {
-    const golden = cases.find((c) => c.kind === "diagnostics")!;
+  it.each(cases.filter((c) => c.kind === "diagnostics"))("reads $file to the last bit", (golden) => {
     const parsed = parse(read(golden.file));
     if (parsed.kind !== "diagnostics") throw new Error(JSON.stringify(parsed));
     const { file: _, verdict: __, kind: ___, ...fields } = golden;
     const bigints = new Set(["tick", "nonfinite_count", "escaped_count", "recovered_count", "volume_error_units"]);
-    for (const [name, value] of Object.entries(fields))
+    const { gauges = [], ...numbers } = fields as { gauges?: Record<string, unknown>[] };
+    expect(parsed.diagnostics.gauges).toEqual(gauges.map((gauge) => Object.fromEntries(Object.entries(gauge).map(([name, value]) => [camel(name), value]))));
+    for (const [name, value] of Object.entries(numbers))
       expect(parsed.diagnostics[camel(name) as keyof typeof parsed.diagnostics], name).toEqual(bigints.has(name) ? BigInt(value as string) : value);
   });
 

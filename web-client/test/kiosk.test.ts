@@ -57,6 +57,7 @@ describe("the limits of visitors", () => {
     const others: CommandAction[] = [
       { case: "setPaused", value: { paused: true } }, { case: "reset", value: {} }, { case: "changeScene", value: {} }, { case: "setParameter", value: {} },
       { case: "setSpeed", value: {} }, { case: "takeBoat", value: { boatId: 1 } }, { case: "removeFloater", value: { all: true } }, { case: "removeFloater", value: { floaterId: 7 } }, { case: "removeBoat", value: { boatId: 3 } },
+      { case: "placeGauge", value: {} }, { case: "removeGauge", value: { gaugeId: 1 } },
     ];
     for (const action of others) expect([action.case, limits.takes(action, [1], 0)]).toEqual([action.case, false]);
     expect(limits.refusedCount).toBe(others.length);

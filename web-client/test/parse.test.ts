@@ -102,6 +102,16 @@ describe("parse", () => {
     expect(parse(encode({ case: "refusal", value: { message: "no" } }))).toEqual({ kind: "refusal", message: "no" });
     const parsed = parse(encode({ case: "diagnostics", value: { tick: 6n, stepMs: 4.5, nonfiniteCount: 1n, passes: [{ name: "sph", ms: 3 }] } }));
     expect(parsed).toMatchObject({ kind: "diagnostics", diagnostics: { tick: 6n, stepMs: 4.5, nonfiniteCount: 1n, passes: [{ name: "sph", ms: 3 }] } });
+  });
+
+  it("reads gauges at places that can be drawn, and at most as many as there can be", () => {
+    const gauges = [{ name: "toe", xM: -2 }, { name: "G1", xM: NaN, gaugeId: 1 }, { name: "G2", zM: 1e300, gaugeId: 2 }, { name: "G3", xM: 4, zM: -1, gaugeId: 3, personId: 9, unread: true }];
+    const parsed = parse(encode({ case: "diagnostics", value: { gauges } }));
+    if (parsed.kind !== "diagnostics") throw new Error(JSON.stringify(parsed));
+    expect(parsed.diagnostics.gauges.map(({ name }) => name)).toEqual(["toe", "G3"]);
+    expect(parsed.diagnostics.gauges[1]).toEqual({ name: "G3", xM: 4, zM: -1, gaugeId: 3, personId: 9, unread: true, elevationM: 0, velocityXMps: 0, velocityZMps: 0, highestM: 0, lowestM: 0 });
+    const many = parse(encode({ case: "diagnostics", value: { gauges: Array.from({ length: 100 }, (_, n) => ({ name: `G${n}`, gaugeId: n })) } }));
+    expect(many.kind === "diagnostics" && many.diagnostics.gauges.length).toBe(64);
     expect(() => structuredClone(parsed)).not.toThrow();
   });
 

@@ -31,7 +31,7 @@ v1::RejectReason reasonOf(const v1::Lesson& lesson, const v1::Command& command, 
   return refused ? refused->reason() : v1::REJECT_REASON_UNSPECIFIED;
 }
 
-TEST(Lesson, EveryCommandOfAPlayerHasATool) {
+TEST(Lesson, EveryCommandOfAPlayerThatChangesTheWaterHasATool) {
   EXPECT_EQ(toolOf(test::stroke(1, 0, 0, 0)), v1::TOOL_FINGER);
   EXPECT_EQ(toolOf(rain()), v1::TOOL_RAIN);
   EXPECT_EQ(toolOf(test::splash()), v1::TOOL_SPLASH);
@@ -66,6 +66,17 @@ TEST(Lesson, OnlyToolsThatAreHandedOutAreTakenAndTheRefusalNamesTheOther) {
   const auto refused = refuse(lesson, false, Role::kPlayer, rain());
   ASSERT_TRUE(refused);
   EXPECT_THAT(refused->message(), testing::AllOf(HasSubstr("rain is not handed out"), HasSubstr("an operator")));
+}
+
+TEST(Lesson, GaugesNeedNoToolButTheRightToCommand) {
+  v1::Lesson lesson;
+  lesson.add_tools(v1::TOOL_BOAT);
+  for (const v1::Command& command : {test::placeGauge(0, 0), test::removeGauge(1)}) {
+    EXPECT_EQ(reasonOf(lesson, command), v1::REJECT_REASON_UNSPECIFIED);
+    EXPECT_EQ(reasonOf(lesson, command, true), v1::REJECT_REASON_NOT_NOW) << "muted";
+  }
+  lesson.set_frozen(true);
+  EXPECT_EQ(reasonOf(lesson, test::placeGauge(0, 0)), v1::REJECT_REASON_NOT_NOW);
 }
 
 TEST(Lesson, ForceScalesWhatACommandDoesAndStaysInRange) {

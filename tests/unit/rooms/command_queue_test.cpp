@@ -51,7 +51,8 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
     (void)v1::Command::GetReflection()->MutableMessage(&command, actions.field(i));
     const auto& name = actions.field(i)->name();
     const bool is_play = name.find("boat") != std::string::npos || name.find("floater") != std::string::npos ||
-                         name == "splash" || name == "breaking_wave" || name == "stroke";
+                         name.find("gauge") != std::string::npos || name == "splash" || name == "breaking_wave" ||
+                         name == "stroke";
     EXPECT_EQ(traitsOf(command).role, is_play ? core::Role::kPlayer : core::Role::kOperator) << name;
   }
   EXPECT_TRUE(traitsOf(reset()).is_heavy);

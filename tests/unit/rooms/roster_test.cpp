@@ -54,6 +54,29 @@ TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
   EXPECT_FALSE(arrive(8, "", ada.resume_key).resumed);
 }
 
+TEST_F(RosterTest, APersonWithAGaugeIsKeptForTheGraceTime) {
+  const Admission ada = arrive(7);
+  const Admission bob = arrive(8);
+  roster.setGaugeOwners({ada.person_id});
+  roster.leave(7, now);
+  roster.leave(8, now);
+  EXPECT_TRUE(roster.isHere(ada.person_id));
+  EXPECT_FALSE(roster.isHere(bob.person_id));
+  roster.settle(now + 9s);
+  EXPECT_TRUE(arrive(9, "", ada.resume_key).resumed);
+  roster.leave(9, now + 9s);
+  EXPECT_TRUE(roster.settle(now + 19s).is_news);
+  EXPECT_FALSE(roster.isHere(ada.person_id));
+}
+
+TEST_F(RosterTest, APersonWhoseGaugesAreGoneIsForgottenAtOnce) {
+  const Admission ada = arrive(7);
+  roster.setGaugeOwners({ada.person_id});
+  roster.setGaugeOwners({});
+  roster.leave(7, now);
+  EXPECT_FALSE(roster.isHere(ada.person_id));
+}
+
 TEST_F(RosterTest, ALostConnectionKeepsItsBoatForTheGraceTime) {
   const Admission ada = arrive(7, "Ada");
   roster.give(3, ada.person_id);

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <vector>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <spindrift/sim/gauge_history.h>
@@ -160,6 +161,76 @@ TEST_F(GaugesOnDevice, ChangeNothingInTheWaterAndCostOneDispatch) {
   const auto with = hashAndDispatches(scene);
   EXPECT_EQ(with.first, without.first);
   EXPECT_EQ(with.second, without.second + 1);
+}
+
+/// Whatever the scene has, at most 64 are one group of the same dispatch.
+TEST_F(GaugesOnDevice, ThatArePlacedLaterReadAsThoseOfTheSceneFromThatTickOn) {
+  core::Scene scene = seicheScene();
+  scene.gauges = {{.name = "a", .x_m = -3.3, .z_m = 1.3}, {.name = "b", .x_m = 5.1, .z_m = -2}};
+  WaterSim& sim = make(scene);
+  startSeiche(sim);
+  run(sim, 20);
+  const double placed_s = sim.time_s();
+  ASSERT_TRUE(sim.placeGauges(std::vector<GaugePlace>{{7, 5.1, -2}, {9, -3.3, 1.3}}));
+  run(sim, 60);
+  ASSERT_TRUE(sim.placeGauges(std::vector<GaugePlace>{{9, -3.3, 1.3}}));
+  EXPECT_EQ(sim.placedGauge(7), nullptr);
+  run(sim, 100);
+  const GaugeHistory::Series of_scene = sim.gauges()->series(0);
+  const GaugeHistory::Series placed = sim.placedGauge(9)->series(0);
+  ASSERT_GT(placed.time_s.size(), 70u);
+  EXPECT_NEAR(placed.time_s.front(), placed_s + sim.derived().tick_s, 1e-9);
+  EXPECT_EQ(placed.time_s.back(), of_scene.time_s.back());
+  const std::size_t before = of_scene.time_s.size() - placed.time_s.size();
+  for (std::size_t k = 0; k < placed.time_s.size(); ++k) {
+    ASSERT_EQ(placed.time_s[k], of_scene.time_s[before + k]);
+    ASSERT_EQ(placed.readings[k].elevation_m, of_scene.readings[before + k].elevation_m) << k;
+    ASSERT_EQ(placed.readings[k].velocity_x_mps, of_scene.readings[before + k].velocity_x_mps) << k;
+  }
+  EXPECT_GT(sim.placedGauge(9)->now()[0].highest_m, sim.placedGauge(9)->now()[0].lowest_m);
+  sim.reset();
+  EXPECT_TRUE(sim.placedGauge(9)->series(0).time_s.empty()) << "it stays, and begins anew";
+  run(sim, 3);
+  EXPECT_NEAR(sim.placedGauge(9)->series(0).time_s.front(), sim.derived().tick_s, 1e-9);
+}
+
+TEST_F(GaugesOnDevice, ThatArePlacedChangeNothingInTheWaterAndCostNothingBeforeAndAfter) {
+  const auto run40 = [&](WaterSim& sim) {
+    const std::uint64_t before = ctx_->ledger().dispatch_count;
+    for (int k = 0; k < 40; ++k) sim.step();
+    return (ctx_->ledger().dispatch_count - before) / 40;
+  };
+  WaterSim& plain = make(seicheScene());
+  startSeiche(plain);
+  const std::uint64_t plain_count = run40(plain);
+  run40(plain);
+  run40(plain);
+  const std::uint64_t plain_hash = plain.stateHash();
+  WaterSim& sim = make(seicheScene());  // in place of the one before
+  startSeiche(sim);
+  EXPECT_EQ(run40(sim), plain_count);
+  std::vector<GaugePlace> places;
+  for (std::uint32_t k = 1; k <= core::kMaxGauges; ++k) places.push_back({k, -5.9 + 0.18 * k, -0.05 * k});
+  ASSERT_TRUE(sim.placeGauges(places));
+  EXPECT_EQ(run40(sim), plain_count + 1);
+  ASSERT_TRUE(sim.placeGauges({}));
+  EXPECT_EQ(run40(sim), plain_count);
+  EXPECT_EQ(sim.stateHash(), plain_hash);
+}
+
+TEST_F(GaugesOnDevice, ThatArePlacedAreBoundedAndNeedAWave) {
+  core::Scene scene = seicheScene();
+  scene.gauges = {{.name = "a", .x_m = -3.3, .z_m = 1.3}};
+  WaterSim& sim = make(scene);
+  const std::vector<GaugePlace> places(core::kMaxGauges);
+  const auto refused = sim.placeGauges(places);
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().message, testing::HasSubstr("64 gauges and 1 of the scene are more than 64"));
+  core::Scene box;
+  box.particles.emplace();
+  const auto none = make(box).placeGauges(std::vector<GaugePlace>{{1, 0, 0}});
+  ASSERT_FALSE(none);
+  EXPECT_THAT(none.error().message, testing::HasSubstr("no wave"));
 }
 
 TEST(GaugeHistory, KeepsTheNewestTicksInOrderAndTheExtremesOfAll) {

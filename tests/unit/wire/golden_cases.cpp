@@ -100,6 +100,29 @@ core::Bytes particleBytes() {
   return *codec::FrameEncoder().encode(v1::LAYER_PARTICLES, frame);
 }
 
+/// What wire 1.9 has added: a gauge of the scene, one that a person has placed, and one that has not been read.
+core::Bytes gaugeDiagnosticsBytes() {
+  core::DiagnosticsView view;
+  view.gauges = {{.name = "toe", .x_m = -2.5, .z_m = 0.5, .elevation_m = 0.25, .highest_m = 0.5, .lowest_m = -0.125},
+                 {.name = "G7",
+                  .x_m = 3,
+                  .z_m = -1.5,
+                  .gauge_id = 7,
+                  .person_id = 2,
+                  .elevation_m = -0.0625,
+                  .velocity_x_mps = 1.5,
+                  .velocity_z_mps = -0.75,
+                  .highest_m = 0.125,
+                  .lowest_m = -0.25},
+                 {.name = "G8", .x_m = 1, .gauge_id = 8, .person_id = 2, .is_unread = true}};
+  view.gauges_time_s = 20.25;
+  core::FrameView frame;
+  frame.tick = 1234;
+  frame.time_s = kTimeS;
+  frame.diagnostics = view;
+  return *codec::FrameEncoder().encode(v1::LAYER_DIAGNOSTICS, frame);
+}
+
 core::Bytes diagnosticsBytes() {
   core::DiagnosticsView view;
   view.step_ms = 6.5;
@@ -267,6 +290,18 @@ std::string diagnosticsJson() {
          "\"breaking_ratio\": 0.03125";
 }
 
+std::string gaugeDiagnosticsJson() {
+  return "\"kind\": \"diagnostics\", \"tick\": \"1234\", \"time_s\": 20.5, \"gauges_time_s\": 20.25, \"gauges\": [\n"
+         "    {\"name\": \"toe\", \"elevation_m\": 0.25, \"velocity_x_mps\": 0, \"velocity_z_mps\": 0, \"highest_m\": "
+         "0.5, "
+         "\"lowest_m\": -0.125, \"x_m\": -2.5, \"z_m\": 0.5, \"gauge_id\": 0, \"person_id\": 0, \"unread\": false},\n"
+         "    {\"name\": \"G7\", \"elevation_m\": -0.0625, \"velocity_x_mps\": 1.5, \"velocity_z_mps\": -0.75, "
+         "\"highest_m\": 0.125, \"lowest_m\": -0.25, \"x_m\": 3, \"z_m\": -1.5, \"gauge_id\": 7, \"person_id\": 2, "
+         "\"unread\": false},\n"
+         "    {\"name\": \"G8\", \"elevation_m\": 0, \"velocity_x_mps\": 0, \"velocity_z_mps\": 0, \"highest_m\": 0, "
+         "\"lowest_m\": 0, \"x_m\": 1, \"z_m\": 0, \"gauge_id\": 8, \"person_id\": 2, \"unread\": true}]";
+}
+
 std::string greetingJson() {
   return "\"kind\": \"greeting\", \"version\": {\"major\": 1, \"minor\": 0}, \"server\": \"spindrift 0.1.0\", "
          "\"device\": \"golden\", \"room\": \"pool\",\n    \"session_id\": " +
@@ -338,6 +373,9 @@ std::vector<GoldenCase> goldenCases() {
        numberedBytes()},
       {"ack_boat.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"302\", \"applied_tick\": \"1234\", \"boat_id\": 7",
        *ack(test::ackOf(302, 1234, 7))},
+      {"ack_gauge.bin", kOk, "\"kind\": \"ack\", \"command_id\": \"304\", \"applied_tick\": \"1234\", \"gauge_id\": 7",
+       *ack(test::ackOf(304, 1234, 0, 0, 7))},
+      {"diagnostics_gauges.bin", kOk, gaugeDiagnosticsJson(), gaugeDiagnosticsBytes()},
       {"boat_list.bin", kOk, "\"kind\": \"boat_list\", \"boats\": " + std::string(kGoldenBoatsJson),
        *boatList(goldenBoats())},
       {"room_event.bin", kOk,

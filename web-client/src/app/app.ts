@@ -33,6 +33,7 @@ import { kTexts } from "../ui/texts";
 import { ToolBar } from "../ui/tool_bar";
 import { ToolPreview, type Outline } from "../ui/tool_preview";
 import { Toast } from "../ui/toast";
+import type { WaterPlace } from "../ui/tools";
 import { ViewButtons } from "../ui/view_buttons";
 import { currentAddress, isEmbeddedAddress, isKioskAddress, isProjectorAddress, setAddressParameter, takeLinkToken } from "./address";
 import { CommandSender } from "./command_sender";
@@ -124,6 +125,8 @@ export class App {
   parameterChanged: () => void = () => {};
   /** Lifts all fingers and leaves the helm; set by input.ts. */
   letGo: () => void = () => {};
+  /** Takes the next tap on the water, in place of the tool; set by gauge_view.ts. */
+  placing: ((place: WaterPlace) => void) | undefined;
   /** Takes the object out of the water that is held or pointed at. */
   removePointed: () => void = () => {};
 

@@ -1,8 +1,10 @@
-// The gauges of the room. Their poles are part of the scene; names, panel and chart are loaded with the first gauge.
+// The gauges of the room: those of its scene, and those that people have placed. Their poles are part of the picture; names, panel and chart
+// are loaded where there is water to measure.
 import { Matrix4 } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
 import type { DiagnosticsInfo } from "../codec/parse";
+import type { GaugeInfo } from "../codec/scene_info";
 import type { GaugeView } from "../gauges/gauge_view";
 import { tagPlace } from "../ui/tag_place";
 import type { Display } from "./display";
@@ -11,6 +13,8 @@ export class Gauges {
   private view: GaugeView | undefined;
   private isLoading = false;
   private water = "";
+  private ofScene: readonly GaugeInfo[] = [];
+  private placed: readonly GaugeInfo[] = [];
   private readonly seen = new Matrix4();
 
   /** `load`: loads the view; undefined if it cannot, which has been said then. */
@@ -19,16 +23,23 @@ export class Gauges {
     private readonly load: () => Promise<GaugeView | undefined>,
   ) {}
 
-  enter({ room, sceneName, gauges }: GreetingInfo): void {
+  enter({ room, sceneName, gauges, wave }: GreetingInfo): void {
     const water = `${room} ${sceneName}`;
-    this.display.scene.setGauges(gauges);
-    this.view?.setGauges(gauges, water !== this.water);
+    const isOtherWater = water !== this.water;
     this.water = water;
-    if (gauges.length > 0 && !this.isLoading) void this.open();
+    this.ofScene = gauges;
+    if (isOtherWater) this.placed = [];
+    this.show(isOtherWater);
+    if (wave && !this.isLoading) void this.open();
   }
 
   take({ gaugesTimeS, gauges }: DiagnosticsInfo): void {
-    if (gaugesTimeS > 0) this.view?.take(gaugesTimeS, gauges);
+    const placed = gauges.flatMap(({ name, xM, zM, gaugeId, personId }) => (gaugeId === 0 ? [] : [{ name, xM, zM, placed: { gaugeId, personId } }]));
+    if (JSON.stringify(placed) !== JSON.stringify(this.placed)) {
+      this.placed = placed;
+      this.show(false);
+    }
+    if (gaugesTimeS > 0) this.view?.take(gaugesTimeS, gauges.filter(({ unread }) => !unread));
   }
 
   /** Called for each picture. */
@@ -40,10 +51,16 @@ export class Gauges {
     for (const { name, xM, topM, zM } of scene.drawnGauges()) view.tags.show(name, tagPlace(seen, [xM, topM, zM], window.innerWidth, window.innerHeight, covered));
   }
 
+  private show(isOtherWater: boolean): void {
+    const all = [...this.ofScene, ...this.placed];
+    this.display.scene.setGauges(all);
+    this.view?.setGauges(all, isOtherWater);
+  }
+
   private async open(): Promise<void> {
     this.isLoading = true;
     this.view = await this.load();
-    this.view?.setGauges(this.display.scene.drawnGauges(), true);
+    this.view?.setGauges([...this.ofScene, ...this.placed], true);
     // The next greeting tries again.
     this.isLoading = this.view !== undefined;
   }

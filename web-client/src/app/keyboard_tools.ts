@@ -40,6 +40,8 @@ export function connectKeyboardTools({ canvas, isHelm, isPaddle }: KeyboardTarge
   canvas.addEventListener("keydown", (event) => {
     if (!isUse(event)) return;
     event.preventDefault();
+    // A key that was held before the canvas had the focus has pressed something else.
+    if (!pointer.isDown && event.repeat) return;
     if (!pointer.isDown) isMoved = false;
     pointer.press(...now());
   });

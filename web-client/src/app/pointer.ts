@@ -18,6 +18,8 @@ import { kTexts } from "../ui/texts";
 /** Two fingers that come down within this time are a gesture of the camera. */
 const kTogetherMs = 150;
 const kOutlineColor = "#ffffff";
+/** Radius of the ring where a gauge is placed, as a share of the shorter side. */
+const kPlaceSides = 0.02;
 
 /** A pointer that began on the water. */
 interface Hand {
@@ -91,6 +93,8 @@ export class PointerHands {
     this.hover = undefined;
     if (event.button === 0) this.taps.pressed(sampleOf(event));
     const { app, hands } = this;
+    // Its tap places, and a drag turns the view.
+    if (app.placing) return;
     const isTouch = event.pointerType === "touch";
     // Keys and gamepads have no other use.
     const isFirst = app.drawing.drawsFirst || !event.isTrusted;
@@ -152,6 +156,7 @@ export class PointerHands {
     if (event.pointerType === "mouse") this.hover = event;
     if (hand) return this.use(hand, isTap, event.timeStamp - hand.down.timeStamp);
     const place = isTap ? this.placeUnder(event) : undefined;
+    if (place && this.app.placing) return this.app.placing(place);
     if (place) this.tap(place, this.app.tools.tool, this.app.tools.scale, event);
   }
 
@@ -308,9 +313,10 @@ export class PointerHands {
     const { app } = this;
     const [hand] = this.hands.values();
     const { tool, scale } = hand ?? app.tools;
-    const grip = hand?.grip ?? (!hand && this.hover ? this.floaters.under(this.hover, tool.name) : undefined);
+    const grip = hand?.grip ?? (!hand && this.hover && !app.placing ? this.floaters.under(this.hover, tool.name) : undefined);
     if (grip) return this.floaters.outlineOf(grip);
     const at = hand?.at ?? (this.hover && this.placeUnder(this.hover));
+    if (at && app.entered && app.placing) return { kind: "disc", at, radiusM: kPlaceSides * app.entered.waterExtents.sideM, color: kOutlineColor };
     if (!at || !app.entered || tool.name === "finger") return undefined;
     if (tool.name === "paddle") {
       const widthM = paddleWidthM(app.entered.waterExtents.sideM, scale.sizeRatio);

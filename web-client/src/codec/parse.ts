@@ -14,6 +14,7 @@ import { readLesson } from "./lesson";
 import { isMalformed, malformed, type Malformed } from "./malformed";
 import { parseFrame } from "./parse_frame";
 import { readPeople, readWelcome } from "./people";
+import { isPlace, kMaxGaugeCount } from "./scene_info";
 import { readStrokes } from "./strokes";
 
 type WireMessage = Exclude<ServerMessage["message"], { case: undefined }>;
@@ -71,7 +72,10 @@ function readDiagnostics({ $typeName: _, $unknown: __, passes, gauges, ...number
   return {
     ...numbers,
     passes: passes.map(({ name, ms }) => ({ name, ms })),
-    gauges: gauges.map(({ name, elevationM, velocityXMps, velocityZMps }) => ({ name, elevationM, velocityXMps, velocityZMps })),
+    gauges: gauges
+      .slice(0, kMaxGaugeCount)
+      .filter(({ xM, zM }) => isPlace(xM) && isPlace(zM))
+      .map(({ $typeName: _type, $unknown: _unknown, ...gauge }) => gauge),
   };
 }
 

@@ -3,7 +3,7 @@ import { Bulk, Dispersion, Setting, Side, WaterType, WaveBoundary, type Scene, t
 
 /** As many as the server allows, or more; the rest is ignored. */
 const kMaxObstacleCount = 256;
-const kMaxGaugeCount = 64;
+export const kMaxGaugeCount = 64;
 
 export type WaterTypeName = "pool" | "ocean" | "coast" | "harbor" | "lagoon";
 export type SettingName = "openSea" | "pool" | "glassTank" | "flume";
@@ -183,7 +183,7 @@ export function readWind(scene: Scene): WindInfo | undefined {
 }
 
 const isSize = (value: number): boolean => value > 0 && value <= 1e6;
-const isPlace = (value: number): boolean => Math.abs(value) <= 1e6;
+export const isPlace = (value: number): boolean => Math.abs(value) <= 1e6;
 
 export function readObstacles(scene: Scene): ObstacleInfo[] {
   const read: ObstacleInfo[] = [];
@@ -226,6 +226,8 @@ export interface GaugeInfo {
   name: string;
   xM: number;
   zM: number;
+  /** Of one that a person has placed, and not the scene. */
+  placed?: { gaugeId: number; personId: number };
 }
 
 export function readGauges(scene: Scene): GaugeInfo[] {

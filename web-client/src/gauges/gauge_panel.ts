@@ -1,5 +1,5 @@
-// The panel with the chart of the gauges: which gauges, which quantity and how much time; values under the cursor; pause; files. On wide
-// windows it lies over the water, on narrow ones it is the first part of the sheet.
+// The panel with the chart of the gauges: which gauges, which quantity and how much time; values under the cursor; pause; files; and gauges of
+// one's own, to place and to remove. On wide windows it lies over the water, on narrow ones it is the first part of the sheet.
 import type { GaugeInfo } from "../codec/scene_info";
 import type { GaugeSeries } from "../net/gauge_request";
 import { formatBy, make, setText } from "../ui/dom";
@@ -23,11 +23,24 @@ export interface GaugeWorld {
   requestSeries(gauge: string): Promise<GaugeSeries>;
   save(blob: Blob, extension: string): void;
   fail(text: string): void;
+  /** The next tap on the water places a gauge. */
+  isPlacing(): boolean;
+  mayPlace(): boolean;
+  /** `personId`: who has placed the gauge. */
+  mayRemove(personId: number): boolean;
+  isOwn(personId: number): boolean;
+  nameOf(personId: number): string | undefined;
+  /** Lets the next tap place a gauge, or not any longer. */
+  place(): void;
+  remove(gaugeId: number): void;
 }
 
 interface Key {
+  element: HTMLElement;
   button: HTMLButtonElement;
   value: HTMLElement;
+  /** Of a gauge that a person has placed. */
+  removal: HTMLButtonElement | undefined;
 }
 
 export class GaugePanel {
@@ -39,6 +52,7 @@ export class GaugePanel {
   private readonly keyRow = make("div", { class: "gauge-keys", role: "group", "aria-label": kTexts.gauges.gauges });
   private readonly at = make("span", { class: "gauge-at", "data-testid": "gauge-at" });
   private readonly pauseButton: HTMLButtonElement;
+  private readonly placeButton: HTMLButtonElement;
   private readonly quantityRow = new SelectRow("gauge-quantity", kTexts.gauges.shows, (value) => this.choose({ quantity: value as Quantity }));
   private readonly spanRow = new SelectRow("gauge-span", kTexts.gauges.span, (value) => this.choose({ spanS: Number(value) }));
   private gauges: readonly GaugeInfo[] = [];
@@ -60,8 +74,10 @@ export class GaugePanel {
       return made;
     };
     this.pauseButton = button("gauge-pause", kTexts.gauges.pause, kTexts.gauges.pauseHelp, () => void this.pause(!this.isPaused));
+    this.placeButton = button("gauge-place", kTexts.gauges.place, kTexts.gauges.placeHelp, () => world.place());
     this.quantityRow.setChoices(kQuantities.map((value) => ({ value, label: `${kTexts.gauges[value]} [${kQuantityInfos[value].unit}]` })), this.quantity);
     this.spanRow.setChoices(kSpansS.map((spanS) => ({ value: String(spanS), label: `${spanS} s` })), String(this.spanS));
+    this.keyRow.append(this.placeButton);
     this.element = make("section", { class: "gauge-card glass", "data-testid": "gauge-panel", "aria-label": kTexts.gauges.gauges, hidden: "" }, [
       make("div", { class: "gauge-head" }, [
         make("h2", {}, [kTexts.gauges.gauges]),
@@ -78,6 +94,7 @@ export class GaugePanel {
     // The page's own keys choose tools.
     this.element.addEventListener("keydown", (event) => event.stopPropagation());
     this.chart = new GaugeChart(this.place, kTexts.gauges.time, () => this.showValues());
+    this.refresh();
   }
 
   /** `isOtherWater`: what was read before does not belong to these gauges. */
@@ -86,20 +103,34 @@ export class GaugePanel {
     if (isOtherWater) this.record.clear();
     const added = gauges.filter(({ name }) => isFirst || !this.gauges.some((before) => before.name === name));
     const chosen = isFirst ? [] : [...this.chosen].filter((name) => gauges.some((gauge) => gauge.name === name));
-    this.chosen = new Set([...chosen, ...added.slice(0, Math.max(kFirstChosen - chosen.length, 0)).map(({ name }) => name)]);
+    const isOwn = ({ placed }: GaugeInfo): boolean => placed !== undefined && this.world.isOwn(placed.personId);
+    const shown = added.filter((gauge, n) => isOwn(gauge) || n < kFirstChosen - chosen.length).map(({ name }) => name);
+    this.chosen = new Set([...chosen, ...shown]);
     this.gauges = gauges;
-    this.keys.clear();
-    for (const { name } of gauges) {
-      const value = make("span", { class: "gauge-value" });
-      const key = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), name, value]);
-      key.style.setProperty("--line", this.lineOf(name).color);
-      key.addEventListener("click", () => this.toggle(name));
-      this.keys.set(name, { button: key, value });
+    for (const name of [...this.keys.keys()]) if (!gauges.some((gauge) => gauge.name === name)) this.dropKey(name);
+    for (const gauge of gauges) {
+      const key = this.keys.get(gauge.name) ?? this.addKey(gauge);
+      key.button.style.setProperty("--line", this.lineOf(gauge.name).color);
     }
-    this.keyRow.replaceChildren(...[...this.keys.values()].map(({ button }) => button));
     if (isFirst) this.hold(false);
-    if (this.isOpen) void this.readHistory();
+    if (this.isOpen) void this.readHistory(isOtherWater ? undefined : shown);
+    this.refresh();
     this.draw();
+  }
+
+  /** Shows what this visitor may do now, and who has placed what. */
+  refresh(): void {
+    const { world, placeButton } = this;
+    placeButton.hidden = !world.mayPlace();
+    placeButton.setAttribute("aria-pressed", String(world.isPlacing()));
+    setText(placeButton, world.isPlacing() ? kTexts.gauges.placing : kTexts.gauges.place);
+    for (const { name, placed } of this.gauges) {
+      const { button, removal } = this.keys.get(name)!;
+      if (!placed || !removal) continue;
+      const owner = world.nameOf(placed.personId);
+      button.title = world.isOwn(placed.personId) ? kTexts.gauges.ownGauge : owner === undefined ? "" : kTexts.gauges.gaugeOf(owner);
+      removal.hidden = !world.mayRemove(placed.personId);
+    }
   }
 
   get isOpen(): boolean {
@@ -120,6 +151,26 @@ export class GaugePanel {
     if (!this.isOpen || this.isPaused) return;
     if (this.record.add(timeS, readings) === "anew") void this.readHistory();
     this.draw();
+  }
+
+  private addKey({ name, placed }: GaugeInfo): Key {
+    const value = make("span", { class: "gauge-value" });
+    const button = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), name, value]);
+    button.addEventListener("click", () => this.toggle(name));
+    const removal = placed && make("button", { type: "button", class: "gauge-remove", "data-testid": `gauge-remove-${name}`, title: kTexts.gauges.remove(name), "aria-label": kTexts.gauges.remove(name) }, ["×"]);
+    removal?.addEventListener("click", () => this.world.remove(placed!.gaugeId));
+    const key = { element: make("span", { class: "gauge-key" }, removal ? [button, removal] : [button]), button, value, removal };
+    this.keys.set(name, key);
+    this.placeButton.before(key.element);
+    return key;
+  }
+
+  private dropKey(name: string): void {
+    const { element } = this.keys.get(name)!;
+    // Who has removed it with a key continues here.
+    if (element.contains(document.activeElement)) this.placeButton.focus();
+    element.remove();
+    this.keys.delete(name);
   }
 
   private lineOf(name: string): Line {
@@ -160,7 +211,8 @@ export class GaugePanel {
           const series = await this.world.requestSeries(name);
           if (this.keys.has(name)) this.record.merge(name, series, this.isPaused ? this.record.newestS : undefined);
         } catch (error) {
-          this.world.fail(kTexts.gauges.noHistory(name, reasonOf(error)));
+          // It may have been removed meanwhile.
+          if (this.keys.has(name)) this.world.fail(kTexts.gauges.noHistory(name, reasonOf(error)));
         }
       }),
     );
@@ -186,7 +238,7 @@ export class GaugePanel {
     const at = this.chart.cursorAt ?? timesS.length - 1;
     const timeS = timesS[at];
     const when = timeS === undefined ? kTexts.gauges.noReadings : this.chart.cursorAt === undefined && !this.isPaused ? kTexts.gauges.newest : kTexts.gauges.at(timeS);
-    setText(this.at, names.length === 0 ? kTexts.gauges.none : when);
+    setText(this.at, this.gauges.length === 0 ? kTexts.gauges.empty : names.length === 0 ? kTexts.gauges.none : when);
     for (const [name, { button, value }] of this.keys) {
       const isShown = this.chosen.has(name);
       button.setAttribute("aria-pressed", String(isShown));

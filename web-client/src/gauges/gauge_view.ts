@@ -1,5 +1,5 @@
 // What the page shows of gauges: their names in the picture, and a button for the panel with the chart, which is loaded when it is first
-// opened.
+// opened. The button shows where there are gauges, or where this visitor may place one.
 import type { GaugeInfo } from "../codec/scene_info";
 import { byId, make } from "../ui/dom";
 import { kTexts } from "../ui/texts";
@@ -32,10 +32,16 @@ export class GaugeView {
   /** `isOtherWater`: another room or scene. */
   setGauges(gauges: readonly GaugeInfo[], isOtherWater: boolean): void {
     this.gauges = gauges;
-    this.button.hidden = gauges.length === 0;
     this.tags.setGauges(gauges);
     this.panel?.setGauges(gauges, isOtherWater);
-    if (gauges.length === 0) this.close();
+    this.refresh();
+  }
+
+  /** Role, people or a placing have changed. */
+  refresh(): void {
+    this.button.hidden = this.gauges.length === 0 && !this.world.mayPlace();
+    if (this.button.hidden) this.close();
+    this.panel?.refresh();
   }
 
   take(timeS: number, readings: readonly GaugeReadingInfo[]): void {

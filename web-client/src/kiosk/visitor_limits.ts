@@ -1,4 +1,5 @@
-// What visitors of a kiosk may send, whatever their role: a few kinds of commands, at limited rates. The server's limits come on top. Pure.
+// What visitors of a kiosk may send, whatever their role: a few kinds of commands, at limited rates. The server's limits come on top. Gauges
+// are not among them: without the panel nobody could read or remove them. Pure.
 import type { CommandAction } from "../net/messages";
 
 /** Commands per second, and how many may come at once. */

@@ -86,7 +86,7 @@ const kEnglish = {
     removeObject: "Remove object", stroke: "Stroke", hold: "Hold", helm: "Helm", boat: "Boat", newBoat: "New boat", takeBoat: (id: number) => `Take boat ${id}`,
     removeBoat: (id: number) => `Remove boat ${id}`, parameter: "Parameter", pause: "Pause", resume: "Resume", step: "Step", reset: "Reset", speed: "Speed",
     scene: (name: string) => `Scene ${name}`, fidelity: (level: string) => `Fidelity ${level}`, lesson: "Lesson", team: "Team", mute: "Mute",
-    race: "Race", ball: "Ball game", endGame: "End of the game", removeObjects: "Remove all objects",
+    race: "Race", ball: "Ball game", endGame: "End of the game", removeObjects: "Remove all objects", gauge: "Gauge", removeGauge: "Remove gauge",
   },
 
   gaugesNotLoaded: "The gauges' names and chart could not be loaded; reload the page.",

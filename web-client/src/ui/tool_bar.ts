@@ -107,6 +107,13 @@ export class ToolBar {
     this.hintTimer = window.setTimeout(() => (this.hint.hidden = true), 1000 * kHintS);
   }
 
+  /** Shows a line that stays until it is replaced; undefined: takes it away. */
+  announce(text: string | undefined): void {
+    window.clearTimeout(this.hintTimer);
+    setText(this.hint, text ?? "");
+    this.hint.hidden = text === undefined;
+  }
+
   private choose(name: ToolName, isByUser: boolean): void {
     const reason = isByUser ? this.whyNot(name) : undefined;
     if (reason !== undefined) return this.explain(reason);

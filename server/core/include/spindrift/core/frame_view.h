@@ -85,17 +85,22 @@ struct DiagnosticsView {
     double ms = 0.0;   ///< mean per tick
   };
   std::vector<PassTime> passes;
-  /// Reading of a gauge of the scene; as v1::GaugeReading.
+  /// Reading of a gauge; as v1::GaugeReading.
   struct GaugeNow {
     std::string name;
+    double x_m = 0.0;
+    double z_m = 0.0;
+    std::uint32_t gauge_id = 0;  ///< of one that a person has placed; 0: the scene's, as for the next
+    std::uint32_t person_id = 0;
+    bool is_unread = false;  ///< no tick was measured yet
     double elevation_m = 0.0;
     double velocity_x_mps = 0.0;
     double velocity_z_mps = 0.0;
     double highest_m = 0.0;
     double lowest_m = 0.0;
   };
-  std::vector<GaugeNow> gauges;  ///< in the order of the scene
-  double gauges_time_s = 0.0;    ///< simulation time of their readings; 0 before the first
+  std::vector<GaugeNow> gauges{};  ///< in the order of the scene, then those of people, oldest first
+  double gauges_time_s = 0.0;      ///< simulation time of their readings; 0 before the first
 };
 
 /// The layers of a frame that have levels of detail, at one level. Below Level::kFull the surface and the foam have

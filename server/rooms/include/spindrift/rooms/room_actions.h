@@ -1,10 +1,11 @@
-// What commands do in a room: to its water, its time, and to boats and their owners.
+// What commands do in a room: to its water, its time, and to boats, gauges and their owners.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <spindrift/rooms/command.h>
 #include <spindrift/rooms/room_data.h>
@@ -25,6 +26,12 @@ class RoomActions {
   void parameterChanged(const v1::SetParameter& change);
   /// Boats were added or removed: ends the ownership of removed boats and announces the boats.
   void boatsChanged();
+
+  /// Other water: ends the ownership of boats that it lacks, and puts the gauges that people have placed into it if it
+  /// continues the same water.
+  void waterChanged(bool continues);
+  /// Takes out the gauges of people who have left the room.
+  void removeGaugesOfGone();
 
   /// Moves the game on after a tick: starts the boats of a race, and puts the ball where it belongs.
   void advanceGame();
@@ -52,6 +59,8 @@ class RoomActions {
   Outcome setTeam(const Command& command);
   Outcome startGame(const Command& command);
   Outcome endGame(const Command& command);
+  Outcome placeGauge(const Command& command);
+  Outcome removeGauge(const Command& command);
 
   /// Returns the ids that the last command gave out, once, in an Ack without anything else.
   [[nodiscard]] v1::Ack takeNewIds() { return std::exchange(new_ids_, {}); }
@@ -78,8 +87,12 @@ class RoomActions {
   /// it is when no place is left. A place is free when no boat on the water was launched there.
   std::optional<std::uint32_t> placeOnGrid(v1::Boat& boat);
 
+  /// Replaces the gauges that people have placed; a refusal changes nothing.
+  Outcome putGauges(std::vector<PlacedGauge> gauges);
+
   RoomData& room_;
   v1::Ack new_ids_;
+  std::uint32_t last_gauge_id_ = 0;
   std::map<std::uint32_t, v1::ControlBoat> levers_;  ///< by boat: as their owners hold them, also before a start
   std::map<std::uint32_t, std::uint32_t> grid_;      ///< places by boat
 };

@@ -4,11 +4,13 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <spindrift/classroom/referee.h>
 #include <spindrift/core/demand_table.h>
 #include <spindrift/history/diary.h>
 #include <spindrift/rooms/frame_schedule.h>
+#include <spindrift/rooms/placed_gauge.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_rules.h>
 #include <spindrift/rooms/room_time.h>
@@ -32,6 +34,7 @@ struct ServerLoad {
 struct News {
   bool state = false;  ///< pause or speed
   bool boats = false;
+  bool gauges = false;  ///< those that people have placed
   bool reset = false;
   std::uint32_t state_person_id = 0;  ///< who changed pause or speed last; 0: nobody in the room
   std::uint32_t reset_person_id = 0;
@@ -57,7 +60,8 @@ struct RoomData {
   water::TickCost tick_cost{};
   TickMeter tick_meter{};
   FrameSchedule schedule{};
-  Referee referee{};  ///< of the game in the room
+  Referee referee{};                  ///< of the game in the room
+  std::vector<PlacedGauge> gauges{};  ///< that people have placed, oldest first
   ServerLoad load{};
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};

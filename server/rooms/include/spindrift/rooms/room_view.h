@@ -5,8 +5,10 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include <spindrift/core/frame_view.h>
+#include <spindrift/rooms/placed_gauge.h>
 #include <spindrift/rooms/tick_meter.h>
 #include <spindrift/sim/water_sim.h>
 #include <spindrift/v1/scene.pb.h>
@@ -23,6 +25,7 @@ struct RoomSnapshot {
   v1::BoatList boats;                               ///< boats on the water now
   core::ReducedCounts reduced_counts;               ///< levels that downsample the frames
   std::shared_ptr<const sim::GaugeHistory> gauges;  ///< null in scenes without gauges
+  std::vector<PlacedGauge> placed_gauges;           ///< that people have placed, oldest first
 };
 
 /// The rules for players in a room, and its game.

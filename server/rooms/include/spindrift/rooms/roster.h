@@ -35,8 +35,8 @@ struct Admission {
   std::optional<core::SessionId> displaced;  ///< the session that belonged to this person before
 };
 
-/// After a lost connection the person and the person's boats are kept for the grace time; then the boats have no owner.
-/// A person without a boat is removed at once, except one who is muted: a new page does not end that.
+/// After a lost connection the person and the person's boats and gauges are kept for the grace time; then the boats
+/// have no owner. A person without any is removed at once, except one who is muted: a new page does not end that.
 class Roster {
  public:
   using Clock = std::chrono::steady_clock;
@@ -56,6 +56,10 @@ class Roster {
   void give(std::uint32_t boat_id, std::uint32_t person_id);
   /// Removes the ownership of boats that are no longer on the water.
   void keepOnly(const std::set<std::uint32_t>& boat_ids);
+
+  [[nodiscard]] bool isHere(std::uint32_t person_id) const;
+  /// Says who has gauges in the water; nobody else has any.
+  void setGaugeOwners(const std::set<std::uint32_t>& person_ids);
 
   /// A boat that belongs to somebody.
   struct BoatOwner {
@@ -110,9 +114,13 @@ class Roster {
     Clock::time_point away_since{};
     bool boats_stopped = false;  ///< since the connection was lost
     std::set<std::uint32_t> boats;
+    bool has_gauges = false;
     v1::Team team = v1::TEAM_UNSPECIFIED;
     bool is_muted = false;
     bool waits = false;  ///< was here before a restart: kept for the grace time also without a boat
+
+    /// Returns whether the person is kept for the grace time after a lost connection.
+    [[nodiscard]] bool isKept() const { return waits || is_muted || has_gauges || !boats.empty(); }
   };
 
   /// Calls on_news at its end, after the lock that is taken later.

@@ -51,8 +51,8 @@ std::vector<FieldIssue> checkBoat(const core::Boat& boat, const v1::Scene& scene
 /// Returns the violations by a floater's size and position; `prefix` as for boats. The scene has a wave.
 std::vector<FieldIssue> checkFloater(const core::Floater& floater, const v1::Scene& scene, const std::string& prefix);
 
-/// Returns the violations by a position to which a floater is pulled; paths start with "hold_floater".
-std::vector<FieldIssue> checkHold(double x_m, double z_m, const v1::Scene& scene);
+/// Returns the violations by a position that has to be on the water; `prefix` as for boats.
+std::vector<FieldIssue> checkPlace(double x_m, double z_m, const v1::Scene& scene, const std::string& prefix);
 
 /// Fills in the fields that were left out: with their defaults, or where the scene does not permit those, with the
 /// nearest values that it permits. Without a position, a boat or a floater is put at the free position nearest to the

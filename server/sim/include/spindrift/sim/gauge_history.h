@@ -1,4 +1,4 @@
-// What the gauges of a scene have read at the last ticks.
+// What gauges have read at the last ticks: those of a scene together, one that was placed later for itself.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,26 @@ struct GaugeReading {
   float velocity_z_mps = 0.0F;
 };
 
+/// A position that is measured beside the gauges of the scene.
+struct GaugePlace {
+  std::uint32_t gauge_id = 0;  ///< chosen by the caller, one per place
+  double x_m = 0.0;
+  double z_m = 0.0;
+};
+
+/// The reading of a GaugePlace.
+struct PlacedReading {
+  std::uint32_t gauge_id = 0;
+  GaugeReading reading;
+};
+
 /// A bounded ring. The simulation thread writes it; any thread may read it.
 class GaugeHistory {
  public:
   /// Ticks that are kept: 68 s at 60 Hz.
   static constexpr std::size_t kTickMaxCount = 4096;
 
-  /// The newest reading of a gauge, with the extremes since the start of the scene or the last clear().
+  /// The newest reading of a gauge, with the extremes since it was placed or the last clear().
   struct Now {
     GaugeReading reading;
     float highest_m = 0.0F;

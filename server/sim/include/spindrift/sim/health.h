@@ -39,7 +39,8 @@ struct Health {
   double emitted_m3 = 0.0;               ///< the emitted particles as volume
   double absorbed_m3 = 0.0;
 
-  std::vector<GaugeReading> gauges;  ///< one per gauge of the scene
+  std::vector<GaugeReading> gauges;            ///< one per gauge of the scene
+  std::vector<PlacedReading> placed_gauges{};  ///< of WaterSim::placeGauges(), as they were at this tick
 
   [[nodiscard]] bool isGood() const { return nonfinite_count == 0 && escaped_count == 0; }
 };

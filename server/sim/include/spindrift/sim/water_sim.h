@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -175,6 +176,12 @@ class WaterSim {
   /// Returns the readings of the scene's gauges since the start or the last reset(); null in scenes without gauges.
   /// Like health(), it is some ticks behind.
   [[nodiscard]] std::shared_ptr<const GaugeHistory> gauges() const { return gauges_; }
+  /// Measures at these positions, too, from the next tick on; replaces those of the last call. A gauge that was there
+  /// keeps its history, which begins with it, and anew at a reset(). kInvalidInput without a wave, or with more than
+  /// core::kMaxGauges together with the scene's; kInternal when the device fails; then nothing changes.
+  core::Result<void> placeGauges(std::span<const GaugePlace> places);
+  /// Returns what this one has read; null for an unknown id.
+  [[nodiscard]] std::shared_ptr<const GaugeHistory> placedGauge(std::uint32_t gauge_id) const;
   /// Sums of health() since creation, and the number of times that the watchdog restored the last good checkpoint.
   [[nodiscard]] std::uint64_t nonfiniteCount() const { return nonfinite_count_; }
   [[nodiscard]] std::uint64_t escapedCount() const { return escaped_count_; }
@@ -235,6 +242,7 @@ class WaterSim {
   void hitFloaters(std::uint32_t substep);
   void measure();
   void watchHealth();
+  void recordGauges(const Health& health);
   void saveCheckpoint();
   void recover(const Health& breach);
   void setCareful(bool careful);
@@ -247,6 +255,8 @@ class WaterSim {
   Derived derived_;
   gpu::PassTimers timers_;
   std::shared_ptr<GaugeHistory> gauges_;
+  using PlacedGauges = std::map<std::uint32_t, std::shared_ptr<GaugeHistory>>;
+  PlacedGauges placed_gauges_;
   std::unique_ptr<Parts> parts_;
   std::uint64_t tick_ = 0;  ///< never decreases
   std::uint64_t start_tick_ = 0;

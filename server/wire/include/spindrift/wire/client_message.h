@@ -19,7 +19,7 @@ namespace spindrift::wire {
 /// Version of the wire protocol. Clients with another major version are refused; minor versions only add fields and
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
-inline constexpr std::uint32_t kWireMinor = 8;
+inline constexpr std::uint32_t kWireMinor = 9;
 /// First minor version whose clients know planes that are not squares (count_z and width_m of their headers).
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
@@ -78,8 +78,8 @@ std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::
 
 /// Checks a command that checkCommand() accepted against the scene: absent parts, splashes deeper or wider than the
 /// water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats and
-/// floaters too big, outside of the water or in an obstacle, games for which the scene has no course. nullopt =
-/// allowed. `scene` has its defaults filled in.
+/// floaters too big, outside of the water or in an obstacle, gauges outside of the water, games for which the scene has
+/// no course. nullopt = allowed. `scene` has its defaults filled in.
 std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, const v1::Scene& scene);
 
 }  // namespace spindrift::wire
