@@ -2,7 +2,7 @@
 // input.ts calls the methods for the user's actions.
 import type { GreetingInfo } from "../codec/greeting";
 import type { RoleName } from "../codec/people";
-import { GroundRequests, requestGround } from "../net/ground_request";
+import { GroundRequests } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { roomOf, wishOf } from "../net/room_address";
@@ -101,7 +101,7 @@ export class App {
   readonly answerListeners: AnswerListener[];
   /** The water is drawn over a level bed until the ground is there. */
   private readonly ground = new GroundRequests(
-    (room) => requestGround(room, this.identity.token),
+    (room) => this.client.requestGround(room, this.identity.token),
     (room, ground) => {
       if (this.entered?.room === room && this.entered.hasBed) this.display.scene.setGround(ground);
     },

@@ -1,7 +1,6 @@
 // A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate.
 import type { RoleName } from "../codec/people";
 import type { GreetingInfo } from "../codec/greeting";
-import { requestGround } from "../net/ground_request";
 import type { PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { LessonState } from "../ui/lesson_state";
@@ -86,7 +85,7 @@ export class LivePicture {
     this.canvas.style.width = `calc(${pictureWidthPercent(aspectRatio)}% + ${2 * kMarginPx}px)`;
     this.map.enter(greeting, (frame) => this.client.release(frame));
     if (!greeting.hasBed) return;
-    requestGround(greeting.room, this.token).then(
+    this.client.requestGround(greeting.room, this.token).then(
       (ground) => !this.isClosed && this.greeting === greeting && this.map.setGround(ground),
       (error: unknown) => console.warn(`spindrift: the picture of ${greeting.room} is drawn without land: ${error instanceof Error ? error.message : String(error)}`),
     );
