@@ -22,7 +22,7 @@ import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
 import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
-import { addLightRows, lightOf } from "../ui/light_rows";
+import { LightRows, lightOf } from "../ui/light_rows";
 import { PageActions } from "../ui/page_actions";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
@@ -96,6 +96,7 @@ export class App {
   readonly fingers = new FingerTags(byId("view"));
   private readonly gauges: Gauges;
   private readonly preview = new ToolPreview(byId("view"));
+  private readonly lightRows: LightRows;
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
   readonly answerListeners: AnswerListener[];
@@ -162,7 +163,7 @@ export class App {
       this.keepIdentity(false);
       this.client.call("introduce", name, token);
     });
-    addLightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
+    this.lightRows = new LightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
     this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
     this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
       setAddressParameter("quality", choice === "automatic" ? undefined : choice);
@@ -323,6 +324,7 @@ export class App {
     this.marks.enter(greeting.course);
     this.gauges.enter(greeting);
     this.fingers.clear();
+    this.lightRows.showHour();
     this.looks.enter(greeting);
     this.sound.enter(greeting);
     // Not before: the connection exists from now on.
