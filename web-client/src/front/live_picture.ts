@@ -1,4 +1,5 @@
-// A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate.
+// A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate, and as an onlooker:
+// whoever sees the picture is not in the room.
 import type { RoleName } from "../codec/people";
 import type { GreetingInfo } from "../codec/greeting";
 import type { PageEventHandlers } from "../net/messages";
@@ -11,7 +12,6 @@ import { pictureWidthPercent } from "./front_model";
 const kFrameRateHz = 4;
 
 export class LivePicture {
-  isLive = false;
   private readonly client = openWaterClient(this.handlers());
   private readonly lessons = new LessonState();
   private readonly map: PadMap;
@@ -26,7 +26,7 @@ export class LivePicture {
     private readonly welcomed: (role: RoleName) => void,
   ) {
     this.map = new PadMap(canvas);
-    this.client.start(socketUrl(page), { name: "", token, resumeKey: "" });
+    this.client.start(`${socketUrl(page)}?onlooker`, { name: "", token, resumeKey: "" });
     this.client.call("setLayers", ["surface", "bodies", "floaters"]);
     this.client.call("setDetail", "coarse");
     this.client.call("setFrameRate", kFrameRateHz);
@@ -46,14 +46,13 @@ export class LivePicture {
   /** Ends the connection; the last picture stays. */
   close(): void {
     this.isClosed = true;
-    this.isLive = false;
     this.client.close();
   }
 
   private handlers(): PageEventHandlers {
     const nothing = (): void => {};
     return {
-      state: ({ state }) => (this.isLive = state.name === "live"),
+      state: nothing,
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => this.welcomed(welcome.role),
       frame: ({ frame }) => {

@@ -6,7 +6,7 @@ import { make, setText } from "../ui/dom";
 import { addressOfRoom } from "../ui/room_links";
 import { kFrontTexts } from "../ui/front_texts";
 import { kTexts } from "../ui/texts";
-import { peopleCountOf, stateOf } from "./front_model";
+import { stateOf } from "./front_model";
 import { LivePicture } from "./live_picture";
 
 export class RoomCard {
@@ -43,7 +43,7 @@ export class RoomCard {
     const state = stateOf(room);
     setText(this.title, kTexts.scenes[room.scene]?.title ?? room.title);
     setText(this.scene, kFrontTexts.sceneOfRoom(room.scene, room.name));
-    setText(this.people, kFrontTexts.peopleCount(peopleCountOf(room, this.picture?.isLive ?? false)));
+    setText(this.people, kFrontTexts.peopleCount(room.peopleCount));
     setText(this.state, kFrontTexts.roomState[state]);
     this.link.dataset["state"] = state;
     const still = posterOf(room.scene);
