@@ -1,6 +1,6 @@
 // The card that shares a view of the water: a link to copy, for another program (Web Share), and as a QR code. The link leads to this room;
-// to a room of its own with the same scene and values; or, from an operator, to a new room in the role of presenter, player or watcher. Or it
-// gives the code that shows the view in another page.
+// to a room of its own with the same scene and values; or, from an operator, to a new room in the role of presenter, player or watcher, or as
+// a kiosk. Or it gives the code that shows the view in another page.
 import type { RoleName } from "../codec/people";
 import { textOfValues, type ParameterValue } from "../net/room_address";
 import type { RoomWithTokens } from "../net/room_requests";
@@ -17,6 +17,10 @@ import { kShareTexts } from "./share_texts";
 const kQrMaxLength = 1200;
 const kLoopbackHost = /^(localhost|.*\.localhost|127(\.\d+){3}|\[::1\])$/;
 type Target = keyof typeof kShareTexts.targets;
+/** The reader of a link to a new room: a role, or the visitors of a kiosk, who are players. */
+type Guest = RoleName | "kiosk";
+/** Until the countdown of a kiosk; in the link, so that one sees where it can be changed. */
+const kKioskIdleS = "60";
 
 /** What the card needs of the page. */
 export interface ShareSource {
@@ -40,13 +44,13 @@ export class ShareCard {
   private reachable: string | undefined;
   private isOnlyHere = false;
   private target: Target = "room";
-  private role: RoleName = "player";
+  private guest: Guest = "player";
   private made: RoomWithTokens | undefined;
   private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": kShareTexts.qr });
   private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": kShareTexts.link });
   private readonly targetRow = new SelectRow("share-target", kShareTexts.target, (value) => this.choose(value as Target));
   private readonly roleRow = new SelectRow("share-role", kShareTexts.role, (value) => {
-    this.role = value as RoleName;
+    this.guest = value as Guest;
     this.show();
   });
   private readonly copyButton = make("button", { type: "button", class: "primary", "data-testid": "share-copy" }, [kShareTexts.copy]);
@@ -67,7 +71,7 @@ export class ShareCard {
 
   constructor(private readonly source: ShareSource) {
     this.sendButton.hidden = typeof navigator.share !== "function";
-    this.roleRow.setChoices(Object.entries(kShareTexts.roles).map(([value, label]) => ({ value, label })), this.role);
+    this.roleRow.setChoices(Object.entries(kShareTexts.roles).map(([value, label]) => ({ value, label })), this.guest);
     this.copyButton.addEventListener("click", () => void (this.isReady ? this.copy() : this.openForRoles()));
     this.sendButton.addEventListener("click", () => void this.send());
     this.link.addEventListener("focus", () => this.link.select());
@@ -128,7 +132,7 @@ export class ShareCard {
     const isDrawn = link !== "" && link.length <= kQrMaxLength && target !== "embed";
     this.qr.hidden = !isDrawn;
     if (isDrawn) drawQrCode(this.qr, link);
-    this.tell([link.length > kQrMaxLength && target !== "embed" ? kShareTexts.tooLong : "", kShareTexts.notes[target], this.isOnlyHere ? kShareTexts.onlyHere : ""].filter(Boolean).join(" "));
+    this.tell([link.length > kQrMaxLength && target !== "embed" ? kShareTexts.tooLong : "", kShareTexts.notes[target], target === "roles" && isReady && this.guest === "kiosk" ? kShareTexts.kioskNote : "", this.isOnlyHere ? kShareTexts.onlyHere : ""].filter(Boolean).join(" "));
   }
 
   private linkNow(): string {
@@ -136,7 +140,10 @@ export class ShareCard {
     if (this.target === "embed") return embedCode(page);
     if (this.target === "room") return linkWith(page, {}, "");
     if (this.target === "copy") return linkWith(page, { room: undefined, scene: this.source.scene(), set: textOfValues(this.values) }, "");
-    return linkWith(page, { room: this.made!.room, scene: undefined, set: undefined }, this.made!.tokens[this.role]);
+    const { room, tokens } = this.made!;
+    const newRoom = { room, scene: undefined, set: undefined };
+    if (this.guest === "kiosk") return linkWith(page, { ...newRoom, kiosk: kKioskIdleS, view: undefined, camera: undefined }, tokens.player);
+    return linkWith(page, newRoom, tokens[this.guest]);
   }
 
   private tell(text: string): void {
