@@ -47,8 +47,8 @@ core::Result<void> EdgeServer::acceptSession(const std::string& room) {
   return node_->accept(room);
 }
 
-void EdgeServer::sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) {
-  if (auto venue = node_->find(room)) return sessions_.opened(session, std::move(venue), peer);
+void EdgeServer::sessionOpened(net::SessionId session, const net::SessionOpening& opening) {
+  if (auto venue = node_->find(opening.room)) return sessions_.opened(session, std::move(venue), opening);
   sessions_.refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 

@@ -142,7 +142,7 @@ void RemoteRoom::reject(const std::vector<rooms::Command>& commands, const std::
 
 bool RemoteRoom::isIdle(Clock::time_point now) const {
   const std::lock_guard lock(mutex_);
-  return closed_ || (guests_.empty() && now - used_ > kIdlePatience);
+  return closed_ || (guests_.empty() && demand_->sessionCount() == 0 && now - used_ > kIdlePatience);
 }
 
 LinkStats RemoteRoom::stats() const {

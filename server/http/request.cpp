@@ -161,7 +161,8 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
 
   // The web client's own URL has the room in its query; accept it here too.
   const auto asked = queryValues(target->query, "room");
-  if (!asked) return {textReply(400, "The room in the query has a broken percent escape or a control character.")};
+  const auto looks = queryValues(target->query, "onlooker");
+  if (!asked || !looks) return {textReply(400, "The query has a broken percent escape or a control character.")};
   if (asked->size() > 1 || (asked->size() == 1 && !named->empty() && asked->front() != *named)) {
     return {textReply(400, "The address names more than one room: use /ws/ROOM.")};
   }
@@ -169,6 +170,7 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
 
   UpgradeDecision decision;
   decision.room = *std::move(named);
+  decision.is_onlooker = !looks->empty();
   // RFC 6455 section 11.3.4: the list may be split over several headers.
   bool is_protocol_offered = false;
   const auto [first, end] = request.equal_range(http::field::sec_websocket_protocol);

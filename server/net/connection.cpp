@@ -356,7 +356,8 @@ asio::awaitable<void> Connection::upgrade(const Request& request) {
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  co_await session_->run(request, std::move(decision.room), peer_, address_, decision.echo_subprotocol);
+  const SessionOpening opening{.room = std::move(decision.room), .peer = peer_, .is_onlooker = decision.is_onlooker};
+  co_await session_->run(request, opening, address_, decision.echo_subprotocol);
 }
 
 asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsigned version, bool keep_alive) {

@@ -59,14 +59,14 @@ Session::Session(Transport stream, ServerContext& context)
       end_timer_(strand_),
       end_of_delay_(strand_) {}
 
-asio::awaitable<void> Session::run(const Request& request, std::string room, std::string peer, std::string address,
+asio::awaitable<void> Session::run(const Request& request, SessionOpening opening, std::string address,
                                    bool echo_subprotocol) {
   using asio::experimental::awaitable_operators::operator&&;
   address_ = std::move(address);
   configure(echo_subprotocol);
   const auto [accept_error] = co_await ws_.async_accept(request, kToken);
   if (accept_error) {
-    spdlog::debug("{}: the WebSocket handshake failed: {}", peer, accept_error.message());
+    spdlog::debug("{}: the WebSocket handshake failed: {}", opening.peer, accept_error.message());
     co_return;
   }
   ws_.next_layer().beginFrames([this](std::uint64_t fragment_count) { return takeFragments(fragment_count); });
@@ -75,9 +75,9 @@ asio::awaitable<void> Session::run(const Request& request, std::string room, std
 
   context_.counters.add(&ServerStats::accepted_session_count);
   context_.counters.add(&ServerStats::open_session_count);
-  spdlog::debug("session {} opened by {}", id_, peer);
+  spdlog::debug("session {} opened by {}", id_, opening.peer);
   context_.hub.add(id_, shared_from_this());
-  callApplication("sessionOpened", [&] { context_.application.sessionOpened(id_, room, peer); });
+  callApplication("sessionOpened", [&] { context_.application.sessionOpened(id_, opening); });
 
   co_await (readLoop() && writeLoop());
 

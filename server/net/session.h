@@ -28,7 +28,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
   /// sessionClosed last; neither if the handshake fails. Call it on the strand.
-  boost::asio::awaitable<void> run(const Request& request, std::string room, std::string peer, std::string address,
+  boost::asio::awaitable<void> run(const Request& request, SessionOpening opening, std::string address,
                                    bool echo_subprotocol);
 
   void sendAnswer(core::SharedBytes message) override;

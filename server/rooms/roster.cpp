@@ -212,6 +212,12 @@ v1::People Roster::people() const {
   return out;
 }
 
+std::size_t Roster::presentCount() const {
+  const std::lock_guard lock(mutex_);
+  const auto listed = std::ranges::count_if(people_, [](const auto& entry) { return entry.second.session != 0; });
+  return static_cast<std::size_t>(listed) + unlisted_count_;
+}
+
 void Roster::setUnlistedCount(std::uint32_t count) {
   const News news{*this};
   const std::lock_guard lock(mutex_);

@@ -308,7 +308,7 @@ void SimulationThread::loop() {
     if (std::ranges::any_of(openings_, [](const auto& opening) { return opening.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
     ServerLoad load{.thread_share = busy.value()};
-    for (const auto& room : rooms_) load.session_count += room->demand()->sessionCount();
+    for (const auto& room : rooms_) load.people_count += room->roster().presentCount();
     for (const auto& room : rooms_) {
       if (const auto now = Clock::now(); room->due() <= now) room->run(now, load);
     }

@@ -73,8 +73,8 @@ core::Result<void> Gateway::acceptSession(const std::string& room) {
   return core::Error{core::ErrorCode::kInvalidInput, "room '" + room + "' does not exist; rooms are: " + names};
 }
 
-void Gateway::sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) {
-  if (auto venue = find(room)) return sessions_.opened(session, std::move(venue), peer);
+void Gateway::sessionOpened(net::SessionId session, const net::SessionOpening& opening) {
+  if (auto venue = find(opening.room)) return sessions_.opened(session, std::move(venue), opening);
   sessions_.refuse(session, net::CloseCode::kRoomClosed, "the room was closed");
 }
 

@@ -94,6 +94,7 @@ void RestApi::fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const {
   out.set_time_s(vitals->time_s);
   out.set_real_time_factor(vitals->diagnostics.real_time_factor);
   out.set_session_count(static_cast<std::uint32_t>(room.demand()->sessionCount()));
+  out.set_people_count(static_cast<std::uint32_t>(room.roster().presentCount()));
   out.set_boat_count(static_cast<std::uint32_t>(snapshot->boats.boats_size()));
   out.set_fidelity(snapshot->scene.fidelity());
 }

@@ -35,16 +35,18 @@ std::vector<v1::Layer> layersOf(const v1::Scene& scene) {
 
 }  // namespace
 
-void Sessions::opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const std::string& peer) {
+void Sessions::opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const net::SessionOpening& opening) {
   const auto now = std::chrono::steady_clock::now();
   {
     const std::lock_guard lock(mutex_);
     sessions_.emplace(session, State{.venue = venue,
                                      .greeted = nullptr,
                                      .commands = {rules_.commands_per_s, rules_.command_burst_count, now},
-                                     .peer = peer});
+                                     .peer = opening.peer,
+                                     .is_onlooker = opening.is_onlooker});
   }
-  spdlog::info("session {} from {} joins room {}", session, peer, venue->name());
+  spdlog::info("session {} from {} {} room {}", session, opening.peer, opening.is_onlooker ? "looks at" : "joins",
+               venue->name());
   greet(session, *venue);
   hub().closeAt(session, now + rules_.hello_patience, net::CloseCode::kPolicy,
                 "Hello did not arrive in time: send ClientMessage.hello first");
@@ -244,6 +246,7 @@ void Sessions::hello(net::SessionId session, const State& state, const v1::Hello
     if (grant->is_person) kept.person = grant->subject;
   });
   if (!is_open) return;
+  if (state.is_onlooker) return arrived(session, hello, grant->role, rooms::Admission{});
   state.venue->arrive({.session = session,
                        .role = grant->role,
                        .name = details->name,
@@ -359,6 +362,8 @@ void Sessions::command(net::SessionId session, const State& state, v1::Command m
                   fmt::format("more than {:g} commands per second after a burst of {:g}: slow down",
                               rules_.commands_per_s, rules_.command_burst_count));
   }
+  if (state.is_onlooker)
+    return reject(v1::REJECT_REASON_FORBIDDEN, "an onlooker sends no commands: connect without ?onlooker");
   if (!access_.takeCommand(state.person)) return reject(v1::REJECT_REASON_BUSY, access_.busy());
   state.venue->command(command);
 }

@@ -50,7 +50,7 @@ class EchoApplication final : public net::Application {
  public:
   void serverStarts(net::Hub& hub) override { hub_ = &hub; }
   core::Result<void> acceptSession(const std::string&) override { return {}; }
-  void sessionOpened(net::SessionId session, const std::string&, const std::string&) override {
+  void sessionOpened(net::SessionId session, const net::SessionOpening&) override {
     std::call_once(clock_once_, [&] {
       clockid_t clock{};
       pthread_getcpuclockid(pthread_self(), &clock);  // the only I/O thread

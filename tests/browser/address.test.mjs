@@ -98,8 +98,8 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await page.close();
   });
 
-  it("shows a still of a shipped scene until the water is drawn", slow, async () => {
-    const shipped = await startServer(0, ["--scene", "still_pool"]);
+  it("shows a still of a shipped scene until the water is drawn, without buttons before they are named, and the scene's hour", slow, async () => {
+    const shipped = await startServer(0, ["--scene", "beach", "--fidelity", "draft"]);
     try {
       await open("about:blank");
       // The page's own code waits.
@@ -113,9 +113,16 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
       const poster = page.locator("#poster");
       await poster.waitFor({ state: "visible", timeout: WAIT_MS });
       assert.ok((await poster.evaluate((image) => image.naturalWidth)) > 100);
+      const buttons = page.locator("button:visible");
+      assert.equal(await buttons.count(), 0);
+      assert.ok(!(await page.getByTestId("state").isVisible()));
       release();
       await waitFor("a picture of the water", (stats) => stats.shownTimeS !== null);
       await poster.waitFor({ state: "detached", timeout: WAIT_MS });
+      assert.ok((await buttons.count()) > 5);
+      for (const button of await buttons.all()) assert.ok(await button.evaluate((each) => each.textContent.trim() || each.title || each.getAttribute("aria-label")), await button.evaluate((each) => each.outerHTML));
+      assert.equal(await page.getByTestId("light").inputValue(), "automatic");
+      assert.equal(await page.getByTestId("slider-hour").inputValue(), "16");
       assert.deepEqual(complaints, []);
     } finally {
       await page.close();

@@ -85,6 +85,11 @@ describe("the front page", { skip, concurrency: 1 }, () => {
     await isWater(visitor, "main");
     await until("the visitor", () => textOf(page, "main"), (text) => text.includes("1 person"));
     assert.match(await textOf(page, "marina"), /nobody in it/);
+    const another = await open("?quality=minimal");
+    await sessions("both front pages and the visitor", { main: 3, marina: 2 });
+    assert.equal((await (await ask("rooms/main/people")).json()).people.length, 1, "front pages are nobody of the room");
+    assert.match(await textOf(another, "main"), /1 person/);
+    await another.close();
     await visitor.getByTestId("pause").click();
     await until("the pause", () => textOf(page, "main"), (text) => text.includes("paused"));
     await visitor.getByTestId("pause").click();

@@ -206,12 +206,18 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
     await operator.getByRole("button", { name: "Open the room" }).click();
     await operator.getByTestId("share-role").waitFor({ timeout: 4 * WAIT_MS });
     const links = {};
-    for (const role of ["operator", "player", "viewer"]) {
+    for (const role of ["operator", "player", "viewer", "kiosk"]) {
       await operator.getByTestId("share-role").selectOption(role);
       links[role] = await operator.getByTestId("share-link").inputValue();
       assert.ok(new URL(links[role]).hash.startsWith("#token=") && !new URL(links[role]).search.includes("token"), links[role]);
     }
     await operator.close();
+    assert.equal(new URL(links.kiosk).searchParams.get("kiosk"), "60");
+    assert.equal(new URL(links.kiosk).hash, new URL(links.player).hash);
+    const kiosk = await open(links.kiosk);
+    await kiosk.waitForFunction(() => window.spindrift?.stats().role === "player" && window.spindriftKiosk?.stats().phase === "attract", undefined, { timeout: WAIT_MS });
+    assert.ok(!(await kiosk.locator("#panel, #actions").first().isVisible()));
+    await kiosk.close();
     for (const role of ["operator", "player", "viewer"]) {
       const page = await open(links[role]);
       await page.waitForFunction((wanted) => window.spindrift?.stats().role === wanted && window.spindrift.stats().connectionState === "live", role, { timeout: WAIT_MS });

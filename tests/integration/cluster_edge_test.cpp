@@ -281,6 +281,22 @@ TEST_F(ClusterTest, ViewersBeyondTheListAreCounted) {
   EXPECT_TRUE(seesCounts(late, kListedCount + 1, 2));
 }
 
+TEST_F(ClusterTest, AnOnlookerThroughAnEdgeIsNobodyOfTheRoom) {
+  const Member s1 = server("s1");
+  const Member e1 = edge("e1");
+  ScriptedClient picture(e1.port, "main?onlooker");
+  picture.hello();
+  picture.subscribe(packedSurface());
+  ASSERT_TRUE(picture.nextFrame(v1::LAYER_SURFACE));
+  EXPECT_EQ(picture.welcome().person_id(), 0U);
+  EXPECT_THAT(httpRequest(s1.port, "GET", "/api/v1/rooms/main/people").body, Not(HasSubstr("guest")));
+  EXPECT_TRUE(eventually([&] { return rooms(e1.port).find("\"session_count\":1") != std::string::npos; }));
+  EXPECT_THAT(rooms(e1.port), HasSubstr("\"people_count\":0"));
+  // Longer than an edge keeps a room without sessions.
+  const auto until = std::chrono::steady_clock::now() + std::chrono::seconds(13);
+  while (std::chrono::steady_clock::now() < until) ASSERT_TRUE(picture.nextFrame(v1::LAYER_SURFACE));
+}
+
 TEST_F(ClusterTest, AnEdgePrintsAndReadsItsConfiguration) {
   ChildProcess printing(SPINDRIFT_PROGRAM, {"edge", "--nats", nats_->url(), "--node", "e9", "--print-config"});
   ASSERT_EQ(printing.wait(), 0) << printing.err();

@@ -85,7 +85,8 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
 
   void serverStarts(net::Hub& hub) override { hub_ = &hub; }
   core::Result<void> acceptSession(const std::string&) override { return {}; }
-  void sessionOpened(net::SessionId session, const std::string& room, const std::string&) override {
+  void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override {
+    const std::string& room = opening.room;
     ++opened_count;
     v1::Greeting greeting;
     greeting.set_room(room);

@@ -86,7 +86,7 @@ class RoomTest : public testing::Test {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > deadline) return false;
-      room_->run(Clock::now(), {.session_count = 1});
+      room_->run(Clock::now(), {.people_count = 1});
       std::this_thread::sleep_for(1ms);
     }
     return true;

@@ -70,6 +70,30 @@ std::vector<std::uint32_t> boatsOf(const v1::People& people, std::uint32_t perso
   return {};
 }
 
+TEST_F(People, OnlookerSeesTheWaterAndIsNobodyOfTheRoom) {
+  ScriptedClient ada = player("Ada");
+  ScriptedClient picture(server().port(), "main?onlooker");
+  picture.hello({.name = "a front page", .token = kOperator, .resume_key = ada.welcome().resume_key()});
+  EXPECT_EQ(picture.welcome().role(), v1::ROLE_OPERATOR) << "its page may know";
+  EXPECT_EQ(picture.welcome().person_id(), 0U);
+  EXPECT_FALSE(picture.welcome().resumed());
+  picture.subscribe(v1::LAYER_SURFACE);
+  EXPECT_TRUE(picture.nextFrame(v1::LAYER_SURFACE));
+  EXPECT_EQ(picture.rejected(splash(0.1, 1.0)).reason(), v1::REJECT_REASON_FORBIDDEN);
+  EXPECT_TRUE(ada.apply(splash(0.1, 1.0))) << "the key of another connection is not taken";
+  const auto room = [&] { return httpRequest(server().port(), "GET", "/api/v1/rooms/main").body; };
+  EXPECT_THAT(room(), HasSubstr("\"session_count\":2"));
+  EXPECT_THAT(room(), HasSubstr("\"people_count\":1"));
+  const auto people = picture.waitFor(v1::ServerMessage::kPeople);
+  ASSERT_TRUE(people);
+  EXPECT_THAT(namesOf(people->people()), ElementsAre("Ada"));
+  ASSERT_TRUE(ada.ws().close());
+  EXPECT_TRUE(picture.waitFor([](const v1::ServerMessage& message) {
+    return message.has_people() && message.people().people_size() == 0;
+  })) << "she left, and nobody is here";
+  EXPECT_THAT(room(), HasSubstr("\"people_count\":0"));
+}
+
 TEST_F(People, WelcomeHasTheRoleAndOthersListThePerson) {
   ScriptedClient ada = player("Ada");
   EXPECT_EQ(ada.welcome().role(), v1::ROLE_PLAYER);

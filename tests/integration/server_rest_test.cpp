@@ -191,6 +191,7 @@ TEST_F(Rest, ListsRoomsScenesParametersAndPeople) {
   EXPECT_EQ(room.status, 200U);
   EXPECT_EQ(room.text("name"), "main");
   EXPECT_EQ(room.json.at("session_count").to_number<int>(), 1);
+  EXPECT_EQ(room.json.at("people_count").to_number<int>(), 1);
   EXPECT_THAT(ask("GET", "/api/v1/scenes").body, HasSubstr("\"pond\""));
   ASSERT_TRUE(ada.apply(setParameter("wave.depth_m", 1.25)));
   EXPECT_EQ(ask("GET", "/api/v1/rooms/main/scene").json.at("wave").at("depth_m").to_number<double>(), 1.25);

@@ -2,10 +2,10 @@
 import { describe, expect, it } from "vitest";
 
 import { leadsToFront, type EntranceWorld } from "../src/front/entrance";
-import { chooseLive, peopleCountOf, pictureWidthPercent, stateOf } from "../src/front/front_model";
+import { chooseLive, pictureWidthPercent, stateOf } from "../src/front/front_model";
 import type { RoomSummary } from "../src/net/room_requests";
 
-const room = (name: string, more: Partial<RoomSummary> = {}): RoomSummary => ({ name, scene: "pool", title: "Pool", isPaused: false, isAsleep: false, sessionsCount: 0, ...more });
+const room = (name: string, more: Partial<RoomSummary> = {}): RoomSummary => ({ name, scene: "pool", title: "Pool", isPaused: false, isAsleep: false, peopleCount: 0, ...more });
 
 describe("the address", () => {
   /** A server with these rooms; without any it does not answer. */
@@ -45,12 +45,8 @@ describe("the address", () => {
 });
 
 describe("the rooms", () => {
-  it("are paused, asleep or running, and do not count the page itself", () => {
+  it("are paused, asleep or running", () => {
     expect([room("a", { isPaused: true, isAsleep: true }), room("a", { isAsleep: true }), room("a")].map(stateOf)).toEqual(["paused", "asleep", "running"]);
-    expect(peopleCountOf(room("a", { sessionsCount: 3 }), true)).toBe(2);
-    expect(peopleCountOf(room("a", { sessionsCount: 3 }), false)).toBe(3);
-    // The list is older than the connection.
-    expect(peopleCountOf(room("a"), true)).toBe(0);
   });
 
   const names = Array.from({ length: 20 }, (_, k) => `room${k}`);

@@ -122,12 +122,25 @@ describe("the choice of a light", () => {
     expect(daylight.update(6)).toBeUndefined();
   });
 
+  it("has the scene's hour while it is automatic, and the chosen one in every scene", () => {
+    const daylight = new Daylight();
+    daylight.setSceneHour(16);
+    expect(daylight.hour).toBe(16);
+    daylight.choose("moon");
+    daylight.setSceneHour(9);
+    expect(daylight.hour).toBe(23);
+    daylight.chooseHour(7);
+    expect(daylight.hour).toBe(7);
+    daylight.choose("automatic");
+    expect(daylight.hour).toBe(9);
+  });
+
   it("shows each preset at its hour, whatever the room's storm", () => {
     for (const name of kPresetNames.filter((preset) => preset !== "automatic")) {
       const daylight = new Daylight();
       daylight.setRoomStorm(0.9, true);
-      const hour = daylight.choose(name);
-      expect(settled(daylight)).toEqual(lightAt(hour, name === "storm" ? 1 : 0));
+      daylight.choose(name);
+      expect(settled(daylight)).toEqual(lightAt(daylight.hour, name === "storm" ? 1 : 0));
     }
   });
 

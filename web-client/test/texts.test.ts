@@ -5,15 +5,21 @@ import ts from "typescript";
 import { describe, expect, it, vi } from "vitest";
 
 import { kNetTexts } from "../src/net/net_texts";
-import { kGermanNetTexts } from "../src/net/net_texts_de";
+import { kClassTexts } from "../src/ui/class_texts";
+import { kFrontTexts } from "../src/ui/front_texts";
+import { kGaugeTexts } from "../src/ui/gauge_texts";
+import { kKeysTexts } from "../src/ui/keys_texts";
+import { kKioskTexts } from "../src/ui/kiosk_texts";
 import { addressIn, languageOf, unknownLanguage } from "../src/ui/language";
+import { kPadTexts } from "../src/ui/pad_texts";
+import { kShareTexts } from "../src/ui/share_texts";
 import { kTexts } from "../src/ui/texts";
-import { kGerman } from "../src/ui/texts_de";
+import { kGermanTranslation } from "../src/ui/texts_de";
 
 const kRoot = join(import.meta.dirname, "..");
 /** Folders whose literals are looked through; what people see is made there. What `embed` says is for the program of the page around. */
 const kFolders = ["app", "class", "front", "gauges", "kiosk", "net", "pad", "ui"];
-const kTables = ["ui/texts.ts", "ui/visit_texts.ts", "ui/texts_de.ts", "ui/scene_texts_de.ts", "net/net_texts.ts", "net/net_texts_de.ts"];
+const isTable = (file: string): boolean => /^(ui|net)\/(\w+_)?texts(_de)?\.ts$/.test(file) && !/(game|fidelity)_texts/.test(file);
 
 /** A text for people: two words, or one with a capital and then a small letter. */
 const isText = (literal: string): boolean => /\p{L}{2,}[,.:;]? \p{L}/u.test(literal) || /^[^\p{L}]*\p{Lu}\p{Ll}+[^\p{L}]*$/u.test(literal);
@@ -87,42 +93,52 @@ function entries(table: object, prefix = ""): Map<string, string> {
     typeof value === "object" && value !== null ? [...entries(value, `${prefix}${key}.`)] : [[prefix + key, String(value)]]));
 }
 
+/** The English tables by their names in a translation, with the names by which the sources read them. */
+const kTables = {
+  page: ["kTexts", kTexts], net: ["kNetTexts", kNetTexts], gauge: ["kGaugeTexts", kGaugeTexts], front: ["kFrontTexts", kFrontTexts], kiosk: ["kKioskTexts", kKioskTexts],
+  class: ["kClassTexts", kClassTexts], pad: ["kPadTexts", kPadTexts], share: ["kShareTexts", kShareTexts], keys: ["kKeysTexts", kKeysTexts],
+} as const satisfies Record<Exclude<keyof typeof kGermanTranslation, "locale">, readonly [string, object]>;
+
 /** Keys whose texts are the same in both languages. */
 const kSame = [
-  "languages.en", "languages.de", "failed", "detail.label", "page.detail", "kinds.ball", "commands.parameter", "commands.team", "shareCard.link", "token.label", "tools.finger.label", "lessonTools.finger",
-  "class.teams", "qualities.minimal", "page.pause", "commands.pause", "levelLimits.none", "levelLimits.choice", "looks.natural.title", "looks.thesis.title", "shareCard.notes.room", "vibration.label",
-  "pad.nameAnimals.0", "gauges.csv", "gauges.picture", "refusedRoom",
+  "page.languages.en", "page.languages.de", "page.failed", "page.detail.label", "page.page.detail", "page.kinds.ball", "page.commands.parameter", "page.commands.team", "page.token.label",
+  "page.tools.finger.label", "page.lessonTools.finger", "page.qualities.minimal", "page.page.pause", "page.commands.pause", "page.levelLimits.none", "page.levelLimits.choice",
+  "page.looks.natural.title", "page.looks.thesis.title", "page.vibration.label", "share.link", "share.notes.room", "class.teams", "pad.nameAnimals.0", "gauge.csv", "gauge.picture", "front.refusedRoom",
 ];
 
 describe("the tables", () => {
-  const tables = [[kTexts, kGerman], [kNetTexts, kGermanNetTexts]] as const;
+  const { page: kGerman } = kGermanTranslation as { page: typeof kTexts };
+  const tables = Object.entries(kTables).map(([name, [, english]]) => [name, english, kGermanTranslation[name as keyof typeof kTables]!] as const);
 
   it("have the same keys, and functions for the same keys", () => {
-    for (const [english, german] of tables) {
+    for (const [, english, german] of tables) {
       const without = (table: object): string[] => [...entries({ ...table, scenes: {} }).keys()].filter((key) => !key.startsWith("scenes.")).sort();
       expect(without(german)).toEqual(without(english));
     }
   });
 
   it("have no empty texts but those that are empty in both", () => {
-    for (const [english, german] of tables) {
+    for (const [, english, german] of tables) {
       const before = entries(english);
       expect([...entries(german)].filter(([key, text]) => text === "" && before.get(key) !== "")).toEqual([]);
     }
   });
 
   it("differ, except for words that both languages have", () => {
-    const same = tables.flatMap(([english, german]) => {
+    const same = tables.flatMap(([name, english, german]) => {
       const before = entries(english);
-      return [...entries(german)].filter(([key, text]) => before.get(key) === text && !/^keysCard\.rows\.\d+\.0$/.test(key)).map(([key]) => key);
+      return [...entries(german)].filter(([key, text]) => before.get(key) === text && !/^rows\.\d+\.0$/.test(key)).map(([key]) => `${name}.${key}`);
     });
     expect(same.sort()).toEqual([...kSame].sort());
   });
 
   it("have no text that nothing uses", () => {
-    const sources = readdirSync(join(kRoot, "src"), { recursive: true, encoding: "utf8" }).filter((file) => file.endsWith(".ts") && !kTables.includes(file)).map((file) => readFileSync(join(kRoot, "src", file), "utf8")).join("\n");
-    expect(Object.keys(kTexts).filter((key) => !new RegExp(`\\bkTexts\\.${key}\\b`).test(sources) && !/^(on|off|ordinal)$/.test(key))).toEqual([]);
-    expect(Object.keys(kNetTexts).filter((key) => !sources.includes(`kNetTexts.${key}`))).toEqual([]);
+    const sources = readdirSync(join(kRoot, "src"), { recursive: true, encoding: "utf8" }).filter((file) => file.endsWith(".ts") && !isTable(file)).map((file) => readFileSync(join(kRoot, "src", file), "utf8")).join("\n");
+    for (const [name, table] of Object.values(kTables)) {
+      // Those of quantities and switches are read by a variable's value.
+      const isRead = (key: string): boolean => new RegExp(`\\b${name}\\.${key}\\b`).test(sources) || /^(on|off|ordinal|elevation|velocityX|velocityZ)$/.test(key);
+      expect(Object.keys(table).filter((key) => !isRead(key))).toEqual([]);
+    }
   });
 
   it("name every shipped scene in German, and no other", () => {
@@ -131,7 +147,7 @@ describe("the tables", () => {
   });
 
   it("fit names into the pad's field", () => {
-    for (const { nameKinds, nameAnimals } of [kTexts.pad, kGerman.pad]) {
+    for (const { nameKinds, nameAnimals } of [kPadTexts, kGermanTranslation.pad as typeof kPadTexts]) {
       const longest = (names: readonly string[]): number => Math.max(...names.map((name) => name.length));
       expect(longest(nameKinds) + 1 + longest(nameAnimals)).toBeLessThanOrEqual(24);
     }
@@ -151,7 +167,7 @@ describe("the tables", () => {
 });
 
 describe("texts for people", () => {
-  const files = kFolders.flatMap((folder) => readdirSync(join(kRoot, "src", folder)).filter((file) => file.endsWith(".ts")).map((file) => `${folder}/${file}`)).filter((file) => !kTables.includes(file));
+  const files = kFolders.flatMap((folder) => readdirSync(join(kRoot, "src", folder)).filter((file) => file.endsWith(".ts")).map((file) => `${folder}/${file}`)).filter((file) => !isTable(file));
   const found = files.flatMap((file) => textsIn(file, readFileSync(join(kRoot, "src", file), "utf8")));
 
   it("are found by the search, and nothing else is", () => {

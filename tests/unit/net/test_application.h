@@ -84,15 +84,15 @@ class TestApplication final : public net::Application {
     return core::Error{core::ErrorCode::kInvalidInput, "there is no room \"" + room + "\""};
   }
 
-  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override {
+  void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override {
     const Alone alone(*this, session);
     {
       const std::lock_guard lock(mutex_);
       opened_.push_back(session);
-      peers_.push_back(peer);
+      peers_.push_back(opening.peer);
     }
-    hub->join(session, room, demands.of(room));
-    hub->sendAnswer(session, shared("hello " + room));
+    hub->join(session, opening.room, demands.of(opening.room));
+    hub->sendAnswer(session, shared("hello " + opening.room + (opening.is_onlooker ? " to look" : "")));
   }
 
   void sessionMessage(net::SessionId session, core::ByteView message) override {

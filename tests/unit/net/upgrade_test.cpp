@@ -80,6 +80,9 @@ TEST(Upgrade, JoinsTheRoomOfTheQueryOrRefuses) {
   EXPECT_EQ(statusOf("/ws/?room=po%6Fl&x=%zz"), "hello pool") << "what is not ours is left alone";
   EXPECT_EQ(statusOf("/ws/pool?room=pool"), "hello pool");
   EXPECT_EQ(statusOf("/ws?room="), "hello ");
+  EXPECT_EQ(statusOf("/ws/pool?onlooker"), "hello pool to look");
+  EXPECT_EQ(statusOf("/ws?onlookers&room=pool"), "hello pool");
+  EXPECT_EQ(statusOf("/ws/pool?onlooker=%zz"), "400");
   EXPECT_EQ(statusOf("/ws?rooms=nosuch"), "hello ");
   EXPECT_EQ(statusOf("/ws?room=nosuch"), "404");
   EXPECT_EQ(statusOf("/ws/pool?room=main"), "400") << "two rooms";

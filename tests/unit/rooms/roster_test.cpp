@@ -47,6 +47,18 @@ TEST_F(RosterTest, TheCountOfUnlistedPeopleIsNewsButNotKept) {
   EXPECT_EQ(roster.version(), kept);
 }
 
+TEST_F(RosterTest, CountsThePeopleWhoAreConnected) {
+  const Admission ada = arrive(1);
+  arrive(2);
+  EXPECT_EQ(roster.presentCount(), 2U);
+  roster.give(7, ada.person_id);
+  roster.leave(1, now);
+  EXPECT_EQ(roster.people().people_size(), 2) << "the boat keeps its owner";
+  EXPECT_EQ(roster.presentCount(), 1U);
+  roster.setUnlistedCount(30);
+  EXPECT_EQ(roster.presentCount(), 31U);
+}
+
 TEST_F(RosterTest, APersonWithoutABoatIsForgottenAtOnce) {
   const Admission ada = arrive(7);
   roster.leave(7, now);

@@ -2,7 +2,7 @@
 // input.ts calls the methods for the user's actions.
 import type { GreetingInfo } from "../codec/greeting";
 import type { RoleName } from "../codec/people";
-import { GroundRequests, requestGround } from "../net/ground_request";
+import { GroundRequests } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
 import { roomOf, wishOf } from "../net/room_address";
@@ -22,7 +22,7 @@ import { FingerTags } from "../ui/finger_tags";
 import { FloaterRows } from "../ui/floater_rows";
 import { LessonState, lessonToolOf } from "../ui/lesson_state";
 import { Hud } from "../ui/hud";
-import { addLightRows, lightOf } from "../ui/light_rows";
+import { LightRows, lightOf } from "../ui/light_rows";
 import { PageActions } from "../ui/page_actions";
 import { ParametersPanel } from "../ui/parameters_panel";
 import { PeoplePanel } from "../ui/people_panel";
@@ -97,12 +97,13 @@ export class App {
   readonly fingers = new FingerTags(byId("view"));
   private readonly gauges: Gauges;
   private readonly preview = new ToolPreview(byId("view"));
+  private readonly lightRows: LightRows;
   private readonly looks: LookControls;
   private readonly qualityRow: QualityRow;
   readonly answerListeners: AnswerListener[];
   /** The water is drawn over a level bed until the ground is there. */
   private readonly ground = new GroundRequests(
-    (room) => requestGround(room, this.identity.token),
+    (room) => this.client.requestGround(room, this.identity.token),
     (room, ground) => {
       if (this.entered?.room === room && this.entered.hasBed) this.display.scene.setGround(ground);
     },
@@ -165,7 +166,7 @@ export class App {
       this.keepIdentity(false);
       this.client.call("introduce", name, token);
     });
-    addLightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
+    this.lightRows = new LightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
     this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
     this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
       setAddressParameter("quality", choice === "automatic" ? undefined : choice);
@@ -326,6 +327,7 @@ export class App {
     this.marks.enter(greeting.course);
     this.gauges.enter(greeting);
     this.fingers.clear();
+    this.lightRows.showHour();
     this.looks.enter(greeting);
     this.sound.enter(greeting);
     // Not before: the connection exists from now on.

@@ -4,6 +4,7 @@ import type { RoleName } from "../codec/people";
 import { GaugeView } from "../gauges/gauge_view";
 import { requestSeries } from "../net/gauge_request";
 import { byId } from "../ui/dom";
+import { kGaugeTexts } from "../ui/gauge_texts";
 import type { LessonState } from "../ui/lesson_state";
 import { kTexts } from "../ui/texts";
 import type { ToolBar } from "../ui/tool_bar";
@@ -70,7 +71,7 @@ class PlacingTap {
     if (reason !== undefined) return page.warn(reason);
     this.water = page.entered;
     page.placing = (place) => this.place(place);
-    page.tools.announce(window.matchMedia("(pointer: coarse)").matches ? kTexts.gauges.placeByTouch : kTexts.gauges.placeByMouse);
+    page.tools.announce(window.matchMedia("(pointer: coarse)").matches ? kGaugeTexts.placeByTouch : kGaugeTexts.placeByMouse);
     page.display.canvas.focus({ preventScroll: true });
     this.changed();
   }

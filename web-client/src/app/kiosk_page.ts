@@ -9,7 +9,7 @@ import { VisitorLimits } from "../kiosk/visitor_limits";
 import { Watchdog } from "../kiosk/watchdog";
 import { sessionStorageIfAny } from "../net/identity_store";
 import { byId, make, setText } from "../ui/dom";
-import { kTexts } from "../ui/texts";
+import { kKioskTexts } from "../ui/kiosk_texts";
 import type { App } from "./app";
 import { nowS } from "./picture_clock";
 
@@ -53,7 +53,7 @@ export function openKiosk(app: App | undefined): void {
 class Kiosk {
   private readonly visit: Visit;
   private readonly limits = new VisitorLimits();
-  private readonly invite = make("p", { class: "glass kiosk-line kiosk-invite", "data-testid": "kiosk-invite" }, [kTexts.kioskInvite]);
+  private readonly invite = make("p", { class: "glass kiosk-line kiosk-invite", "data-testid": "kiosk-invite" }, [kKioskTexts.invite]);
   private readonly countdown = make("p", { class: "glass kiosk-line kiosk-countdown", "data-testid": "kiosk-countdown", role: "timer", hidden: "" });
   private readonly view = make("button", { type: "button", class: "glass", "data-testid": "kiosk-view", hidden: "" });
   private shown: Phase | undefined;
@@ -106,7 +106,7 @@ class Kiosk {
     const { app, visit } = this;
     visit.update(nowMs);
     if (visit.phase !== this.shown) this.enterPhase(visit.phase);
-    if (visit.phase === "countdown") setText(this.countdown, kTexts.kioskCountdown(visit.secondsLeft(nowMs)));
+    if (visit.phase === "countdown") setText(this.countdown, kKioskTexts.countdown(visit.secondsLeft(nowMs)));
     // Ids belong to one water.
     const room = `${app.entered?.room} ${app.entered?.sceneName}`;
     if (room !== this.room) this.limits.floaterIds.length = 0;
@@ -154,11 +154,11 @@ class Kiosk {
     for (const floaterId of [...this.limits.floaterIds]) this.removeFloater(floaterId);
     if (this.ownBoatIds.length === 0 || this.nowMs - this.putAwayMs < kPutAwayEveryMs) return;
     this.putAwayMs = this.nowMs;
-    for (const boatId of this.ownBoatIds) this.app.commands.send({ case: "removeBoat", value: { boatId } }, kTexts.kioskPutAway);
+    for (const boatId of this.ownBoatIds) this.app.commands.send({ case: "removeBoat", value: { boatId } }, kKioskTexts.putAway);
   }
 
   private removeFloater(floaterId: number): void {
-    this.app.commands.send({ case: "removeFloater", value: { floaterId } }, kTexts.kioskPutAway);
+    this.app.commands.send({ case: "removeFloater", value: { floaterId } }, kKioskTexts.putAway);
     this.limits.removed(floaterId);
   }
 
@@ -169,7 +169,7 @@ class Kiosk {
     this.boatId = mineId;
     this.view.hidden = mineId === 0;
     document.body.classList.toggle("kiosk-has-boat", this.ownBoatIds.length > 0);
-    setText(this.view, document.body.classList.contains("boat-view") ? kTexts.kioskWhole : kTexts.kioskBoat);
+    setText(this.view, document.body.classList.contains("boat-view") ? kKioskTexts.whole : kKioskTexts.boat);
   }
 
   private moveCamera(): void {

@@ -3,6 +3,7 @@ import type { PersonInfo } from "../codec/people";
 import { make, setText } from "../ui/dom";
 import { clockText, countdownText, gameHeadline, GoalNews, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
 import type { LessonState } from "../ui/lesson_state";
+import { kClassTexts } from "../ui/class_texts";
 import { kTexts } from "../ui/texts";
 
 /** More people, and rows of a race, are only counted. */
@@ -15,11 +16,11 @@ export function playersOf({ people, ownId }: LessonState): PersonInfo[] {
 }
 
 export class Boards {
-  readonly element = make("div", { class: "boards", role: "region", "aria-label": kTexts.class.title });
+  readonly element = make("div", { class: "boards", role: "region", "aria-label": kClassTexts.title });
   private readonly headline = make("p", { class: "board-headline glass", "data-testid": "board-headline", role: "status", hidden: "" });
   private readonly score = make("p", { class: "board-score", "data-testid": "board-score", hidden: "" });
   private readonly count = make("p", { class: "board-count", "data-testid": "board-count", "aria-hidden": "true" });
-  private readonly frozen = make("p", { class: "board-frozen glass", "data-testid": "board-frozen", role: "status", hidden: "" }, [kTexts.padsPaused]);
+  private readonly frozen = make("p", { class: "board-frozen glass", "data-testid": "board-frozen", role: "status", hidden: "" }, [kClassTexts.padsPaused]);
   private readonly race = make("table", { class: "board-race glass", "data-testid": "board-race", hidden: "" });
   private readonly people = make("ul", { class: "board-people glass", "data-testid": "board-people", "aria-label": kTexts.page.peopleList, hidden: "" });
   private readonly side = make("div", { class: "board-side" }, [this.race, this.people]);
@@ -59,7 +60,7 @@ export class Boards {
     }
     const rows = game?.kind === "race" ? raceRows(game, people) : [];
     this.race.hidden = rows.length === 0;
-    this.race.replaceChildren(...rows.slice(0, kRowsMax).map(rowOf), ...(rows.length > kRowsMax ? [make("tr", {}, [make("td", { colspan: "4" }, [kTexts.andMore(rows.length - kRowsMax)])])] : []));
+    this.race.replaceChildren(...rows.slice(0, kRowsMax).map(rowOf), ...(rows.length > kRowsMax ? [make("tr", {}, [make("td", { colspan: "4" }, [kClassTexts.andMore(rows.length - kRowsMax)])])] : []));
     this.showPeople(rows.length > 0);
   }
 
@@ -69,7 +70,7 @@ export class Boards {
     const players = playersOf(this.lessons);
     this.people.hidden = isRace || players.length === 0;
     const sorted = lesson.teams ? [...players].sort((a, b) => (a.team ?? "").localeCompare(b.team ?? "")) : players;
-    this.people.replaceChildren(...sorted.slice(0, kPeopleMax).map(personItem), ...(players.length > kPeopleMax ? [make("li", {}, [kTexts.andMore(players.length - kPeopleMax)])] : []));
+    this.people.replaceChildren(...sorted.slice(0, kPeopleMax).map(personItem), ...(players.length > kPeopleMax ? [make("li", {}, [kClassTexts.andMore(players.length - kPeopleMax)])] : []));
     this.people.classList.toggle("many", players.length > 14);
   }
 }

@@ -3,12 +3,12 @@ import { askJoinAddresses } from "../net/join_addresses";
 import { roomOf } from "../net/room_address";
 import { make, setText } from "../ui/dom";
 import { drawQrCode } from "../ui/qr_code";
-import { kTexts } from "../ui/texts";
+import { kClassTexts } from "../ui/class_texts";
 
 /** Returns the addresses of the pad as this server's network has them. Throws an Error with a line for people. */
 export async function joinAddresses(search: string, token: string): Promise<string[]> {
   const urls = await askJoinAddresses(token);
-  if (urls.length === 0) throw new Error(kTexts.phonesCannotJoin);
+  if (urls.length === 0) throw new Error(kClassTexts.phonesCannotJoin);
   return urls.map((url) => withRoom(url, search));
 }
 
@@ -26,8 +26,8 @@ export function spokenAddress(address: string): string {
 }
 
 export class JoinCard {
-  readonly element = make("button", { type: "button", class: "join-card", "data-testid": "join-card", title: kTexts.joinTip, hidden: "" });
-  private readonly canvas = make("canvas", { "data-testid": "join-qr", role: "img", "aria-label": kTexts.padQr });
+  readonly element = make("button", { type: "button", class: "join-card", "data-testid": "join-card", title: kClassTexts.joinTip, hidden: "" });
+  private readonly canvas = make("canvas", { "data-testid": "join-qr", role: "img", "aria-label": kClassTexts.padQr });
   private readonly address = make("strong", { "data-testid": "join-address" });
   private readonly more = make("small");
   private addresses: string[] = [];
@@ -37,7 +37,7 @@ export class JoinCard {
   private isEmpty = true;
 
   constructor() {
-    this.element.append(this.canvas, make("span", { class: "join-text" }, [make("span", {}, [kTexts.scanOrOpen]), this.address, this.more]));
+    this.element.append(this.canvas, make("span", { class: "join-text" }, [make("span", {}, [kClassTexts.scanOrOpen]), this.address, this.more]));
     this.element.addEventListener("click", () => this.clicked());
   }
 
@@ -79,7 +79,7 @@ export class JoinCard {
     drawQrCode(this.canvas, address);
     this.canvas.dataset["address"] = address;
     setText(this.address, spokenAddress(address));
-    setText(this.more, this.addresses.length > 1 ? kTexts.addressOf(this.shown + 1, this.addresses.length) : "");
+    setText(this.more, this.addresses.length > 1 ? kClassTexts.addressOf(this.shown + 1, this.addresses.length) : "");
     this.refresh();
   }
 }

@@ -3,7 +3,8 @@ import "./class.css";
 import type { GreetingInfo } from "../codec/greeting";
 import { kLessonToolNames, wireLesson, type LessonInfo, type LessonTool } from "../codec/lesson";
 import { wireTeam, type PersonInfo, type TeamName } from "../codec/people";
-import { GameKind, LessonSchema, StartGameSchema } from "../gen/spindrift/v1/wire_pb";
+import { kLessonRanges, kStartGameRanges } from "../gen/ranges";
+import { GameKind } from "../gen/spindrift/v1/wire_pb";
 import type { CommandAction } from "../net/messages";
 import { make, setText } from "../ui/dom";
 import { fieldRange } from "../ui/effect_limits";
@@ -12,9 +13,9 @@ import { LatestSender } from "../ui/latest_sender";
 import type { LessonState } from "../ui/lesson_state";
 import { SliderRow } from "../ui/slider_row";
 import { playersOf } from "./boards";
+import { kClassTexts } from "../ui/class_texts";
 import { kTexts } from "../ui/texts";
 
-const kText = kTexts.class;
 /** At most so often while the slider moves. */
 const kForceEveryMs = 250;
 /** A second press within this time confirms. */
@@ -49,18 +50,18 @@ function confirmed(testId: string, label: string, question: string, pressed: () 
 
 export class OperatorPanel {
   readonly element: HTMLDetailsElement;
-  private readonly freeze = button("lesson-freeze", kText.pausePads, () => this.change({ frozen: !this.lessons.lesson.frozen }));
-  private readonly teams = button("lesson-teams", kText.teams, () => this.change({ teams: !this.lessons.lesson.teams }));
+  private readonly freeze = button("lesson-freeze", kClassTexts.pausePads, () => this.change({ frozen: !this.lessons.lesson.frozen }));
+  private readonly teams = button("lesson-teams", kClassTexts.teams, () => this.change({ teams: !this.lessons.lesson.teams }));
   private readonly tools = new Map<LessonTool, HTMLButtonElement>();
   private readonly force: SliderRow;
   private readonly forces: LatestSender<number>;
-  private readonly clear = button("lesson-clear", kText.clear, () => this.send({ case: "removeFloater", value: { all: true } }, kTexts.commands.removeObjects));
+  private readonly clear = button("lesson-clear", kClassTexts.clear, () => this.send({ case: "removeFloater", value: { all: true } }, kTexts.commands.removeObjects));
   private readonly race: HTMLElement;
   private readonly ball: HTMLElement;
-  private readonly end = button("game-end", kText.endGame, () => this.send({ case: "endGame", value: {} }, kTexts.commands.endGame));
-  private readonly noGames = make("p", { class: "hint" }, [kText.noGames]);
-  private readonly people = make("ul", { class: "lesson-people", "data-testid": "lesson-people", "aria-label": kText.whoPlays });
-  private readonly nobody = make("p", { class: "hint" }, [kText.nobody]);
+  private readonly end = button("game-end", kClassTexts.endGame, () => this.send({ case: "endGame", value: {} }, kTexts.commands.endGame));
+  private readonly noGames = make("p", { class: "hint" }, [kClassTexts.noGames]);
+  private readonly people = make("ul", { class: "lesson-people", "data-testid": "lesson-people", "aria-label": kClassTexts.whoPlays });
+  private readonly nobody = make("p", { class: "hint" }, [kClassTexts.nobody]);
   private lapsCount: number;
   private goalsCount: number;
 
@@ -75,25 +76,25 @@ export class OperatorPanel {
       setTimer: (callback, ms) => window.setTimeout(callback, ms),
       clearTimer: (timer) => window.clearTimeout(timer),
     }, kForceEveryMs);
-    const percent = { ...fieldRange(LessonSchema.field.forceRatio), ...kText.force, describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
+    const percent = { ...fieldRange(kLessonRanges.forceRatio), ...kClassTexts.force, describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
     this.force = new SliderRow("lesson-force", percent, 1, (ratio) => this.forces.offer(ratio));
-    const laps = fieldRange(StartGameSchema.field.lapsCount);
-    const goals = fieldRange(StartGameSchema.field.goalsCount);
+    const laps = fieldRange(kStartGameRanges.lapsCount);
+    const goals = fieldRange(kStartGameRanges.goalsCount);
     this.lapsCount = laps.default;
     this.goalsCount = goals.default;
-    const lapsRow = new SliderRow("game-laps", { ...laps, ...kText.laps }, laps.default, (count) => (this.lapsCount = count));
-    const goalsRow = new SliderRow("game-goals", { ...goals, ...kText.goals }, goals.default, (count) => (this.goalsCount = count));
-    this.race = make("div", {}, [lapsRow.element, button("game-race", kText.startRace, () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, kTexts.commands.race))]);
-    this.ball = make("div", {}, [goalsRow.element, button("game-ball", kText.startBall, () => this.startBall())]);
-    const reset = confirmed("lesson-reset", kText.reset, kText.really, () => this.send({ case: "reset", value: {} }, kTexts.commands.reset));
+    const lapsRow = new SliderRow("game-laps", { ...laps, ...kClassTexts.laps }, laps.default, (count) => (this.lapsCount = count));
+    const goalsRow = new SliderRow("game-goals", { ...goals, ...kClassTexts.goals }, goals.default, (count) => (this.goalsCount = count));
+    this.race = make("div", {}, [lapsRow.element, button("game-race", kClassTexts.startRace, () => this.send({ case: "startGame", value: { kind: GameKind.RACE, lapsCount: this.lapsCount } }, kTexts.commands.race))]);
+    this.ball = make("div", {}, [goalsRow.element, button("game-ball", kClassTexts.startBall, () => this.startBall())]);
+    const reset = confirmed("lesson-reset", kClassTexts.reset, kClassTexts.really, () => this.send({ case: "reset", value: {} }, kTexts.commands.reset));
     const group = (name: string, children: Node[]): HTMLElement => make("section", { class: "lesson-group", "aria-label": name }, [make("h2", {}, [name]), ...children]);
     this.element = make("details", { id: "class-box", "data-testid": "class-box" }, [
-      make("summary", {}, [kText.title]),
+      make("summary", {}, [kClassTexts.title]),
       make("div", { class: "buttons" }, [this.freeze, this.teams]),
-      group(kText.toolsGroup, [make("div", { class: "lesson-tools" }, [...this.tools.values()]), this.force.element]),
-      group(kText.gameGroup, [this.race, this.ball, this.noGames, this.end]),
-      group(kText.waterGroup, [make("div", { class: "buttons" }, [this.clear, reset])]),
-      group(kText.peopleGroup, [this.nobody, this.people]),
+      group(kClassTexts.toolsGroup, [make("div", { class: "lesson-tools" }, [...this.tools.values()]), this.force.element]),
+      group(kClassTexts.gameGroup, [this.race, this.ball, this.noGames, this.end]),
+      group(kClassTexts.waterGroup, [make("div", { class: "buttons" }, [this.clear, reset])]),
+      group(kClassTexts.peopleGroup, [this.nobody, this.people]),
     ]);
     lessons.watch(() => this.refresh());
     this.refresh();
@@ -103,7 +104,7 @@ export class OperatorPanel {
   refresh(): void {
     const { lesson, game, role } = this.lessons;
     this.element.hidden = role !== "operator";
-    setText(this.freeze, lesson.frozen ? kText.resumePads : kText.pausePads);
+    setText(this.freeze, lesson.frozen ? kClassTexts.resumePads : kClassTexts.pausePads);
     this.freeze.setAttribute("aria-pressed", String(lesson.frozen));
     this.teams.setAttribute("aria-pressed", String(lesson.teams));
     for (const [tool, element] of this.tools) element.setAttribute("aria-pressed", String(lesson.tools.includes(tool)));
@@ -133,10 +134,10 @@ export class OperatorPanel {
     team.hidden = !this.lessons.lesson.teams;
     setText(team, person.team ? kTexts.teams[person.team] : "–");
     team.style.borderColor = person.team ? kTeamColors[person.team] : "";
-    team.setAttribute("aria-label", kText.teamOf(person.name, person.team));
-    setText(mute, person.muted ? kText.unmute : kText.mute);
+    team.setAttribute("aria-label", kClassTexts.teamOf(person.name, person.team));
+    setText(mute, person.muted ? kClassTexts.unmute : kClassTexts.mute);
     mute.setAttribute("aria-pressed", String(person.muted));
-    mute.setAttribute("aria-label", person.muted ? kText.unmuteName(person.name) : kText.muteName(person.name));
+    mute.setAttribute("aria-label", person.muted ? kClassTexts.unmuteName(person.name) : kClassTexts.muteName(person.name));
     return row;
   }
 

@@ -22,11 +22,6 @@ export function pictureWidthPercent(aspectRatio: number): number {
   return Math.round(100 * Math.max(leastForHeight, Math.min(1, mostForHeight)));
 }
 
-/** Returns the people in a room without this page. `isLive`: the page is connected to it. */
-export function peopleCountOf({ sessionsCount }: RoomSummary, isLive: boolean): number {
-  return Math.max(sessionsCount - (isLive ? 1 : 0), 0);
-}
-
 /** Returns the rooms whose pictures are to be live, of those in the window: none while the page is hidden; beyond the bound those that are
  *  live already, then those that come first. */
 export function chooseLive(inWindow: readonly string[], live: ReadonlySet<string>, isPageHidden: boolean): string[] {

@@ -9,6 +9,7 @@ import { roomOf } from "../net/room_address";
 import { requestRooms, type RoomSummary } from "../net/room_requests";
 import { socketUrl } from "../net/water_client";
 import { make, setText } from "../ui/dom";
+import { kFrontTexts } from "../ui/front_texts";
 import { kTexts } from "../ui/texts";
 import { chooseLive } from "./front_model";
 import { OpenCard } from "./open_card";
@@ -26,11 +27,11 @@ class FrontPage {
   private readonly token: string;
   private readonly cards = new Map<string, RoomCard>();
   private readonly inWindow = new Set<string>();
-  private readonly list = make("ul", { class: "front-rooms", "aria-label": kTexts.frontRooms });
+  private readonly list = make("ul", { class: "front-rooms", "aria-label": kFrontTexts.rooms });
   private readonly missingLine = make("p", { class: "front-missing", role: "alert", "data-testid": "front-missing", hidden: "" });
   private readonly failedLine = make("p", { "data-testid": "front-failed" });
   private readonly failed = make("div", { class: "front-failed", role: "status", hidden: "" }, [this.failedLine]);
-  private readonly nobody = make("p", { class: "hint", hidden: "" }, [kTexts.noRooms]);
+  private readonly nobody = make("p", { class: "hint", hidden: "" }, [kFrontTexts.noRooms]);
   private readonly openCard: OpenCard;
   private readonly wanted = roomOf(location.search);
   private readonly observer: IntersectionObserver;
@@ -49,7 +50,7 @@ class FrontPage {
     retry.addEventListener("click", () => this.ask());
     this.failed.append(retry);
     const main = make("main", { class: "front" }, [
-      make("header", {}, [make("h1", {}, ["Spindrift"]), make("p", {}, [kTexts.frontLead])]),
+      make("header", {}, [make("h1", {}, ["Spindrift"]), make("p", {}, [kFrontTexts.lead])]),
       this.missingLine,
       this.failed,
       this.nobody,
@@ -84,7 +85,7 @@ class FrontPage {
 
   private sayMissing(refusal: string | undefined): void {
     if (!this.wanted) return;
-    setText(this.missingLine, refusal ? kTexts.refusedRoom(refusal) : kTexts.noSuchRoom(this.wanted));
+    setText(this.missingLine, refusal ? kFrontTexts.refusedRoom(refusal) : kFrontTexts.noSuchRoom(this.wanted));
     this.missingLine.hidden = false;
   }
 
@@ -105,7 +106,7 @@ class FrontPage {
   }
 
   private fail(why: string): void {
-    setText(this.failedLine, kTexts.listFailed(why));
+    setText(this.failedLine, kFrontTexts.listFailed(why));
     this.failed.hidden = false;
   }
 

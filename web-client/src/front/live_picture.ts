@@ -1,7 +1,7 @@
-// A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate.
+// A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate, and as an onlooker:
+// whoever sees the picture is not in the room.
 import type { RoleName } from "../codec/people";
 import type { GreetingInfo } from "../codec/greeting";
-import { requestGround } from "../net/ground_request";
 import type { PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { LessonState } from "../ui/lesson_state";
@@ -12,7 +12,6 @@ import { pictureWidthPercent } from "./front_model";
 const kFrameRateHz = 4;
 
 export class LivePicture {
-  isLive = false;
   private readonly client = openWaterClient(this.handlers());
   private readonly lessons = new LessonState();
   private readonly map: PadMap;
@@ -27,7 +26,7 @@ export class LivePicture {
     private readonly welcomed: (role: RoleName) => void,
   ) {
     this.map = new PadMap(canvas);
-    this.client.start(socketUrl(page), { name: "", token, resumeKey: "" });
+    this.client.start(`${socketUrl(page)}?onlooker`, { name: "", token, resumeKey: "" });
     this.client.call("setLayers", ["surface", "bodies", "floaters"]);
     this.client.call("setDetail", "coarse");
     this.client.call("setFrameRate", kFrameRateHz);
@@ -47,14 +46,13 @@ export class LivePicture {
   /** Ends the connection; the last picture stays. */
   close(): void {
     this.isClosed = true;
-    this.isLive = false;
     this.client.close();
   }
 
   private handlers(): PageEventHandlers {
     const nothing = (): void => {};
     return {
-      state: ({ state }) => (this.isLive = state.name === "live"),
+      state: nothing,
       greeting: ({ greeting }) => this.enter(greeting),
       welcome: ({ welcome }) => this.welcomed(welcome.role),
       frame: ({ frame }) => {
@@ -86,7 +84,7 @@ export class LivePicture {
     this.canvas.style.width = `calc(${pictureWidthPercent(aspectRatio)}% + ${2 * kMarginPx}px)`;
     this.map.enter(greeting, (frame) => this.client.release(frame));
     if (!greeting.hasBed) return;
-    requestGround(greeting.room, this.token).then(
+    this.client.requestGround(greeting.room, this.token).then(
       (ground) => !this.isClosed && this.greeting === greeting && this.map.setGround(ground),
       (error: unknown) => console.warn(`spindrift: the picture of ${greeting.room} is drawn without land: ${error instanceof Error ? error.message : String(error)}`),
     );

@@ -5,18 +5,19 @@ import { make, setText } from "../ui/dom";
 import { sceneLabel } from "../ui/room_panel";
 import { linkWith } from "../ui/share_link";
 import { SelectRow } from "../ui/select_row";
+import { kFrontTexts } from "../ui/front_texts";
 import { kTexts } from "../ui/texts";
 
 export class OpenCard {
   readonly element: HTMLLIElement;
   private readonly still = make("img", { alt: "" });
-  private readonly scene = new SelectRow("front-scene", kTexts.openScene, (value) => this.choose(value));
-  private readonly link = make("a", { class: "front-open", "data-testid": "front-open-room" }, [kTexts.openRoom]);
-  private readonly line = make("p", { class: "hint" }, [kTexts.openRoomWhy]);
+  private readonly scene = new SelectRow("front-scene", kFrontTexts.openScene, (value) => this.choose(value));
+  private readonly link = make("a", { class: "front-open", "data-testid": "front-open-room" }, [kFrontTexts.openRoom]);
+  private readonly line = make("p", { class: "hint" }, [kFrontTexts.openRoomWhy]);
 
   constructor(private readonly token: string) {
     this.element = make("li", { hidden: "" }, [
-      make("div", { class: "front-card", "data-testid": "front-open" }, [make("span", { class: "front-picture" }, [this.still]), make("span", { class: "front-words" }, [make("strong", {}, [kTexts.openRoom]), this.line, this.scene.element]), this.link]),
+      make("div", { class: "front-card", "data-testid": "front-open" }, [make("span", { class: "front-picture" }, [this.still]), make("span", { class: "front-words" }, [make("strong", {}, [kFrontTexts.openRoom]), this.line, this.scene.element]), this.link]),
     ]);
   }
 
@@ -29,7 +30,7 @@ export class OpenCard {
         this.scene.setChoices(scenes.map((name) => ({ value: name, label: sceneLabel(name) })), scenes[0] ?? "");
         this.choose(scenes[0] ?? "");
       },
-      (error: unknown) => setText(this.line, kTexts.failed(kTexts.openRoom, error instanceof Error ? error.message : String(error))),
+      (error: unknown) => setText(this.line, kTexts.failed(kFrontTexts.openRoom, error instanceof Error ? error.message : String(error))),
     );
   }
 

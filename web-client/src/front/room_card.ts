@@ -4,8 +4,9 @@ import type { RoleName } from "../codec/people";
 import type { RoomSummary } from "../net/room_requests";
 import { make, setText } from "../ui/dom";
 import { addressOfRoom } from "../ui/room_links";
+import { kFrontTexts } from "../ui/front_texts";
 import { kTexts } from "../ui/texts";
-import { peopleCountOf, stateOf } from "./front_model";
+import { stateOf } from "./front_model";
 import { LivePicture } from "./live_picture";
 
 export class RoomCard {
@@ -25,7 +26,7 @@ export class RoomCard {
     this.link = make("a", { class: "front-card", href: this.page, "data-testid": `room-${name}` }, [
       make("span", { class: "front-picture" }, [this.still, this.canvas]),
       make("span", { class: "front-words" }, [this.title, this.scene, make("span", { class: "front-line" }, [this.people, this.state])]),
-      make("span", { class: "front-open" }, [kTexts.open]),
+      make("span", { class: "front-open" }, [kFrontTexts.open]),
     ]);
     this.element = make("li", {}, [this.link]);
   }
@@ -41,9 +42,9 @@ export class RoomCard {
   show(room: RoomSummary): void {
     const state = stateOf(room);
     setText(this.title, kTexts.scenes[room.scene]?.title ?? room.title);
-    setText(this.scene, kTexts.sceneOfRoom(room.scene, room.name));
-    setText(this.people, kTexts.peopleCount(peopleCountOf(room, this.picture?.isLive ?? false)));
-    setText(this.state, kTexts.roomState[state]);
+    setText(this.scene, kFrontTexts.sceneOfRoom(room.scene, room.name));
+    setText(this.people, kFrontTexts.peopleCount(room.peopleCount));
+    setText(this.state, kFrontTexts.roomState[state]);
     this.link.dataset["state"] = state;
     const still = posterOf(room.scene);
     this.still.hidden = still === undefined;

@@ -3,7 +3,7 @@
 import type { GaugeInfo } from "../codec/scene_info";
 import type { GaugeSeries } from "../net/gauge_request";
 import { formatBy, make, setText } from "../ui/dom";
-import { kTexts } from "../ui/texts";
+import { kGaugeTexts } from "../ui/gauge_texts";
 import { SelectRow } from "../ui/select_row";
 import { GaugeChart, type Line } from "./gauge_chart";
 import { GaugeRecord, kQuantities, kQuantityInfos, type GaugeReadingInfo, type Quantity } from "./gauge_record";
@@ -49,12 +49,12 @@ export class GaugePanel {
   private readonly chart: GaugeChart;
   private readonly keys = new Map<string, Key>();
   private readonly place = make("div", { class: "gauge-chart", "data-testid": "gauge-chart" });
-  private readonly keyRow = make("div", { class: "gauge-keys", role: "group", "aria-label": kTexts.gauges.gauges });
+  private readonly keyRow = make("div", { class: "gauge-keys", role: "group", "aria-label": kGaugeTexts.gauges });
   private readonly at = make("span", { class: "gauge-at", "data-testid": "gauge-at" });
   private readonly pauseButton: HTMLButtonElement;
   private readonly placeButton: HTMLButtonElement;
-  private readonly quantityRow = new SelectRow("gauge-quantity", kTexts.gauges.shows, (value) => this.choose({ quantity: value as Quantity }));
-  private readonly spanRow = new SelectRow("gauge-span", kTexts.gauges.span, (value) => this.choose({ spanS: Number(value) }));
+  private readonly quantityRow = new SelectRow("gauge-quantity", kGaugeTexts.shows, (value) => this.choose({ quantity: value as Quantity }));
+  private readonly spanRow = new SelectRow("gauge-span", kGaugeTexts.span, (value) => this.choose({ spanS: Number(value) }));
   private gauges: readonly GaugeInfo[] = [];
   private chosen = new Set<string>();
   private quantity: Quantity = "elevation";
@@ -73,18 +73,18 @@ export class GaugePanel {
       made.addEventListener("click", pressed);
       return made;
     };
-    this.pauseButton = button("gauge-pause", kTexts.gauges.pause, kTexts.gauges.pauseHelp, () => void this.pause(!this.isPaused));
-    this.placeButton = button("gauge-place", kTexts.gauges.place, kTexts.gauges.placeHelp, () => world.place());
-    this.quantityRow.setChoices(kQuantities.map((value) => ({ value, label: `${kTexts.gauges[value]} [${kQuantityInfos[value].unit}]` })), this.quantity);
+    this.pauseButton = button("gauge-pause", kGaugeTexts.pause, kGaugeTexts.pauseHelp, () => void this.pause(!this.isPaused));
+    this.placeButton = button("gauge-place", kGaugeTexts.place, kGaugeTexts.placeHelp, () => world.place());
+    this.quantityRow.setChoices(kQuantities.map((value) => ({ value, label: `${kGaugeTexts[value]} [${kQuantityInfos[value].unit}]` })), this.quantity);
     this.spanRow.setChoices(kSpansS.map((spanS) => ({ value: String(spanS), label: `${spanS} s` })), String(this.spanS));
     this.keyRow.append(this.placeButton);
-    this.element = make("section", { class: "gauge-card glass", "data-testid": "gauge-panel", "aria-label": kTexts.gauges.gauges, hidden: "" }, [
+    this.element = make("section", { class: "gauge-card glass", "data-testid": "gauge-panel", "aria-label": kGaugeTexts.gauges, hidden: "" }, [
       make("div", { class: "gauge-head" }, [
-        make("h2", {}, [kTexts.gauges.gauges]),
+        make("h2", {}, [kGaugeTexts.gauges]),
         this.pauseButton,
-        button("gauge-csv", kTexts.gauges.csv, kTexts.gauges.csvHelp, () => void this.saveCsv()),
-        button("gauge-png", kTexts.gauges.picture, kTexts.gauges.pictureHelp, () => void this.savePng()),
-        button("gauge-close", "×", kTexts.gauges.close, closed),
+        button("gauge-csv", kGaugeTexts.csv, kGaugeTexts.csvHelp, () => void this.saveCsv()),
+        button("gauge-png", kGaugeTexts.picture, kGaugeTexts.pictureHelp, () => void this.savePng()),
+        button("gauge-close", "×", kGaugeTexts.close, closed),
       ]),
       make("div", { class: "gauge-rows" }, [this.quantityRow.element, this.spanRow.element]),
       this.place,
@@ -93,7 +93,7 @@ export class GaugePanel {
     ]);
     // The page's own keys choose tools.
     this.element.addEventListener("keydown", (event) => event.stopPropagation());
-    this.chart = new GaugeChart(this.place, kTexts.gauges.time, () => this.showValues());
+    this.chart = new GaugeChart(this.place, kGaugeTexts.time, () => this.showValues());
     this.refresh();
   }
 
@@ -123,12 +123,12 @@ export class GaugePanel {
     const { world, placeButton } = this;
     placeButton.hidden = !world.mayPlace();
     placeButton.setAttribute("aria-pressed", String(world.isPlacing()));
-    setText(placeButton, world.isPlacing() ? kTexts.gauges.placing : kTexts.gauges.place);
+    setText(placeButton, world.isPlacing() ? kGaugeTexts.placing : kGaugeTexts.place);
     for (const { name, placed } of this.gauges) {
       const { button, removal } = this.keys.get(name)!;
       if (!placed || !removal) continue;
       const owner = world.nameOf(placed.personId);
-      button.title = world.isOwn(placed.personId) ? kTexts.gauges.ownGauge : owner === undefined ? "" : kTexts.gauges.gaugeOf(owner);
+      button.title = world.isOwn(placed.personId) ? kGaugeTexts.ownGauge : owner === undefined ? "" : kGaugeTexts.gaugeOf(owner);
       removal.hidden = !world.mayRemove(placed.personId);
     }
   }
@@ -157,7 +157,7 @@ export class GaugePanel {
     const value = make("span", { class: "gauge-value" });
     const button = make("button", { type: "button", "data-testid": `gauge-key-${name}` }, [make("i"), name, value]);
     button.addEventListener("click", () => this.toggle(name));
-    const removal = placed && make("button", { type: "button", class: "gauge-remove", "data-testid": `gauge-remove-${name}`, title: kTexts.gauges.remove(name), "aria-label": kTexts.gauges.remove(name) }, ["×"]);
+    const removal = placed && make("button", { type: "button", class: "gauge-remove", "data-testid": `gauge-remove-${name}`, title: kGaugeTexts.remove(name), "aria-label": kGaugeTexts.remove(name) }, ["×"]);
     removal?.addEventListener("click", () => this.world.remove(placed!.gaugeId));
     const key = { element: make("span", { class: "gauge-key" }, removal ? [button, removal] : [button]), button, value, removal };
     this.keys.set(name, key);
@@ -199,7 +199,7 @@ export class GaugePanel {
 
   private hold(isPaused: boolean): void {
     this.isPaused = isPaused;
-    setText(this.pauseButton, isPaused ? kTexts.gauges.resume : kTexts.gauges.pause);
+    setText(this.pauseButton, isPaused ? kGaugeTexts.resume : kGaugeTexts.pause);
     this.pauseButton.setAttribute("aria-pressed", String(isPaused));
   }
 
@@ -212,7 +212,7 @@ export class GaugePanel {
           if (this.keys.has(name)) this.record.merge(name, series, this.isPaused ? this.record.newestS : undefined);
         } catch (error) {
           // It may have been removed meanwhile.
-          if (this.keys.has(name)) this.world.fail(kTexts.gauges.noHistory(name, reasonOf(error)));
+          if (this.keys.has(name)) this.world.fail(kGaugeTexts.noHistory(name, reasonOf(error)));
         }
       }),
     );
@@ -237,8 +237,8 @@ export class GaugePanel {
     const { timesS, columns, names } = this.shown;
     const at = this.chart.cursorAt ?? timesS.length - 1;
     const timeS = timesS[at];
-    const when = timeS === undefined ? kTexts.gauges.noReadings : this.chart.cursorAt === undefined && !this.isPaused ? kTexts.gauges.newest : kTexts.gauges.at(timeS);
-    setText(this.at, this.gauges.length === 0 ? kTexts.gauges.empty : names.length === 0 ? kTexts.gauges.none : when);
+    const when = timeS === undefined ? kGaugeTexts.noReadings : this.chart.cursorAt === undefined && !this.isPaused ? kGaugeTexts.newest : kGaugeTexts.at(timeS);
+    setText(this.at, this.gauges.length === 0 ? kGaugeTexts.empty : names.length === 0 ? kGaugeTexts.none : when);
     for (const [name, { button, value }] of this.keys) {
       const isShown = this.chosen.has(name);
       button.setAttribute("aria-pressed", String(isShown));
@@ -256,9 +256,9 @@ export class GaugePanel {
   }
 
   private async savePng(): Promise<void> {
-    const blob = await this.chart.toPng(`${this.world.title()} – ${kTexts.gauges.gauges}`, `${kTexts.gauges[this.quantity]} [${kQuantityInfos[this.quantity].unit}]`);
+    const blob = await this.chart.toPng(`${this.world.title()} – ${kGaugeTexts.gauges}`, `${kGaugeTexts[this.quantity]} [${kQuantityInfos[this.quantity].unit}]`);
     if (blob) this.world.save(blob, "png");
-    else this.world.fail(kTexts.gauges.pictureFailed(kTexts.gauges.noPicture));
+    else this.world.fail(kGaugeTexts.pictureFailed(kGaugeTexts.noPicture));
   }
 }
 

@@ -2,7 +2,7 @@
 // opened. The button shows where there are gauges, or where this visitor may place one.
 import type { GaugeInfo } from "../codec/scene_info";
 import { byId, make } from "../ui/dom";
-import { kTexts } from "../ui/texts";
+import { kGaugeTexts } from "../ui/gauge_texts";
 import type { GaugePanel, GaugeWorld } from "./gauge_panel";
 import type { GaugeReadingInfo } from "./gauge_record";
 import { GaugeTags } from "./gauge_tags";
@@ -18,7 +18,7 @@ const kNarrow = window.matchMedia("(max-width: 760px)");
 
 export class GaugeView {
   readonly tags = new GaugeTags(byId("view"));
-  private readonly button = make("button", { type: "button", class: "primary", "data-testid": "gauges", title: kTexts.gauges.open, "aria-expanded": "false" }, [kTexts.gauges.gauges]);
+  private readonly button = make("button", { type: "button", class: "primary", "data-testid": "gauges", title: kGaugeTexts.open, "aria-expanded": "false" }, [kGaugeTexts.gauges]);
   private gauges: readonly GaugeInfo[] = [];
   private loading: Promise<GaugePanel> | undefined;
   private panel: GaugePanel | undefined;
@@ -60,7 +60,7 @@ export class GaugeView {
       if (kNarrow.matches) this.world.openSheet();
     } catch {
       this.loading = undefined;
-      this.world.fail(kTexts.gauges.notLoaded);
+      this.world.fail(kGaugeTexts.notLoaded);
     }
   }
 

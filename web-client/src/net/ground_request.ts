@@ -1,11 +1,11 @@
-// Asks the server for the ground of a room, again when it changes.
+// The ground of a room: the worker asks the server for it and reads it, the page asks again when it changes.
 import { readGround, type GroundGrid } from "../codec/ground";
 import { isMalformed } from "../codec/malformed";
 import { kNetTexts } from "./net_texts";
 
-/** Throws an Error with a line for people if the room has no ground or it cannot be read. */
-export async function requestGround(room: string, token: string): Promise<GroundGrid> {
-  const answer = await fetch(`api/v1/rooms/${encodeURIComponent(room)}/ground`, token ? { headers: { Authorization: `Bearer ${token}` } } : {});
+/** Throws an Error with a line for people if the room has no ground or it cannot be read. `address`: of the ground on the server. */
+export async function requestGround(address: string, room: string, token: string): Promise<GroundGrid> {
+  const answer = await fetch(address, token ? { headers: { Authorization: `Bearer ${token}` } } : {});
   if (!answer.ok) throw new Error(kNetTexts.noGround(room, `${answer.status} ${answer.statusText}`));
   const read = readGround(new Uint8Array(await answer.arrayBuffer()));
   if (isMalformed(read)) throw new Error(read.reason);

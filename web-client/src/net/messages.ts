@@ -4,6 +4,7 @@
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
 import type { FrameHeaders, PackedFrame, PlainFrame } from "../codec/frame_types";
+import type { GroundGrid } from "../codec/ground";
 import type { FrameLayer, LayerName, LevelName } from "../codec/layers";
 import type { Malformed } from "../codec/malformed";
 import type { ParsedMessage } from "../codec/parse";
@@ -77,6 +78,9 @@ export type PageEvent =
   /** `supersededCount`: frames dropped for newer ones because the page was busy. */
   | { kind: "stats"; stats: LinkStats; supersededCount: number };
 
+/** What the worker says to a request for the ground: the ground, or why there is none, for people. */
+export type GroundAnswer = { kind: "ground"; requestId: number } & ({ ground: GroundGrid } | { why: string });
+
 /** One handler per event; a missing one does not compile. */
 export type PageEventHandlers = { [K in PageEvent["kind"]]: (event: Extract<PageEvent, { kind: K }>) => void };
 
@@ -105,4 +109,5 @@ export type WorkerRequest =
   | Call
   /** `language`: of the connection's lines for people. */
   | { kind: "start"; url: string; identity: Identity; wish: RoomWish | undefined; language: string }
+  | { kind: "ground"; requestId: number; address: string; room: string; token: string }
   | { kind: "release"; layer: FrameLayer; buffer: ArrayBuffer };

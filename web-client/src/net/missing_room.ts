@@ -15,7 +15,7 @@ export type Fetch = (url: string, init: RequestInit) => Promise<{ ok: boolean; s
  * answer, or it lists no rooms, as an edge that has just started.
  */
 export async function findMissingRoom(socketUrl: string, token: string, fetch: Fetch): Promise<MissingRoom | undefined> {
-  const parts = /^ws(s?:.*\/)ws\/([^/?]+)$/.exec(socketUrl);
+  const parts = /^ws(s?:.*\/)ws\/([^/?]+)(?:\?.*)?$/.exec(socketUrl);
   if (!parts) return undefined;
   const list = `http${parts[1]}api/v1/rooms`;
   const init: RequestInit = { headers: token ? { Authorization: `Bearer ${token}` } : {}, cache: "no-store" };

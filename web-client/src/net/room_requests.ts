@@ -15,8 +15,8 @@ export interface RoomSummary {
   title: string;
   isPaused: boolean;
   isAsleep: boolean;
-  /** Connections, those of front pages included. */
-  sessionsCount: number;
+  /** People who are connected to it. */
+  peopleCount: number;
 }
 
 const kRoles: readonly [RoleName, string][] = [["operator", "ROLE_OPERATOR"], ["player", "ROLE_PLAYER"], ["viewer", "ROLE_VIEWER"]];
@@ -29,8 +29,8 @@ export async function requestChanges(room: string, token: string): Promise<Param
 
 /** Returns the rooms that this visitor may know of. Throws an Error with a line for people. */
 export async function requestRooms(token: string): Promise<RoomSummary[]> {
-  const { rooms = [] } = (await ask("api/v1/rooms", token)) as { rooms?: { name: string; scene?: string; title?: string; paused?: boolean; asleep?: boolean; session_count?: number }[] };
-  return rooms.map(({ name, scene = "", title = "", paused = false, asleep = false, session_count: sessionsCount = 0 }) => ({ name, scene, title: title || name, isPaused: paused, isAsleep: asleep, sessionsCount }));
+  const { rooms = [] } = (await ask("api/v1/rooms", token)) as { rooms?: { name: string; scene?: string; title?: string; paused?: boolean; asleep?: boolean; people_count?: number }[] };
+  return rooms.map(({ name, scene = "", title = "", paused = false, asleep = false, people_count: peopleCount = 0 }) => ({ name, scene, title: title || name, isPaused: paused, isAsleep: asleep, peopleCount }));
 }
 
 /** Returns the names of the scenes that a room can be opened with. Throws an Error with a line for people. */

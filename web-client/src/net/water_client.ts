@@ -1,5 +1,6 @@
 // The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
-import type { CommandAction, ConnectionCalls, Frame, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
+import type { GroundGrid } from "../codec/ground";
+import type { CommandAction, ConnectionCalls, Frame, GroundAnswer, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
 import { roomOf, type RoomWish } from "./room_address";
 
 /** Starts the worker; the page calls it once. */
@@ -9,12 +10,18 @@ export function openWaterClient(handlers: PageEventHandlers): WaterClient {
 
 export class WaterClient {
   private nextCommandId = 1;
+  private nextGroundId = 1;
+  private readonly groundAnswers = new Map<number, (answer: GroundAnswer) => void>();
 
   constructor(
     private readonly worker: Worker,
     handlers: PageEventHandlers,
   ) {
-    worker.onmessage = ({ data }: MessageEvent<PageEvent>) => (handlers[data.kind] as (event: PageEvent) => void)(data);
+    worker.onmessage = ({ data }: MessageEvent<PageEvent | GroundAnswer>) => {
+      if (data.kind !== "ground") return (handlers[data.kind] as (event: PageEvent) => void)(data);
+      this.groundAnswers.get(data.requestId)?.(data);
+      this.groundAnswers.delete(data.requestId);
+    };
   }
 
   /** `wish`: opens the room if it does not exist. */
@@ -32,6 +39,18 @@ export class WaterClient {
     const commandId = this.nextCommandId++;
     this.call("command", commandId, action);
     return commandId;
+  }
+
+  /** Returns the ground of a room with a bed. Throws an Error with a line for people. */
+  async requestGround(room: string, token: string): Promise<GroundGrid> {
+    const requestId = this.nextGroundId++;
+    const address = new URL(`api/v1/rooms/${encodeURIComponent(room)}/ground`, location.href).href;
+    const answer = await new Promise<GroundAnswer>((resolve) => {
+      this.groundAnswers.set(requestId, resolve);
+      this.post({ kind: "ground", requestId, address, room, token });
+    });
+    if ("why" in answer) throw new Error(answer.why);
+    return answer.ground;
   }
 
   /** Returns a frame's buffer to the worker; the frame must not be read afterwards. */

@@ -4,8 +4,9 @@ import { readerFault } from "../codec/frame_reader";
 import type { FrameLayer } from "../codec/layers";
 import { Connection } from "./connection";
 import type { ConnectionWorld, SocketLike } from "./connection_world";
+import { requestGround } from "./ground_request";
 import { FrameHandover } from "./handover";
-import type { ConnectionEvent, Frame, Identity, PageEvent, WorkerRequest } from "./messages";
+import type { ConnectionEvent, Frame, GroundAnswer, Identity, PageEvent, WorkerRequest } from "./messages";
 import { findMissingRoom } from "./missing_room";
 import { openRoom } from "./open_room";
 import type { RoomWish } from "./room_address";
@@ -14,7 +15,7 @@ import { kNetTexts } from "./net_texts";
 /** The page's ring holds five; one more may be on its way. */
 const kMaxFramesUnderWay = 6;
 
-function post(event: PageEvent, transfer: Transferable[] = []): void {
+function post(event: PageEvent | GroundAnswer, transfer: Transferable[] = []): void {
   self.postMessage(event, { transfer });
 }
 
@@ -70,12 +71,21 @@ function passOn(event: ConnectionEvent): void {
   post(event);
 }
 
+function answerGround({ requestId, address, room, token }: Extract<WorkerRequest, { kind: "ground" }>): Promise<void> {
+  return requestGround(address, room, token).then(
+    (ground) => post({ kind: "ground", requestId, ground }, [ground.riseM.buffer]),
+    (error: unknown) => post({ kind: "ground", requestId, why: error instanceof Error ? error.message : String(error) }),
+  );
+}
+
 self.addEventListener("message", ({ data: request }: MessageEvent<WorkerRequest>) => {
   switch (request.kind) {
     case "start":
       // Calls follow at once, so nothing waits for it: a line before it is there is English.
       if (request.language === "de") void import("./net_texts_de").then(({ kGermanNetTexts }) => Object.assign(kNetTexts, kGermanNetTexts));
       return start(request.url, request.identity, request.wish);
+    case "ground":
+      return void answerGround(request);
     case "release":
       return handovers[request.layer].release(request.buffer);
     case "call":

@@ -2,6 +2,7 @@
 import { kLessonToolNames, type LessonTool } from "../codec/lesson";
 import { make } from "../ui/dom";
 import { toolIcon } from "./icons";
+import { kPadTexts } from "../ui/pad_texts";
 import { kTexts } from "../ui/texts";
 
 export interface PadElements {
@@ -40,16 +41,16 @@ export function makePadLayout(): PadElements {
   const standing = make("span", { class: "pad-standing", "data-testid": "pad-standing", role: "status" });
   const state = make("span", { class: "pad-state", "data-testid": "pad-state", role: "status" });
   const retry = make("button", { type: "button", hidden: "" }, [kTexts.page.retry]);
-  const canvas = make("canvas", { class: "pad-canvas", "data-testid": "pad-canvas", tabindex: "0", role: "application", "aria-label": kTexts.pad.water });
+  const canvas = make("canvas", { class: "pad-canvas", "data-testid": "pad-canvas", tabindex: "0", role: "application", "aria-label": kPadTexts.water });
   const headline = make("p", { class: "pad-headline", "data-testid": "pad-headline", role: "status", hidden: "" });
   const count = make("p", { class: "pad-count", "data-testid": "pad-count", "aria-hidden": "true" });
   const veil = make("p", { class: "pad-veil", "data-testid": "pad-veil", role: "status", hidden: "" });
   const hint = make("p", { class: "pad-hint", "data-testid": "pad-hint", role: "status", hidden: "" });
   const speed = make("b", { "data-testid": "pad-speed" });
   const heading = make("b", { "data-testid": "pad-heading" });
-  const launch = make("button", { type: "button", class: "primary pad-launch", "data-testid": "pad-launch" }, [kTexts.pad.launch]);
-  const remove = make("button", { type: "button", "data-testid": "pad-remove", "aria-label": kTexts.pad.takeOutLabel }, [kTexts.pad.takeOut]);
-  const readouts = make("dl", { class: "pad-readouts" }, [make("div", {}, [make("dt", {}, [kTexts.pad.speed]), make("dd", {}, [speed])]), make("div", {}, [make("dt", {}, [kTexts.pad.heading]), make("dd", {}, [heading])]), remove]);
+  const launch = make("button", { type: "button", class: "primary pad-launch", "data-testid": "pad-launch" }, [kPadTexts.launch]);
+  const remove = make("button", { type: "button", "data-testid": "pad-remove", "aria-label": kPadTexts.takeOutLabel }, [kPadTexts.takeOut]);
+  const readouts = make("dl", { class: "pad-readouts" }, [make("div", {}, [make("dt", {}, [kPadTexts.speed]), make("dd", {}, [speed])]), make("div", {}, [make("dt", {}, [kPadTexts.heading]), make("dd", {}, [heading])]), remove]);
   const helm = make("div", { class: "pad-helm", hidden: "" }, [readouts, launch]);
   const buttons = new Map(
     kLessonToolNames.map((tool): [LessonTool, HTMLButtonElement] => {
@@ -58,9 +59,9 @@ export function makePadLayout(): PadElements {
       return [tool, button];
     }),
   );
-  const tools = make("nav", { class: "pad-tools", "aria-label": kTexts.pad.tools }, [...buttons.values()]);
+  const tools = make("nav", { class: "pad-tools", "aria-label": kPadTexts.tools }, [...buttons.values()]);
   const name = make("input", { id: "pad-my-name", "data-testid": "pad-my-name", maxlength: String(kNameMaxLength), autocomplete: "nickname", enterkeyhint: "done" });
-  const form = make("form", { method: "dialog" }, [make("label", { for: "pad-my-name" }, [kTexts.myName]), name, make("button", { type: "submit", class: "primary", "data-testid": "pad-save-name" }, [kTexts.pad.useName])]);
+  const form = make("form", { method: "dialog" }, [make("label", { for: "pad-my-name" }, [kTexts.myName]), name, make("button", { type: "submit", class: "primary", "data-testid": "pad-save-name" }, [kPadTexts.useName])]);
   const dialog = make("dialog", { class: "pad-dialog glass" }, [form]);
   const map = make("main", { class: "pad-map" }, [canvas, headline, count, hint, helm, veil]);
   document.body.className = "pad-page";

@@ -9,7 +9,6 @@ import { GamepadTools } from "../app/virtual_pointer";
 import type { GreetingInfo } from "../codec/greeting";
 import type { LessonTool } from "../codec/lesson";
 import type { FingerInfo } from "../codec/strokes";
-import { requestGround } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import type { CommandAction, ConnectionState, PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
@@ -28,6 +27,7 @@ import { makePadLayout } from "./pad_layout";
 import { PadMap } from "./pad_map";
 import { PadWords } from "./pad_words";
 import { Stick } from "./stick";
+import { kPadTexts } from "../ui/pad_texts";
 import { kTexts } from "../ui/texts";
 
 const kNameKey = "pad-name";
@@ -150,7 +150,7 @@ class PadPage {
         if (this.greeting) this.greeting.boats = boats;
       },
       clock: ({ leadS }) => this.map.sync(leadS + performance.timeOrigin / 1000),
-      draining: () => this.hint(kTexts.pad.restarts),
+      draining: () => this.hint(kPadTexts.restarts),
       roomEvent: nothing,
       roomState: nothing,
       parameterChanged: nothing,
@@ -165,7 +165,7 @@ class PadPage {
     this.hands.liftAll();
     this.map.enter(greeting, (message) => this.client.release(message));
     if (greeting.hasBed)
-      requestGround(greeting.room, this.identity.token).then(
+      this.client.requestGround(greeting.room, this.identity.token).then(
         (ground) => this.greeting === greeting && this.map.setGround(ground),
         (error: unknown) => this.hint(error instanceof Error ? error.message : String(error)),
       );
@@ -248,7 +248,7 @@ class PadPage {
     for (const [tool, button] of elements.buttons)
       button.addEventListener("click", () => {
         this.choose(tool);
-        this.hint(kTexts.pad.does[tool]);
+        this.hint(kPadTexts.does[tool]);
       });
     elements.retry.addEventListener("click", () => this.client.call("retryNow"));
     elements.launch.addEventListener("click", () => this.greeting && this.boat.launch(this.greeting, this.map.boats()));

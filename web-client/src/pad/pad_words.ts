@@ -7,6 +7,7 @@ import type { LessonState } from "../ui/lesson_state";
 import type { PadElements } from "./pad_layout";
 import type { OwnPose } from "./pad_map";
 import { fixed } from "../ui/numbers";
+import { kPadTexts } from "../ui/pad_texts";
 import { kTexts } from "../ui/texts";
 
 /** Compass heading of a boat: +x is east, and -z north. */
@@ -30,8 +31,8 @@ export class PadWords {
     const isLive = state.name === "live";
     setText(elements.state, isLive ? "" : describeState(state));
     elements.retry.hidden = state.name !== "retrying" && state.name !== "refused";
-    const offline = state.name === "refused" ? state.reason : state.name === "retrying" ? kTexts.pad.lost : kTexts.pad.connecting;
-    const veil = isLive ? (lessons.role === "viewer" && lessons.ownId !== 0 ? kTexts.pad.mayWatch : reason) : offline;
+    const offline = state.name === "refused" ? state.reason : state.name === "retrying" ? kPadTexts.lost : kPadTexts.connecting;
+    const veil = isLive ? (lessons.role === "viewer" && lessons.ownId !== 0 ? kPadTexts.mayWatch : reason) : offline;
     setText(elements.veil, veil ?? "");
     elements.veil.hidden = veil === undefined;
     const team = lessons.me?.team;

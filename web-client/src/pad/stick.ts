@@ -1,6 +1,6 @@
 // The stick that steers one's boat: up is ahead, sideways is the rudder; it springs back.
 import { make } from "../ui/dom";
-import { kTexts } from "../ui/texts";
+import { kPadTexts } from "../ui/pad_texts";
 
 /** Within this share of its reach the stick does not move, so that a resting thumb stops the engine. */
 const kDeadShare = 0.14;
@@ -29,7 +29,7 @@ export class Stick {
 
   /** `moved` gets every new setting, also the one at its release. */
   constructor(private readonly moved: (setting: HelmSetting) => void) {
-    this.element = make("div", { class: "pad-stick", "data-testid": "pad-stick", role: "application", "aria-label": kTexts.pad.stick }, [this.knob]);
+    this.element = make("div", { class: "pad-stick", "data-testid": "pad-stick", role: "application", "aria-label": kPadTexts.stick }, [this.knob]);
     this.element.addEventListener("pointerdown", (event) => {
       if (this.pointerId !== undefined) return;
       this.pointerId = event.pointerId;

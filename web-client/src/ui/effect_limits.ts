@@ -1,10 +1,6 @@
 // Ranges of the effect sliders: the options in scene.proto, narrowed to the limits of this room's water.
-import { getOption, type DescField } from "@bufbuild/protobuf";
-
 import type { GreetingInfo } from "../codec/greeting";
-import { parameter } from "../gen/spindrift/v1/options_pb";
-import { BoatSchema, BreakingWaveSchema, SplashSchema } from "../gen/spindrift/v1/scene_pb";
-import { ControlBoatSchema, SetSpeedSchema } from "../gen/spindrift/v1/wire_pb";
+import { kBoatRanges, kBreakingWaveRanges, kControlBoatRanges, kSetSpeedRanges, kSplashRanges } from "../gen/ranges";
 import type { SliderRange } from "./slider_row";
 
 interface EffectRange extends SliderRange {
@@ -32,8 +28,7 @@ const kRadiusRipples = 0.6;
 const kMostSteps = 1000;
 
 /** `usual`: the default at most. */
-function range(field: DescField, largest: number, usual = Infinity): EffectRange {
-  const { label, unit, min, max, step: finest, default: fallback } = getOption(field, parameter);
+function range({ label, unit, min, max, step: finest, default: fallback }: EffectRange, largest: number, usual = Infinity): EffectRange {
   const most = Math.min(max, largest);
   let step = finest;
   while (most - min > kMostSteps * step * (1 + 1e-9)) step *= 10;
@@ -50,14 +45,14 @@ function range(field: DescField, largest: number, usual = Infinity): EffectRange
 export function effectLimits(greeting: GreetingInfo): EffectLimits | undefined {
   const { sideM, depthM, rippleM = Infinity } = greeting.waterExtents;
   if (!(depthM > 0 && Number.isFinite(depthM))) return undefined;
-  const splashRadiusM = range(SplashSchema.field.radiusM, kWidestRadiusSides * sideM, Math.min(kUsual.radiusSides * sideM, kRadiusRipples * rippleM));
-  const waveLengthM = range(BreakingWaveSchema.field.lengthM, kLongestWaveSides * sideM, Math.min(kUsual.lengthSides * sideM, rippleM));
+  const splashRadiusM = range(kSplashRanges.radiusM, kWidestRadiusSides * sideM, Math.min(kUsual.radiusSides * sideM, kRadiusRipples * rippleM));
+  const waveLengthM = range(kBreakingWaveRanges.lengthM, kLongestWaveSides * sideM, Math.min(kUsual.lengthSides * sideM, rippleM));
   return {
     splashRadiusM,
-    splashDepthM: range(SplashSchema.field.depthM, kDeepestDepths * depthM, kUsual.depthRadii * splashRadiusM.default),
-    waveAmplitudeM: range(BreakingWaveSchema.field.amplitudeM, kDeepestDepths * depthM, kUsual.heightLengths * waveLengthM.default),
+    splashDepthM: range(kSplashRanges.depthM, kDeepestDepths * depthM, kUsual.depthRadii * splashRadiusM.default),
+    waveAmplitudeM: range(kBreakingWaveRanges.amplitudeM, kDeepestDepths * depthM, kUsual.heightLengths * waveLengthM.default),
     waveLengthM,
-    waveDirectionDeg: range(BreakingWaveSchema.field.directionDeg, Infinity),
+    waveDirectionDeg: range(kBreakingWaveRanges.directionDeg, Infinity),
   };
 }
 
@@ -70,13 +65,11 @@ export interface BoatLimits {
 /** Longest hull as a share of the water's longer and shorter side. */
 const kLongestBoatSides = 0.25;
 const kLongestBoatWidths = 0.5;
-const defaultOf = (field: DescField): number => getOption(field, parameter).default;
-const { field: kBoat } = BoatSchema;
 /** Beam and height of a new boat as shares of its length, and its density: the shape of the proto's default boat. */
 const kBoatShape = {
-  beam: defaultOf(kBoat.beamM) / defaultOf(kBoat.lengthM),
-  height: defaultOf(kBoat.heightM) / defaultOf(kBoat.lengthM),
-  density: defaultOf(kBoat.densityRatio),
+  beam: kBoatRanges.beamM.default / kBoatRanges.lengthM.default,
+  height: kBoatRanges.heightM.default / kBoatRanges.lengthM.default,
+  density: kBoatRanges.densityRatio.default,
 };
 /** Greatest draught as a share of the water's depth. */
 const kDraughtDepths = 0.6;
@@ -87,26 +80,26 @@ export function boatLimits(greeting: GreetingInfo): BoatLimits | undefined {
   if (!greeting.hasBoats || !(depthM > 0 && Number.isFinite(depthM))) return undefined;
   const deepest = (kDraughtDepths * depthM) / (kBoatShape.height * kBoatShape.density);
   return {
-    lengthM: range(BoatSchema.field.lengthM, Math.min(kLongestBoatSides * longM, kLongestBoatWidths * sideM, deepest)),
-    throttleRatio: range(ControlBoatSchema.field.throttleRatio, Infinity),
-    rudderRatio: range(ControlBoatSchema.field.rudderRatio, Infinity),
+    lengthM: range(kBoatRanges.lengthM, Math.min(kLongestBoatSides * longM, kLongestBoatWidths * sideM, deepest)),
+    throttleRatio: range(kControlBoatRanges.throttleRatio, Infinity),
+    rudderRatio: range(kControlBoatRanges.rudderRatio, Infinity),
   };
 }
 
 /** Returns a new boat of this length, within the ranges of its fields. */
 export function boatOfLength(lengthM: number): { lengthM: number; beamM: number; heightM: number; densityRatio: number; draughtM: number } {
-  const heightM = Math.max(kBoatShape.height * lengthM, range(BoatSchema.field.heightM, Infinity).min);
-  const beamM = Math.max(kBoatShape.beam * lengthM, range(BoatSchema.field.beamM, Infinity).min);
+  const heightM = Math.max(kBoatShape.height * lengthM, kBoatRanges.heightM.min);
+  const beamM = Math.max(kBoatShape.beam * lengthM, kBoatRanges.beamM.min);
   return { lengthM, beamM, heightM, densityRatio: kBoatShape.density, draughtM: kBoatShape.density * heightM };
 }
 
-/** The range of a message's field, as its options say. */
-export function fieldRange(field: DescField): EffectRange {
+/** The range of a field, with no more steps than a slider can have. */
+export function fieldRange(field: EffectRange): EffectRange {
   return range(field, Infinity);
 }
 
 export function speedRange(): EffectRange {
-  return range(SetSpeedSchema.field.speed, Infinity);
+  return fieldRange(kSetSpeedRanges.speed);
 }
 
 /** Returns what a slider's value becomes in other water: what was twice the usual size is so there, too. */

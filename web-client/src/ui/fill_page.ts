@@ -8,7 +8,8 @@ const kFilled = {
   "data-tip": (element: Element, text: string) => element.setAttribute("title", text),
 };
 
-export function fillPage(root: ParentNode): void {
+export function fillPage(root: Document): void {
   for (const [attribute, fill] of Object.entries(kFilled))
     for (const element of root.querySelectorAll(`[${attribute}]`)) fill(element, kTexts.page[element.getAttribute(attribute) as keyof typeof kTexts.page]);
+  root.body.classList.remove("unfilled");
 }

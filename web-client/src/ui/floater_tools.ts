@@ -1,9 +1,7 @@
 // What the tools Float and Throw send: an object that is dropped, a stone that flies. Pure.
-import { getOption } from "@bufbuild/protobuf";
-
 import type { GreetingInfo } from "../codec/greeting";
-import { parameter } from "../gen/spindrift/v1/options_pb";
-import { FloaterKind, FloaterSchema } from "../gen/spindrift/v1/scene_pb";
+import { kFloaterRanges } from "../gen/ranges";
+import { FloaterKind } from "../gen/spindrift/v1/scene_pb";
 import type { CommandAction } from "../net/messages";
 import { kFloaterKinds, type FloaterKindName } from "../scene/frames/floaters";
 import { clamp } from "../scene/maths/interpolate";
@@ -49,7 +47,7 @@ export function densityName(densityRatio: number): string {
 export function floaterSizeM(tool: ToolName, water: Water, { sizeRatio }: ToolScale): number | undefined {
   if (tool !== "float" && tool !== "throw") return undefined;
   const sizeM = Math.min(sizeRatio * shareOf(water, kSizes[tool]), kLargestSides * water.waterExtents.sideM);
-  return clampTo(sizeM, getOption(FloaterSchema.field.sizeM, parameter));
+  return clampTo(sizeM, kFloaterRanges.sizeM);
 }
 
 function wireKind(kind: FloaterKindName): FloaterKind {
@@ -75,7 +73,7 @@ export interface Throw {
 }
 
 export function throwOf({ from, yM, velocityMps }: Throw, sizeM: number, water: Water): CommandAction {
-  const [velocityXMps, velocityYMps, velocityZMps] = velocityMps.map((each) => clampTo(each, getOption(FloaterSchema.field.velocityXMps, parameter)));
+  const [velocityXMps, velocityYMps, velocityZMps] = velocityMps.map((each) => clampTo(each, kFloaterRanges.velocityXMps));
   return { case: "spawnFloater", value: { floater: { kind: FloaterKind.STONE, ...inside(from, sizeM, water), yM, sizeM, velocityXMps, velocityYMps, velocityZMps } } };
 }
 
@@ -83,7 +81,7 @@ export function throwOf({ from, yM, velocityMps }: Throw, sizeM: number, water: 
 export function flickOf(from: WaterPlace, to: WaterPlace, heldS: number, levelM: number, water: Water, { strengthRatio }: ToolScale): Throw | undefined {
   const wayM = Math.hypot(to.xM - from.xM, to.zM - from.zM);
   if (wayM < 1e-3) return undefined;
-  const fastestMps = Math.min(Math.sqrt(kFarthestSides * water.waterExtents.longM * gravityOf(water)), getOption(FloaterSchema.field.velocityXMps, parameter).max);
+  const fastestMps = Math.min(Math.sqrt(kFarthestSides * water.waterExtents.longM * gravityOf(water)), kFloaterRanges.velocityXMps.max);
   const speedMps = Math.min((strengthRatio * wayM) / clamp(heldS, ...kFlickS), fastestMps);
   const along = (toM: number, fromM: number): number => (speedMps * (toM - fromM)) / wayM;
   return { from, yM: levelM + shareOf(water, kRelease), velocityMps: [along(to.xM, from.xM), kFlickRise * speedMps, along(to.zM, from.zM)] };

@@ -21,21 +21,31 @@ export function lightOf(search: string): PresetName | number {
   return isPreset(name) ? name : "automatic";
 }
 
-/** Adds both rows. `first`: chosen at the beginning. `chosen` gets what the address has to say then, undefined for automatic. */
-export function addLightRows(daylight: Daylight, first: PresetName | number, chosen: (light: string | undefined) => void): void {
-  const select = new SelectRow("light", kTexts.light, (name) => {
-    if (!isPreset(name)) return;
-    hour.show(daylight.choose(name), "");
-    chosen(name === "automatic" ? undefined : name.replaceAll(" ", "-"));
-  });
-  const hour = new SliderRow("hour", { ...kTexts.hour, unit: "h", min: 0, max: 24, step: 0.25 }, 12, (value) => {
-    daylight.chooseHour(value);
-    select.value = kByHour;
-    chosen(String(value));
-  });
-  const isHour = typeof first === "number";
-  select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: kTexts.lights[name] })), { value: kByHour, label: kTexts.byHour }], isHour ? kByHour : first);
-  if (isHour) daylight.chooseHour(first);
-  hour.show(isHour ? first : daylight.choose(first), "");
-  byId("light-rows").append(select.element, hour.element);
+export class LightRows {
+  private readonly hourRow: SliderRow;
+
+  /** `first`: chosen at the beginning. `chosen` gets what the address has to say then, undefined for automatic. */
+  constructor(private readonly daylight: Daylight, first: PresetName | number, chosen: (light: string | undefined) => void) {
+    const select = new SelectRow("light", kTexts.light, (name) => {
+      if (!isPreset(name)) return;
+      daylight.choose(name);
+      this.showHour();
+      chosen(name === "automatic" ? undefined : name.replaceAll(" ", "-"));
+    });
+    const isHour = typeof first === "number";
+    select.setChoices([...kPresetNames.map((name) => ({ value: name as string, label: kTexts.lights[name] })), { value: kByHour, label: kTexts.byHour }], isHour ? kByHour : first);
+    if (isHour) daylight.chooseHour(first);
+    else daylight.choose(first);
+    this.hourRow = new SliderRow("hour", { ...kTexts.hour, unit: "h", min: 0, max: 24, step: 0.25 }, daylight.hour, (value) => {
+      daylight.chooseHour(value);
+      select.value = kByHour;
+      chosen(String(value));
+    });
+    byId("light-rows").append(select.element, this.hourRow.element);
+  }
+
+  /** Shows the hour that is chosen; again in a scene with another one of its own. */
+  showHour(): void {
+    this.hourRow.show(this.daylight.hour, "");
+  }
 }

@@ -1,6 +1,6 @@
 // The card that shares a view of the water: a link to copy, for another program (Web Share), and as a QR code. The link leads to this room;
-// to a room of its own with the same scene and values; or, from an operator, to a new room in the role of presenter, player or watcher. Or it
-// gives the code that shows the view in another page.
+// to a room of its own with the same scene and values; or, from an operator, to a new room in the role of presenter, player or watcher, or as
+// a kiosk. Or it gives the code that shows the view in another page.
 import type { RoleName } from "../codec/people";
 import { textOfValues, type ParameterValue } from "../net/room_address";
 import type { RoomWithTokens } from "../net/room_requests";
@@ -11,13 +11,16 @@ import { drawQrCode } from "./qr_code";
 import { SelectRow } from "./select_row";
 import { addressAt, linkWith } from "./share_link";
 import "./share_card.css";
-import { kTexts } from "./texts";
+import { kShareTexts } from "./share_texts";
 
 /** Longer links make codes so fine that phones do not read them from a screen. */
 const kQrMaxLength = 1200;
 const kLoopbackHost = /^(localhost|.*\.localhost|127(\.\d+){3}|\[::1\])$/;
-const kCard = kTexts.shareCard;
-type Target = keyof typeof kCard.targets;
+type Target = keyof typeof kShareTexts.targets;
+/** The reader of a link to a new room: a role, or the visitors of a kiosk, who are players. */
+type Guest = RoleName | "kiosk";
+/** Until the countdown of a kiosk; in the link, so that one sees where it can be changed. */
+const kKioskIdleS = "60";
 
 /** What the card needs of the page. */
 export interface ShareSource {
@@ -41,22 +44,22 @@ export class ShareCard {
   private reachable: string | undefined;
   private isOnlyHere = false;
   private target: Target = "room";
-  private role: RoleName = "player";
+  private guest: Guest = "player";
   private made: RoomWithTokens | undefined;
-  private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": kCard.qr });
-  private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": kCard.link });
-  private readonly targetRow = new SelectRow("share-target", kCard.target, (value) => this.choose(value as Target));
-  private readonly roleRow = new SelectRow("share-role", kCard.role, (value) => {
-    this.role = value as RoleName;
+  private readonly qr = make("canvas", { "data-testid": "share-qr", role: "img", "aria-label": kShareTexts.qr });
+  private readonly link = make("input", { "data-testid": "share-link", readonly: "", "aria-label": kShareTexts.link });
+  private readonly targetRow = new SelectRow("share-target", kShareTexts.target, (value) => this.choose(value as Target));
+  private readonly roleRow = new SelectRow("share-role", kShareTexts.role, (value) => {
+    this.guest = value as Guest;
     this.show();
   });
-  private readonly copyButton = make("button", { type: "button", class: "primary", "data-testid": "share-copy" }, [kCard.copy]);
-  private readonly sendButton = make("button", { type: "button", "data-testid": "share-send" }, [kCard.send]);
-  private readonly closeButton = make("button", { type: "button", "data-testid": "share-close" }, [kCard.close]);
+  private readonly copyButton = make("button", { type: "button", class: "primary", "data-testid": "share-copy" }, [kShareTexts.copy]);
+  private readonly sendButton = make("button", { type: "button", "data-testid": "share-send" }, [kShareTexts.send]);
+  private readonly closeButton = make("button", { type: "button", "data-testid": "share-close" }, [kShareTexts.close]);
   private readonly note = make("p", { class: "hint", "data-testid": "share-note", role: "status" });
-  private readonly dialog = makeCard("share-card", kCard.title, [
+  private readonly dialog = makeCard("share-card", kShareTexts.title, [
     make("div", {}, [
-      make("h2", {}, [kCard.title]),
+      make("h2", {}, [kShareTexts.title]),
       this.targetRow.element,
       this.roleRow.element,
       this.qr,
@@ -68,7 +71,7 @@ export class ShareCard {
 
   constructor(private readonly source: ShareSource) {
     this.sendButton.hidden = typeof navigator.share !== "function";
-    this.roleRow.setChoices(Object.entries(kCard.roles).map(([value, label]) => ({ value, label })), this.role);
+    this.roleRow.setChoices(Object.entries(kShareTexts.roles).map(([value, label]) => ({ value, label })), this.guest);
     this.copyButton.addEventListener("click", () => void (this.isReady ? this.copy() : this.openForRoles()));
     this.sendButton.addEventListener("click", () => void this.send());
     this.link.addEventListener("focus", () => this.link.select());
@@ -79,7 +82,7 @@ export class ShareCard {
     this.target = "room";
     this.values = [];
     const targets: Target[] = ["room", ...(this.source.scene() === undefined ? [] : ["copy" as const, ...(this.source.mayOpen() ? ["roles" as const] : [])]), "embed"];
-    this.targetRow.setChoices(targets.map((value) => ({ value, label: kCard.targets[value] })), this.target);
+    this.targetRow.setChoices(targets.map((value) => ({ value, label: kShareTexts.targets[value] })), this.target);
     this.show();
     this.dialog.showModal();
     this.copyButton.focus();
@@ -108,20 +111,20 @@ export class ShareCard {
 
   private async openForRoles(): Promise<void> {
     this.copyButton.disabled = true;
-    this.tell(kCard.opening);
+    this.tell(kShareTexts.opening);
     try {
       this.made = await this.source.openForRoles();
       this.show();
     } catch (error) {
       this.copyButton.disabled = false;
-      if (this.target === "roles") this.tell(kCard.notOpened(error instanceof Error ? error.message : String(error)));
+      if (this.target === "roles") this.tell(kShareTexts.notOpened(error instanceof Error ? error.message : String(error)));
     }
   }
 
   private show(): void {
     const { target, isReady } = this;
     this.roleRow.element.hidden = target !== "roles" || !isReady;
-    setText(this.copyButton, isReady ? kCard.copy : kCard.openRoom);
+    setText(this.copyButton, isReady ? kShareTexts.copy : kShareTexts.openRoom);
     this.copyButton.disabled = false;
     this.sendButton.disabled = !isReady;
     const link = isReady ? this.linkNow() : "";
@@ -129,7 +132,7 @@ export class ShareCard {
     const isDrawn = link !== "" && link.length <= kQrMaxLength && target !== "embed";
     this.qr.hidden = !isDrawn;
     if (isDrawn) drawQrCode(this.qr, link);
-    this.tell([link.length > kQrMaxLength && target !== "embed" ? kCard.tooLong : "", kCard.notes[target], this.isOnlyHere ? kCard.onlyHere : ""].filter(Boolean).join(" "));
+    this.tell([link.length > kQrMaxLength && target !== "embed" ? kShareTexts.tooLong : "", kShareTexts.notes[target], target === "roles" && isReady && this.guest === "kiosk" ? kShareTexts.kioskNote : "", this.isOnlyHere ? kShareTexts.onlyHere : ""].filter(Boolean).join(" "));
   }
 
   private linkNow(): string {
@@ -137,7 +140,10 @@ export class ShareCard {
     if (this.target === "embed") return embedCode(page);
     if (this.target === "room") return linkWith(page, {}, "");
     if (this.target === "copy") return linkWith(page, { room: undefined, scene: this.source.scene(), set: textOfValues(this.values) }, "");
-    return linkWith(page, { room: this.made!.room, scene: undefined, set: undefined }, this.made!.tokens[this.role]);
+    const { room, tokens } = this.made!;
+    const newRoom = { room, scene: undefined, set: undefined };
+    if (this.guest === "kiosk") return linkWith(page, { ...newRoom, kiosk: kKioskIdleS, view: undefined, camera: undefined }, tokens.player);
+    return linkWith(page, newRoom, tokens[this.guest]);
   }
 
   private tell(text: string): void {
@@ -145,7 +151,7 @@ export class ShareCard {
   }
 
   private async copy(): Promise<void> {
-    this.tell((await this.isCopied()) ? kCard.copied : kCard.notCopied);
+    this.tell((await this.isCopied()) ? kShareTexts.copied : kShareTexts.notCopied);
   }
 
   private async isCopied(): Promise<boolean> {
@@ -164,7 +170,7 @@ export class ShareCard {
       await navigator.share({ title: document.title, url: this.link.value });
     } catch (error) {
       // Who closes the browser's list has changed one's mind.
-      if (!(error instanceof DOMException && error.name === "AbortError")) this.tell(kCard.notSent);
+      if (!(error instanceof DOMException && error.name === "AbortError")) this.tell(kShareTexts.notSent);
     }
   }
 }

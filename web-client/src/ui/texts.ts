@@ -1,5 +1,6 @@
-// Texts of the page for people, in one table: the English ones. texts_de.ts has the German ones, which have to have the same keys.
-// What the server says by itself (parameters, refusals) is English. Messages of the connection are in net/net_texts.ts.
+// Texts of the page for people: the English ones of what is loaded at first. texts_de.ts has the German ones, which have to have the same
+// keys. Parts that are loaded later have tables of their own, *_texts.ts; messages of the connection are in net/net_texts.ts. What the
+// server says by itself (parameters, refusals) is English.
 import type { LevelName } from "../codec/layers";
 import type { FidelityName } from "../codec/fidelity";
 import type { LessonTool } from "../codec/lesson";
@@ -12,7 +13,12 @@ import { translation } from "../net/translation";
 import { fixed, length, plain } from "./numbers";
 import type { PictureSide, SideWhat, SideWhere } from "./side_names";
 import type { ToolName } from "./tools";
-import { kVisitTexts, type Row } from "./visit_texts";
+
+/** A row of the panel: its label, and what it does, as a tooltip. */
+export interface Row {
+  label: string;
+  help: string;
+}
 
 /** A scene's title and line in this language; the server's own where a scene is not listed. */
 type SceneTexts = Record<string, { title: string; description: string }>;
@@ -111,8 +117,6 @@ const kEnglish = {
   filmNeedsHttps: "Browsers encode films only on pages opened by https:// or from this machine.",
   filmHasNoCodec: "This browser encodes neither H.264, VP9 nor VP8; try a current Chrome, Edge, Firefox or Safari.",
   filmFailed: (why: string) => `The film was not saved (${why}); try again.`,
-
-  ...kVisitTexts,
 
   // Sides of the water
   /** `where`: as seen from the first view; undefined for the only side of its kind. */
@@ -247,51 +251,6 @@ const kEnglish = {
   recovered: (count: bigint) => `${count} recoveries`,
   commandAt: (id: number, tick: number) => `command ${id} at tick ${tick}`,
 
-  // The card of "Share"
-  shareCard: {
-    title: "Share this view", qr: "QR code of the link", link: "Link", copy: "Copy", send: "Send …", close: "Close", openRoom: "Open the room",
-    target: { label: "Leads to", help: "Where the link leads." } as Row,
-    targets: { room: "this room, with everybody in it", copy: "a room of its own like this one", roles: "a new room, by roles", embed: "a page of yours, as code" },
-    notes: {
-      room: "",
-      copy: "Everybody with this link comes into one room, apart from this one. An operator has to open it first.",
-      roles: "Whoever has the link has the role, until the room ends. The links are shown until this page is closed.",
-      embed: "The server shows its water only in pages that it lists: start it with --embed and the origin of your page, such as https://school.example.",
-    },
-    role: { label: "For", help: "The role of those who open the link." } as Row,
-    roles: { operator: "the presenter", player: "players", viewer: "watchers" } as Record<RoleName, string>,
-    onlyHere: "Only this computer can open this link: start the server with --address 0.0.0.0 for phones and other computers.",
-    opening: "Opening the room: this takes some seconds.",
-    notOpened: (why: string) => `The room could not be opened: ${why}`,
-    tooLong: "The link is too long for a QR code.",
-    copied: "It is copied.",
-    notCopied: "The browser does not allow to copy: select the text and copy it by hand.",
-    notSent: "The browser cannot send the link: copy it.",
-  },
-
-  // The card of keys
-  keysCard: {
-    title: "Keys", close: "Close",
-    rows: [
-      ["Tab", "to the next control; to the water and out of it"],
-      ["← → ↑ ↓", "on the water: move the cursor; in the boat view: steer"],
-      ["Enter", "on the water: use the tool at the mouse or the cursor; held, with the arrows: draw, throw, move an object"],
-      ["1 … 7", "choose a tool"],
-      ["Q, E", "turn the object that is held"],
-      ["Del", "take out the object that is held or pointed at"],
-      [", .", "choose what the tool Float drops"],
-      ["Shift + ← → ↑ ↓", "turn the view"],
-      ["+ −", "bring it nearer, farther"],
-      ["V", "next view"],
-      ["B", "new boat"],
-      ["P", "pause and resume (operators)"],
-      ["N", "one step while it is paused (operators)"],
-      ["M", "sound on and off"],
-      ["C", "show and hide the controls"],
-      ["?", "this list"],
-    ] as [keys: string, does: string][],
-  },
-
   // The state of the water, for screen readers
   words: {
     connected: "Connected to the water.", paused: "The water is paused.", runs: "The water runs.", calm: "The water is calm.",
@@ -326,44 +285,6 @@ const kEnglish = {
   teacherPaused: "The teacher has paused the pads.",
   teacherMuted: "The teacher has muted you for now.",
   notHandedOut: (tool: string) => `${tool}: not handed out in this lesson.`,
-
-  // The projector
-  padsPaused: "Pads are paused",
-  andMore: (count: number) => `and ${count} more`,
-  phonesCannotJoin: "Phones cannot reach this server: it listens on this machine only, or has no network. Start it with --class, or give its address with --public-url",
-  joinTip: "Larger or smaller; with several addresses, the next one",
-  padQr: "QR code of the pad's address",
-  scanOrOpen: "Scan, or open",
-  addressOf: (number: number, count: number) => `address ${number} of ${count}`,
-
-  // The operator's controls of a lesson
-  class: {
-    title: "Class", pausePads: "Pause pads", resumePads: "Resume pads", teams: "Teams", clear: "Take out all objects", endGame: "End the game",
-    noGames: "This scene has no course for a race and no goals; the scene “regatta” has both.", whoPlays: "Who plays", nobody: "Nobody plays yet.",
-    force: { label: "Force", help: "Share of what a pupil's tool does to the water." } as Row,
-    laps: { label: "Laps", help: "Laps of a race." } as Row,
-    goals: { label: "Goals to win", help: "Goals that win." } as Row,
-    startRace: "Start a race", startBall: "Start a ball game", reset: "Start the scene again", really: "Really? Press again",
-    toolsGroup: "Tools handed out", gameGroup: "Game", waterGroup: "Water", peopleGroup: "People",
-    teamOf: (name: string, team: TeamName | undefined) => `Team of ${name}: ${team ?? "none"}`,
-    mute: "Mute", unmute: "Unmute", muteName: (name: string) => `Mute ${name}`, unmuteName: (name: string) => `Unmute ${name}`,
-  },
-
-  // The pad
-  pad: {
-    water: "The water from above. Touch it with the chosen tool; with keys, the arrows move a cursor and Enter uses the tool.", speed: "Speed", heading: "Heading", launch: "Launch my boat", takeOut: "Take out",
-    takeOutLabel: "Take my boat out of the water", tools: "Tools", useName: "Use this name",
-    stick: "Helm: push up for ahead, down for astern, sideways to steer; arrow keys do the same",
-    lost: "The connection was lost. The pad comes back by itself.", connecting: "Connecting to the water…", restarts: "The server restarts; the pad comes back by itself.",
-    mayWatch: "You may watch here. Ask the teacher for a link to play.",
-    does: {
-      finger: "Draw in the water with your fingers.", splash: "Tap for a splash; hold for a larger one.", wave: "Drag to send a wave that way.", rain: "Drag a rain cloud; tap to leave one behind.",
-      float: "Tap to drop an object; drag one to move it.", throw: "Flick to throw a stone; tap to toss one.", boat: "Push the stick ahead and steer.",
-    } as Record<LessonTool, string>,
-    /** Names for people who have not said theirs: one of each list. */
-    nameKinds: ["Merry", "Brave", "Swift", "Sunny", "Clever", "Lucky", "Bold", "Gentle", "Nimble", "Jolly", "Calm", "Bright"],
-    nameAnimals: ["Otter", "Seal", "Gull", "Puffin", "Dolphin", "Heron", "Crab", "Turtle", "Osprey", "Penguin", "Walrus", "Marlin", "Tern", "Squid", "Orca", "Pelican"],
-  },
 };
 
 export type Texts = typeof kEnglish;

@@ -2,8 +2,15 @@
 import type { TeamName } from "../codec/people";
 import { kGermanNetTexts } from "../net/net_texts_de";
 import type { translation } from "../net/translation";
+import type { ClassTexts } from "./class_texts";
+import type { FrontTexts } from "./front_texts";
+import type { GaugeTexts } from "./gauge_texts";
+import type { KeysTexts } from "./keys_texts";
+import type { KioskTexts } from "./kiosk_texts";
 import { fixed, length, plain } from "./numbers";
+import type { PadTexts } from "./pad_texts";
 import { kGermanScenes } from "./scene_texts_de";
+import type { ShareTexts } from "./share_texts";
 import type { PictureSide, SideWhat, SideWhere } from "./side_names";
 import type { Texts } from "./texts";
 
@@ -72,62 +79,6 @@ export const kGerman: Texts = {
   },
 
   gaugesNotLoaded: "Namen und Diagramm der Pegel ließen sich nicht laden; bitte die Seite neu laden.",
-
-  gauges: {
-    gauges: "Pegel",
-    open: "Was die Pegel im Wasser messen, als Diagramm",
-    elevation: "Höhe",
-    velocityX: "Geschwindigkeit längs x",
-    velocityZ: "Geschwindigkeit längs z",
-    shows: { label: "Zeigt", help: "Höhe über dem ruhenden Wasser, oder die über die Tiefe gemittelte Geschwindigkeit der Strömung." },
-    span: { label: "Die letzten", help: "Die Zeit, die das Diagramm zeigt. Die Seite behält höchstens die letzten 4.800 Messwerte." },
-    pause: "Anhalten",
-    pauseHelp: "Hält das Diagramm an; das Wasser läuft weiter.",
-    resume: "Weiter",
-    csv: "CSV",
-    csvHelp: "Speichert die Messwerte der gewählten Pegel als Tabelle.",
-    picture: "PNG",
-    pictureHelp: "Speichert das Diagramm als Bild.",
-    close: "Schließen",
-    at: (timeS) => `bei ${fixed(timeS, 2)} s`,
-    newest: "jetzt",
-    time: "Zeit seit dem Anfang [s]",
-    noReadings: "Noch keine Messwerte.",
-    none: "Unten einen Pegel wählen.",
-    empty: "In diesem Wasser steht noch kein Pegel.",
-    place: "Pegel setzen",
-    placeHelp: "Setzt beim nächsten Tippen auf das Wasser dort einen eigenen Pegel, den alle sehen; höchstens 4.",
-    placing: "Abbrechen",
-    placeByTouch: "Auf das Wasser tippen, wo der Pegel stehen soll.",
-    placeByMouse: "Auf das Wasser klicken, wo der Pegel stehen soll, oder die Stelle mit den Pfeiltasten wählen und die Eingabetaste drücken. Escape bricht ab.",
-    remove: (gauge) => `Den Pegel ${gauge} entfernen`,
-    ownGauge: "Selbst gesetzt",
-    gaugeOf: (person) => `Gesetzt von ${person}`,
-    notLoaded: "Das Diagramm ließ sich nicht laden: bitte noch einmal versuchen, wenn der Server erreichbar ist.",
-    noHistory: (gauge, why) => `Der Verlauf des Pegels ${gauge} ließ sich nicht lesen: ${why}`,
-    noPicture: "die Zeichenfläche gibt keines",
-    pictureFailed: (why) => `Das Bild des Diagramms wurde nicht gespeichert (${why}); bitte noch einmal versuchen.`,
-  },
-
-  frontLead: "Ein Wasser wählen.",
-  frontRooms: "Räume dieses Servers",
-  noSuchRoom: (name) => `Den Raum ${name} gibt es nicht. Dies sind die Räume dieses Servers.`,
-  refusedRoom: (why) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
-  listFailed: (why) => `Die Liste der Räume ist nicht auf dem neuesten Stand (${why}). Sie wird alle paar Sekunden neu erfragt.`,
-  noRooms: "Dieser Server hat keinen Raum, den man betreten darf. Jederzeit kann einer geöffnet werden; dann erscheint er hier.",
-  open: "Öffnen",
-  openRoom: "Einen Raum öffnen",
-  openRoomWhy: "Ein Raum mit dieser Szene; alle mit seinem Link kommen in denselben.",
-  openScene: { label: "Szene", help: "Die Szene des Raums, der geöffnet wird." },
-  sceneOfRoom: (scene, room) => (scene === room ? scene : `${scene} · Raum ${room}`),
-  peopleCount: (count) => (count === 0 ? "niemand da" : count === 1 ? "1 Person" : `${count} Personen`),
-  roomState: { running: "läuft", paused: "angehalten", asleep: "schläft, bis jemand kommt" },
-
-  kioskInvite: "Das Wasser berühren",
-  kioskCountdown: (leftS) => `Zurück zum Anfang in ${leftS} s – berühren, um weiterzumachen`,
-  kioskBoat: "Zu meinem Boot",
-  kioskWhole: "Das ganze Wasser",
-  kioskPutAway: "Aufräumen",
 
   movesObjectsByMouse: "Gegenstände lassen sich ziehen; das Mausrad dreht sie.",
   movesObjectsByTouch: "Gegenstände lassen sich ziehen; ein zweiter Finger dreht sie.",
@@ -276,49 +227,6 @@ export const kGerman: Texts = {
   recovered: (count) => `${count} Wiederherstellungen`,
   commandAt: (id, tick) => `Befehl ${id} bei Tick ${tick}`,
 
-  shareCard: {
-    title: "Diese Ansicht teilen", qr: "QR-Code des Links", link: "Link", copy: "Kopieren", send: "Senden …", close: "Schließen", openRoom: "Raum öffnen",
-    target: { label: "Führt in", help: "Wohin der Link führt." },
-    targets: { room: "diesen Raum, zu allen anderen", copy: "einen eigenen Raum wie diesen", roles: "einen neuen Raum, nach Rollen", embed: "eine eigene Seite, als Code" },
-    notes: {
-      room: "",
-      copy: "Alle mit diesem Link kommen in einen gemeinsamen Raum, getrennt von diesem. Wer den Server leitet, muss ihn zuerst öffnen.",
-      roles: "Wer den Link hat, hat die Rolle, solange es den Raum gibt. Die Links sind zu sehen, bis diese Seite geschlossen wird.",
-      embed: "Der Server zeigt sein Wasser nur in Seiten, die er kennt: mit --embed und dem Ursprung der Seite starten, zum Beispiel https://school.example.",
-    },
-    role: { label: "Für", help: "Die Rolle derer, die den Link öffnen." },
-    roles: { operator: "die Leitung", player: "Mitspielende", viewer: "Zuschauende" },
-    onlyHere: "Nur dieser Rechner kann den Link öffnen: für Telefone und andere Rechner den Server mit --address 0.0.0.0 starten.",
-    opening: "Der Raum wird geöffnet: das dauert einige Sekunden.",
-    notOpened: (why) => `Der Raum ließ sich nicht öffnen: ${why}`,
-    tooLong: "Der Link ist zu lang für einen QR-Code.",
-    copied: "Kopiert.",
-    notCopied: "Der Browser erlaubt das Kopieren nicht: bitte den Text markieren und von Hand kopieren.",
-    notSent: "Der Browser kann den Link nicht senden: bitte kopieren.",
-  },
-
-  keysCard: {
-    title: "Tasten", close: "Schließen",
-    rows: [
-      ["Tab", "zum nächsten Bedienelement; ins Wasser und wieder hinaus"],
-      ["← → ↑ ↓", "auf dem Wasser: die Marke bewegen; in der Bootsansicht: steuern"],
-      ["Eingabe", "auf dem Wasser: das Werkzeug an der Maus oder der Marke benutzen; gehalten, mit Pfeilen: zeichnen, werfen, einen Gegenstand bewegen"],
-      ["1 … 7", "Werkzeug wählen"],
-      ["Q, E", "den gehaltenen Gegenstand drehen"],
-      ["Entf", "den Gegenstand herausnehmen, der gehalten wird oder unter der Marke ist"],
-      [", .", "wählen, was das Werkzeug Gegenstand ins Wasser setzt"],
-      ["Umschalt + ← → ↑ ↓", "die Ansicht drehen"],
-      ["+ −", "näher, weiter weg"],
-      ["V", "nächste Ansicht"],
-      ["B", "neues Boot"],
-      ["P", "Pause und weiter (Leitung)"],
-      ["N", "ein Schritt in der Pause (Leitung)"],
-      ["M", "Ton an und aus"],
-      ["C", "Bedienung ein- und ausblenden"],
-      ["?", "diese Liste"],
-    ],
-  },
-
   words: {
     connected: "Mit dem Wasser verbunden.", paused: "Das Wasser ist angehalten.", runs: "Das Wasser läuft.", calm: "Das Wasser ist ruhig.",
     waves: (heightM) => `Wellen von etwa ${length(heightM)} vom Tal zum Kamm.`,
@@ -351,6 +259,78 @@ export const kGerman: Texts = {
   teacherPaused: "Gerade ist Pause. Gleich geht es weiter.",
   teacherMuted: "Deine Lehrkraft hat dich gerade stumm geschaltet.",
   notHandedOut: (tool) => `${tool}: ist in dieser Stunde nicht dabei.`,
+};
+
+const kGermanGauge: GaugeTexts = {
+  gauges: "Pegel",
+  open: "Was die Pegel im Wasser messen, als Diagramm",
+  elevation: "Höhe",
+  velocityX: "Geschwindigkeit längs x",
+  velocityZ: "Geschwindigkeit längs z",
+  shows: { label: "Zeigt", help: "Höhe über dem ruhenden Wasser, oder die über die Tiefe gemittelte Geschwindigkeit der Strömung." },
+  span: { label: "Die letzten", help: "Die Zeit, die das Diagramm zeigt. Die Seite behält höchstens die letzten 4.800 Messwerte." },
+  pause: "Anhalten",
+  pauseHelp: "Hält das Diagramm an; das Wasser läuft weiter.",
+  resume: "Weiter",
+  csv: "CSV",
+  csvHelp: "Speichert die Messwerte der gewählten Pegel als Tabelle.",
+  picture: "PNG",
+  pictureHelp: "Speichert das Diagramm als Bild.",
+  close: "Schließen",
+  at: (timeS) => `bei ${fixed(timeS, 2)} s`,
+  newest: "jetzt",
+  time: "Zeit seit dem Anfang [s]",
+  noReadings: "Noch keine Messwerte.",
+  none: "Unten einen Pegel wählen.",
+  empty: "In diesem Wasser steht noch kein Pegel.",
+  place: "Pegel setzen",
+  placeHelp: "Setzt beim nächsten Tippen auf das Wasser dort einen eigenen Pegel, den alle sehen; höchstens 4.",
+  placing: "Abbrechen",
+  placeByTouch: "Auf das Wasser tippen, wo der Pegel stehen soll.",
+  placeByMouse: "Auf das Wasser klicken, wo der Pegel stehen soll, oder die Stelle mit den Pfeiltasten wählen und die Eingabetaste drücken. Escape bricht ab.",
+  remove: (gauge) => `Den Pegel ${gauge} entfernen`,
+  ownGauge: "Selbst gesetzt",
+  gaugeOf: (person) => `Gesetzt von ${person}`,
+  notLoaded: "Das Diagramm ließ sich nicht laden: bitte noch einmal versuchen, wenn der Server erreichbar ist.",
+  noHistory: (gauge, why) => `Der Verlauf des Pegels ${gauge} ließ sich nicht lesen: ${why}`,
+  noPicture: "die Zeichenfläche gibt keines",
+  pictureFailed: (why) => `Das Bild des Diagramms wurde nicht gespeichert (${why}); bitte noch einmal versuchen.`,
+};
+
+const kGermanFront: FrontTexts = {
+  lead: "Ein Wasser wählen.",
+  rooms: "Räume dieses Servers",
+  noSuchRoom: (name) => `Den Raum ${name} gibt es nicht. Dies sind die Räume dieses Servers.`,
+  refusedRoom: (why) => `${why[0]!.toUpperCase()}${why.slice(1)}.`,
+  listFailed: (why) => `Die Liste der Räume ist nicht auf dem neuesten Stand (${why}). Sie wird alle paar Sekunden neu erfragt.`,
+  noRooms: "Dieser Server hat keinen Raum, den man betreten darf. Jederzeit kann einer geöffnet werden; dann erscheint er hier.",
+  open: "Öffnen",
+  openRoom: "Einen Raum öffnen",
+  openRoomWhy: "Ein Raum mit dieser Szene; alle mit seinem Link kommen in denselben.",
+  openScene: { label: "Szene", help: "Die Szene des Raums, der geöffnet wird." },
+  sceneOfRoom: (scene, room) => (scene === room ? scene : `${scene} · Raum ${room}`),
+  peopleCount: (count) => (count === 0 ? "niemand da" : count === 1 ? "1 Person" : `${count} Personen`),
+  roomState: { running: "läuft", paused: "angehalten", asleep: "schläft, bis jemand kommt" },
+};
+
+const kGermanKiosk: KioskTexts = {
+  invite: "Das Wasser berühren",
+  countdown: (leftS) => `Zurück zum Anfang in ${leftS} s – berühren, um weiterzumachen`,
+  boat: "Zu meinem Boot",
+  whole: "Das ganze Wasser",
+  putAway: "Aufräumen",
+};
+
+const kGermanClass: ClassTexts = {
+  title: "Klasse", pausePads: "Pads anhalten", resumePads: "Pads weiter", teams: "Teams", clear: "Alle Gegenstände herausnehmen", endGame: "Spiel beenden",
+  noGames: "Diese Szene hat keine Rennstrecke oder keine Tore; die Szene „Regatta“ hat beides.", whoPlays: "Wer mitspielt", nobody: "Noch spielt niemand mit.",
+  force: { label: "Kraft", help: "Anteil dessen, was das Werkzeug eines Kindes mit dem Wasser macht." },
+  laps: { label: "Runden", help: "Runden eines Rennens." },
+  goals: { label: "Tore zum Sieg", help: "So viele Tore gewinnen." },
+  startRace: "Rennen starten", startBall: "Ballspiel starten", reset: "Szene neu starten", really: "Wirklich? Noch einmal drücken",
+  toolsGroup: "Ausgeteilte Werkzeuge", gameGroup: "Spiel", waterGroup: "Wasser", peopleGroup: "Leute",
+  teamOf: (name, team) => `Team von ${name}: ${team ? kTeams[team] : "keins"}`,
+  mute: "Stumm", unmute: "Wieder laut", muteName: (name) => `${name} stumm schalten`, unmuteName: (name) => `${name} wieder laut schalten`,
 
   padsPaused: "Die Pads haben Pause",
   andMore: (count) => `und ${count} weitere`,
@@ -359,34 +339,68 @@ export const kGerman: Texts = {
   padQr: "QR-Code der Adresse des Pads",
   scanOrOpen: "Scannen oder öffnen:",
   addressOf: (number, count) => `Adresse ${number} von ${count}`,
-
-  class: {
-    title: "Klasse", pausePads: "Pads anhalten", resumePads: "Pads weiter", teams: "Teams", clear: "Alle Gegenstände herausnehmen", endGame: "Spiel beenden",
-    noGames: "Diese Szene hat keine Rennstrecke oder keine Tore; die Szene „Regatta“ hat beides.", whoPlays: "Wer mitspielt", nobody: "Noch spielt niemand mit.",
-    force: { label: "Kraft", help: "Anteil dessen, was das Werkzeug eines Kindes mit dem Wasser macht." },
-    laps: { label: "Runden", help: "Runden eines Rennens." },
-    goals: { label: "Tore zum Sieg", help: "So viele Tore gewinnen." },
-    startRace: "Rennen starten", startBall: "Ballspiel starten", reset: "Szene neu starten", really: "Wirklich? Noch einmal drücken",
-    toolsGroup: "Ausgeteilte Werkzeuge", gameGroup: "Spiel", waterGroup: "Wasser", peopleGroup: "Leute",
-    teamOf: (name, team) => `Team von ${name}: ${team ? kTeams[team] : "keins"}`,
-    mute: "Stumm", unmute: "Wieder laut", muteName: (name) => `${name} stumm schalten`, unmuteName: (name) => `${name} wieder laut schalten`,
-  },
-
-  pad: {
-    water: "Das Wasser von oben. Berühre es mit dem gewählten Werkzeug; mit Tasten bewegen die Pfeile eine Marke, und die Eingabetaste benutzt das Werkzeug.",
-    speed: "Tempo", heading: "Kurs", launch: "Mein Boot ins Wasser", takeOut: "Herausnehmen",
-    takeOutLabel: "Mein Boot aus dem Wasser nehmen", tools: "Werkzeuge", useName: "Diesen Namen nehmen",
-    stick: "Steuer: nach oben voraus, nach unten zurück, zur Seite lenken; die Pfeiltasten tun dasselbe",
-    lost: "Die Verbindung ist weg. Das Pad kommt von selbst wieder.", connecting: "Das Pad verbindet sich mit dem Wasser …", restarts: "Der Server startet neu; das Pad kommt von selbst wieder.",
-    mayWatch: "Hier darfst du zuschauen. Frag deine Lehrkraft nach einem Link zum Mitspielen.",
-    does: {
-      finger: "Zeichne mit den Fingern ins Wasser.", splash: "Tippe für einen Platscher; halte für einen größeren.", wave: "Ziehe, um eine Welle in diese Richtung zu schicken.", rain: "Ziehe eine Regenwolke; tippe, um eine dazulassen.",
-      float: "Tippe, um etwas ins Wasser zu werfen; ziehe etwas, um es zu bewegen.", throw: "Wische, um einen Stein zu werfen; tippe für einen kleinen Wurf.", boat: "Schieb den Hebel nach vorn und steuere.",
-    },
-    // Masculine, so that the ending fits.
-    nameKinds: ["Froher", "Mutiger", "Flinker", "Sonniger", "Kluger", "Schlauer", "Kühner", "Sanfter", "Wendiger", "Lustiger", "Ruhiger", "Heiterer"],
-    nameAnimals: ["Otter", "Seehund", "Reiher", "Krebs", "Delfin", "Pinguin", "Pelikan", "Orca", "Marlin", "Kalmar", "Lachs", "Hecht", "Wal", "Hai", "Schwan", "Frosch"],
-  },
 };
 
-export const kGermanTranslation: typeof translation = { locale: "de", page: kGerman, net: kGermanNetTexts };
+const kGermanPad: PadTexts = {
+  water: "Das Wasser von oben. Berühre es mit dem gewählten Werkzeug; mit Tasten bewegen die Pfeile eine Marke, und die Eingabetaste benutzt das Werkzeug.",
+  speed: "Tempo", heading: "Kurs", launch: "Mein Boot ins Wasser", takeOut: "Herausnehmen",
+  takeOutLabel: "Mein Boot aus dem Wasser nehmen", tools: "Werkzeuge", useName: "Diesen Namen nehmen",
+  stick: "Steuer: nach oben voraus, nach unten zurück, zur Seite lenken; die Pfeiltasten tun dasselbe",
+  lost: "Die Verbindung ist weg. Das Pad kommt von selbst wieder.", connecting: "Das Pad verbindet sich mit dem Wasser …", restarts: "Der Server startet neu; das Pad kommt von selbst wieder.",
+  mayWatch: "Hier darfst du zuschauen. Frag deine Lehrkraft nach einem Link zum Mitspielen.",
+  does: {
+    finger: "Zeichne mit den Fingern ins Wasser.", splash: "Tippe für einen Platscher; halte für einen größeren.", wave: "Ziehe, um eine Welle in diese Richtung zu schicken.", rain: "Ziehe eine Regenwolke; tippe, um eine dazulassen.",
+    float: "Tippe, um etwas ins Wasser zu werfen; ziehe etwas, um es zu bewegen.", throw: "Wische, um einen Stein zu werfen; tippe für einen kleinen Wurf.", boat: "Schieb den Hebel nach vorn und steuere.",
+  },
+  // Masculine, so that the ending fits.
+  nameKinds: ["Froher", "Mutiger", "Flinker", "Sonniger", "Kluger", "Schlauer", "Kühner", "Sanfter", "Wendiger", "Lustiger", "Ruhiger", "Heiterer"],
+  nameAnimals: ["Otter", "Seehund", "Reiher", "Krebs", "Delfin", "Pinguin", "Pelikan", "Orca", "Marlin", "Kalmar", "Lachs", "Hecht", "Wal", "Hai", "Schwan", "Frosch"],
+};
+
+const kGermanShare: ShareTexts = {
+  title: "Diese Ansicht teilen", qr: "QR-Code des Links", link: "Link", copy: "Kopieren", send: "Senden …", close: "Schließen", openRoom: "Raum öffnen",
+  target: { label: "Führt in", help: "Wohin der Link führt." },
+  targets: { room: "diesen Raum, zu allen anderen", copy: "einen eigenen Raum wie diesen", roles: "einen neuen Raum, nach Rollen", embed: "eine eigene Seite, als Code" },
+  notes: {
+    room: "",
+    copy: "Alle mit diesem Link kommen in einen gemeinsamen Raum, getrennt von diesem. Wer den Server leitet, muss ihn zuerst öffnen.",
+    roles: "Wer den Link hat, hat die Rolle, solange es den Raum gibt. Die Links sind zu sehen, bis diese Seite geschlossen wird.",
+    embed: "Der Server zeigt sein Wasser nur in Seiten, die er kennt: mit --embed und dem Ursprung der Seite starten, zum Beispiel https://school.example.",
+  },
+  role: { label: "Für", help: "Die Rolle derer, die den Link öffnen." },
+  roles: { operator: "die Leitung", player: "Mitspielende", viewer: "Zuschauende", kiosk: "einen Kiosk" },
+  kioskNote: "Auf dem Bildschirm öffnen, an dem das Publikum spielt: Es spielt mit, und nichts führt aus der Seite hinaus.",
+  onlyHere: "Nur dieser Rechner kann den Link öffnen: für Telefone und andere Rechner den Server mit --address 0.0.0.0 starten.",
+  opening: "Der Raum wird geöffnet: das dauert einige Sekunden.",
+  notOpened: (why) => `Der Raum ließ sich nicht öffnen: ${why}`,
+  tooLong: "Der Link ist zu lang für einen QR-Code.",
+  copied: "Kopiert.",
+  notCopied: "Der Browser erlaubt das Kopieren nicht: bitte den Text markieren und von Hand kopieren.",
+  notSent: "Der Browser kann den Link nicht senden: bitte kopieren.",
+};
+
+const kGermanKeys: KeysTexts = {
+  title: "Tasten", close: "Schließen",
+  rows: [
+    ["Tab", "zum nächsten Bedienelement; ins Wasser und wieder hinaus"],
+    ["← → ↑ ↓", "auf dem Wasser: die Marke bewegen; in der Bootsansicht: steuern"],
+    ["Eingabe", "auf dem Wasser: das Werkzeug an der Maus oder der Marke benutzen; gehalten, mit Pfeilen: zeichnen, werfen, einen Gegenstand bewegen"],
+    ["1 … 7", "Werkzeug wählen"],
+    ["Q, E", "den gehaltenen Gegenstand drehen"],
+    ["Entf", "den Gegenstand herausnehmen, der gehalten wird oder unter der Marke ist"],
+    [", .", "wählen, was das Werkzeug Gegenstand ins Wasser setzt"],
+    ["Umschalt + ← → ↑ ↓", "die Ansicht drehen"],
+    ["+ −", "näher, weiter weg"],
+    ["V", "nächste Ansicht"],
+    ["B", "neues Boot"],
+    ["P", "Pause und weiter (Leitung)"],
+    ["N", "ein Schritt in der Pause (Leitung)"],
+    ["M", "Ton an und aus"],
+    ["C", "Bedienung ein- und ausblenden"],
+    ["?", "diese Liste"],
+  ],
+};
+
+export const kGermanTranslation: typeof translation = {
+  locale: "de", page: kGerman, net: kGermanNetTexts, gauge: kGermanGauge, front: kGermanFront, kiosk: kGermanKiosk, class: kGermanClass, pad: kGermanPad, share: kGermanShare, keys: kGermanKeys,
+};

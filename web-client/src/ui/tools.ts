@@ -1,10 +1,8 @@
 // The tools: what a tap, a drag or a long press on the water does with each, and the commands that it sends. Sizes follow from the water.
-import { getOption, type DescField } from "@bufbuild/protobuf";
-
 import type { GreetingInfo } from "../codec/greeting";
-import { parameter } from "../gen/spindrift/v1/options_pb";
-import { BreakingWaveSchema, Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
-import { StrokeSchema, StrokeTool } from "../gen/spindrift/v1/wire_pb";
+import { kBreakingWaveRanges, kStrokeRanges } from "../gen/ranges";
+import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
+import { StrokeTool } from "../gen/spindrift/v1/wire_pb";
 import type { CommandAction } from "../net/messages";
 import { clampTo, type EffectLimits } from "./effect_limits";
 
@@ -68,10 +66,9 @@ type Water = Pick<GreetingInfo, "waterExtents">;
 /** Size of a tool's stroke; undefined for a tool without strokes. */
 export function strokeSize(tool: Tool, { waterExtents: { sideM, depthM } }: Water, { sizeRatio }: ToolScale): StrokeSize | undefined {
   if (tool.stroke === undefined) return undefined;
-  const { radiusM: radius, depthM: depth } = StrokeSchema.field;
   const isFinger = tool.stroke === StrokeTool.FINGER;
-  const radiusM = within(radius, sizeRatio * (isFinger ? kSides.finger : kSides.disc) * sideM);
-  return { tool: tool.stroke, radiusM, depthM: within(depth, Math.min(kFingerDepth.radii * radiusM, kFingerDepth.depths * depthM)) };
+  const radiusM = clampTo(sizeRatio * (isFinger ? kSides.finger : kSides.disc) * sideM, kStrokeRanges.radiusM);
+  return { tool: tool.stroke, radiusM, depthM: clampTo(Math.min(kFingerDepth.radii * radiusM, kFingerDepth.depths * depthM), kStrokeRanges.depthM) };
 }
 
 /** Factor of a splash's size that was held this long. */
@@ -90,8 +87,7 @@ export function splashOf(place: WaterPlace, size: { splashRadiusM: number; splas
 export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { sideM, depthM, rippleM = Infinity } }: Water, { sizeRatio, strengthRatio }: ToolScale): CommandAction | undefined {
   const dragM = Math.hypot(to.xM - from.xM, to.zM - from.zM);
   if (dragM < kShortestDrag * sideM) return undefined;
-  const { amplitudeM: amplitude, lengthM: length, widthM: width } = BreakingWaveSchema.field;
-  const lengthM = within(length, Math.min(kSides.paddleLength * sideM, rippleM));
+  const lengthM = clampTo(Math.min(kSides.paddleLength * sideM, rippleM), kBreakingWaveRanges.lengthM);
   const highestM = Math.min(kPaddleHeight.lengths * lengthM, kPaddleHeight.depths * depthM);
   return {
     case: "breakingWave",
@@ -100,8 +96,8 @@ export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { s
       shape: WaveShape.SWELL,
       directionDeg: (Math.atan2(to.zM - from.zM, to.xM - from.xM) * 180) / Math.PI,
       lengthM,
-      amplitudeM: within(amplitude, highestM * strengthRatio * Math.min(dragM / (kSides.paddleDrag * sideM), 1)),
-      widthM: within(width, paddleWidthM(sideM, sizeRatio)),
+      amplitudeM: clampTo(highestM * strengthRatio * Math.min(dragM / (kSides.paddleDrag * sideM), 1), kBreakingWaveRanges.amplitudeM),
+      widthM: clampTo(paddleWidthM(sideM, sizeRatio), kBreakingWaveRanges.widthM),
       ...to,
     },
   };
@@ -109,9 +105,4 @@ export function paddleWave(from: WaterPlace, to: WaterPlace, { waterExtents: { s
 
 export function paddleWidthM(sideM: number, sizeRatio: number): number {
   return kSides.paddleWidth * sizeRatio * sideM;
-}
-
-/** Clamps a value to the range of a message's field. */
-function within(field: DescField, value: number): number {
-  return clampTo(value, getOption(field, parameter));
 }

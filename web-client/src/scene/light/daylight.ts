@@ -33,10 +33,13 @@ export class Daylight {
   private isNew = true;
   private travel: { from: Moment; to: Moment; beganS: number } | undefined;
 
-  /** Chooses a preset. Returns its hour. */
-  choose(name: PresetName): number {
-    this.chosen = kPresets[name];
+  /** The chosen hour of the day, for an automatic one the scene's. */
+  get hour(): number {
     return this.chosen.hour ?? this.sceneHour;
+  }
+
+  choose(name: PresetName): void {
+    this.chosen = kPresets[name];
   }
 
   /** Chooses an hour (0..24) in the weather of the room, without a transition: a slider is one. */
@@ -89,6 +92,6 @@ export class Daylight {
 
   private target(): Moment {
     if (this.isNoonHeld) return kPresets.noon;
-    return { hour: this.chosen.hour ?? this.sceneHour, storm: this.chosen.storm ?? this.roomStorm };
+    return { hour: this.hour, storm: this.chosen.storm ?? this.roomStorm };
   }
 }

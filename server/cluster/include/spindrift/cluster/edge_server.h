@@ -38,7 +38,7 @@ class EdgeServer final : public net::Application {
   // net::Application
   void serverStarts(net::Hub& hub) override;
   core::Result<void> acceptSession(const std::string& room) override;
-  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
+  void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override;
   void sessionLevelChanged(net::SessionId session, core::Level level) override {
     sessions_.levelChanged(session, level);
   }

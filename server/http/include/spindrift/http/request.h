@@ -110,6 +110,7 @@ struct UpgradeDecision {
   std::optional<Reply> refusal;   ///< if set, the upgrade is refused with this reply
   bool is_room_refused = false;   ///< the refusal is that of `accept_room`
   std::string room{};             ///< "" is the default room
+  bool is_onlooker = false;       ///< the address has `?onlooker`
   bool echo_subprotocol = false;  ///< the client offered kSubprotocol
 };
 

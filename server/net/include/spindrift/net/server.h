@@ -178,6 +178,14 @@ class Hub {
   std::map<std::string, Group> rooms_;
 };
 
+/// A new session: the parts of its WebSocket's address, and the client that opens it.
+struct SessionOpening {
+  std::string room;  ///< "" is the default room
+  std::string peer;
+  /// `?onlooker`: a picture among others, such as the front page's, which nobody takes part through.
+  bool is_onlooker = false;
+};
+
 /// The user of a Server: implemented by service, outlives the Server. An exception from a callback is logged and ends
 /// only that session (kInternalError) or request (HTTP 500).
 class Application {
@@ -190,7 +198,7 @@ class Application {
   /// upgrade with the error's line as the body: kUnavailable with HTTP 503 and Retry-After, all others with 404.
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
   /// Takes a session that was opened; the application sends the greeting.
-  virtual void sessionOpened(SessionId session, const std::string& room, const std::string& peer) = 0;
+  virtual void sessionOpened(SessionId session, const SessionOpening& opening) = 0;
   /// Takes a change of the highest level for the session's adapting watches, down or up, to what its link can carry.
   virtual void sessionLevelChanged(SessionId /*session*/, core::Level /*level*/) {}
   /// Takes one whole binary message.

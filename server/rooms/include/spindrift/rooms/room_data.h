@@ -26,8 +26,8 @@ namespace spindrift::rooms {
 
 /// Load of the server, as of this round of a room.
 struct ServerLoad {
-  std::size_t session_count = 0;  ///< in all rooms
-  double thread_share = 0.0;      ///< share of its time that the simulation thread was busy lately
+  std::size_t people_count = 0;  ///< present ones, in all rooms
+  double thread_share = 0.0;     ///< share of its time that the simulation thread was busy lately
 };
 
 /// Changes that the clients have not been told about yet.

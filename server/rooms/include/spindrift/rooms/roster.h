@@ -92,6 +92,8 @@ class Roster {
   Turn settle(Clock::time_point now);
 
   [[nodiscard]] v1::People people() const;
+  /// People who are connected now, with those who are not in the list.
+  [[nodiscard]] std::size_t presentCount() const;
   /// People who only watch, through other processes, and are not in the list.
   void setUnlistedCount(std::uint32_t count);
 

@@ -37,7 +37,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
 
   void serverStarts(net::Hub& served) override { sessions_.serve(served); }
   core::Result<void> acceptSession(const std::string& room) override;
-  void sessionOpened(net::SessionId session, const std::string& room, const std::string& peer) override;
+  void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
   void sessionLevelChanged(net::SessionId session, core::Level level) override {
     sessions_.levelChanged(session, level);

@@ -38,7 +38,7 @@ class Sessions {
   [[nodiscard]] AccessControl& access() const { return access_; }
 
   // From the network.
-  void opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const std::string& peer);
+  void opened(net::SessionId session, const std::shared_ptr<Venue>& venue, const net::SessionOpening& opening);
   void message(net::SessionId session, core::ByteView message);
   void levelChanged(net::SessionId session, core::Level level);
   void closed(net::SessionId session, const net::SessionEnd& end);
@@ -83,7 +83,8 @@ class Sessions {
     std::uint32_t person_id = 0;
     std::string resume_key{};
     std::string peer{};
-    std::string person{};  ///< whose budget commands take; empty: only the session's own
+    bool is_onlooker = false;  ///< nobody of the room: not among its people, without commands
+    std::string person{};      ///< whose budget commands take; empty: only the session's own
     std::shared_ptr<const core::SenderDetails> details{};  ///< once it has said hello
   };
 
