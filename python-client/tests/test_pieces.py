@@ -3,6 +3,8 @@ import asyncio
 
 import pytest
 
+from conftest import PROJECT
+
 from spindrift import aio
 from spindrift.address import parse
 from spindrift.commands import ACTIONS, build
@@ -71,3 +73,8 @@ def test_an_inbox_is_bounded_and_counts():
             await inbox.newest()
 
     asyncio.run(run())
+
+
+def test_the_version_is_that_of_the_wire():
+    text = (PROJECT / "proto" / "README.md").read_text()
+    assert f"with its version (this is {aio.WIRE_VERSION[0]}.{aio.WIRE_VERSION[1]})" in text
