@@ -1,4 +1,4 @@
-// What the gauges of the scene read after a tick, one invocation per gauge.
+// What the gauges read after a tick, one invocation per gauge.
 // Reads ELEVATION [cells, units], FLOW, BASIN, BED. Writes PARTIAL_SUM, 4 words per gauge: elevation [m], velocity along
 // x and z [m/s], share of wet cells around the gauge.
 // Equations: bilinear between the centres of the four cells around the position. Dry cells do not count: their weight goes

@@ -1,4 +1,4 @@
-// The gauges of a scene, for shaders/diagnostics/gauges.comp.
+// Where the gauges are, those of the scene first, for shaders/diagnostics/gauges.comp.
 #ifndef SPINDRIFT_SHARED_GAUGE_UNIFORMS_H
 #define SPINDRIFT_SHARED_GAUGE_UNIFORMS_H
 

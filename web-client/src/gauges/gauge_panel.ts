@@ -107,7 +107,8 @@ export class GaugePanel {
     const shown = added.filter((gauge, n) => isOwn(gauge) || n < kFirstChosen - chosen.length).map(({ name }) => name);
     this.chosen = new Set([...chosen, ...shown]);
     this.gauges = gauges;
-    for (const name of [...this.keys.keys()]) if (!gauges.some((gauge) => gauge.name === name)) this.dropKey(name);
+    // One of the same name in other water may be the scene's.
+    for (const name of [...this.keys.keys()]) if (isOtherWater || !gauges.some((gauge) => gauge.name === name)) this.dropKey(name);
     for (const gauge of gauges) {
       const key = this.keys.get(gauge.name) ?? this.addKey(gauge);
       key.button.style.setProperty("--line", this.lineOf(gauge.name).color);
