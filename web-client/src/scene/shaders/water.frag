@@ -310,7 +310,8 @@ void main() {
 #else
   float crest_m = max(v_top_m, 0.0);
 #endif
-  scattered += u_crest * u_sun_light * against_sun * crest_m * 1.6;
+  // A crest is thin, a mound of splashed water is not.
+  scattered += u_crest * u_sun_light * against_sun * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m);
   vec3 under = behind * passed + scattered * (1.0 - passed);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
@@ -352,7 +353,7 @@ void main() {
     float spread = 1.0 + dot(missing, missing) / (8.0 * variance);
     spread *= spread;
     float glitter = 0.05 * waterFresnel(max(-dot(halfway, ray), 0.0)) / (variance * spread * spread * max(facing, 0.15));
-    water += u_sun_light * unresolved * min(glitter, 1.6);
+    water += u_sun_light * unresolved * glitter / (1.0 + 0.5 * glitter);
   }
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
