@@ -1,9 +1,9 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
 //   field        frames -> field (elevation, slopes, curvature of the water)
 //   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
+//   foam         frames -> foam
 //   sea          time -> ripples, and in an open sea the waves around the square
 //   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from high on
-//   foam         frames -> foam
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
 //   solids       sky, ground, rocks, boats, objects -> solids (linear light, depth)
 //   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
@@ -23,7 +23,6 @@ import type { DataTexture } from "three";
 
 import type { GreetingInfo } from "../codec/greeting";
 import type { Pass } from "./drawing/pass";
-import { EdgesPass } from "./drawing/edges_pass";
 import type { Quality } from "./drawing/quality";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { StreamedFrames } from "./frames/streamed_frames";
@@ -40,6 +39,7 @@ import { LampsPass } from "./solids/lamps_pass";
 import { SolidsPass } from "./solids/solids_pass";
 import { isIndoors, makeSea } from "./solids/surroundings";
 import { CausticsPass } from "./water/caustics_pass";
+import { EdgesPass } from "./water/edges_pass";
 import { FieldPass } from "./water/field_pass";
 import { FoamPass } from "./water/foam_pass";
 import type { LocalRipple } from "./water/local_ripple";
@@ -86,7 +86,7 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality);
   shadow?.setCasters(solids);
-  return { field, foam, solids, passes: [field, shore, sea, caustics, foam, shadow, solids].filter((pass) => pass !== undefined) };
+  return { field, foam, solids, passes: [field, shore, foam, sea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {

@@ -2,9 +2,9 @@
 // pixel do not smooth. Reads and writes the canvas.
 import { FramebufferTexture, LinearFilter, Vector2 } from "three";
 
+import { FullscreenPass } from "../drawing/fullscreen";
+import type { Pass, Picture } from "../drawing/pass";
 import { makeMaterial } from "../shaders/materials";
-import { FullscreenPass } from "./fullscreen";
-import type { Pass, Picture } from "./pass";
 
 export class EdgesPass implements Pass {
   readonly name = "edges";
