@@ -144,8 +144,17 @@ describe("the coast", () => {
     for (const xM of [-12, -4, 0, 8]) expect(coastHeightM(harbor, xM, 16.01)).toBeCloseTo(quayHeightM(bed), 6);
   });
 
-  it("follows the beach outside the square as well", () => {
-    expect(coastHeightM(coast, 14, -80)).toBeCloseTo(coastHeightM(coast, 14, 0), 9);
+  it("continues outside the square: a shore comes forward, rocky land draws back, without a step", () => {
+    expect(coastHeightM(coast, 14, -16.5)).toBeCloseTo(coastHeightM(coast, 14, 0), 1);
+    expect(coastHeightM(coast, 14, -80)).toBeGreaterThan(coastHeightM(coast, 14, 0) + 0.5);
+    expect(coastHeightM(coast, -14, 17)).toBeGreaterThan(0.2);
+    expect(coastHeightM(coast, -80, 17)).toBeCloseTo(-1.2, 6);
+    let before = coastHeightM(coast, 14, -16);
+    for (let zM = -16; zM > -120; zM -= 0.1) {
+      const heightM = coastHeightM(coast, 14, zM);
+      expect(Math.abs(heightM - before)).toBeLessThan(0.05);
+      before = heightM;
+    }
   });
 
   it("is made of finite triangles, with land on the closed sides only", () => {
@@ -154,7 +163,7 @@ describe("the coast", () => {
     const normal = geometry.getAttribute("normal");
     for (let n = 0; n < position.count; ++n) {
       for (const value of [position.getX(n), position.getY(n), position.getZ(n), normal.getX(n), normal.getY(n), normal.getZ(n)]) expect(Number.isFinite(value)).toBe(true);
-      if (position.getX(n) < 8.9 && position.getZ(n) < 15.9) expect(position.getY(n)).toBeLessThan(-1.1);
+      if (position.getX(n) < 8.9 && Math.abs(position.getZ(n)) < 15.9) expect(position.getY(n)).toBeLessThan(-1.1);
     }
     const withoutBed = makeCoastGeometry(coast, 24, false);
     expect(withoutBed.index!.count).toBeLessThan(0.8 * geometry.index!.count);

@@ -108,11 +108,12 @@ describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
 const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
 
 describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
-  it("differ between the qualities by caustics, shadows and rings of rain alone", { timeout: kLongestMs }, () => {
+  it("differ between the qualities by caustics, shadows, rings of rain, ripples and smooth edges alone", { timeout: kLongestMs }, () => {
     const high = namesOf(passesOf(change, "high"));
-    const isShared = (name: string): boolean => !["caustics", "rain rings", "shadow", "flat shadow"].includes(name);
+    const isShared = (name: string): boolean => !["caustics", "edges", "rain rings", "sea", "shadow", "flat shadow"].includes(name);
     expect(high.map(([look, names]) => [look, names.filter(isShared)])).toEqual(namesOf(lists).map(([look, names]) => [look, names.filter(isShared)]));
-    for (const [, names] of high) {
+    for (const [look, names] of high) {
+      expect(names.includes("edges")).toBe(look === "natural");
       expect(names).toContain("shadow");
       expect(names).not.toContain("flat shadow");
       expect(names.includes("caustics")).toBe(names.includes("field"));

@@ -1,9 +1,9 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
 //   field        frames -> field (elevation, slopes, curvature of the water)
-//   caustics     field -> sunlight that the waves focus on what is below them; in the tiers from high on
 //   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
 //   foam         frames -> foam
-//   sea          time -> the sea around the square, in an open sea
+//   sea          time -> ripples, and in an open sea the waves around the square
+//   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from high on
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
 //   solids       sky, ground, rocks, boats, objects -> solids (linear light, depth)
 //   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
@@ -17,6 +17,7 @@
 //   rain streaks solids -> canvas
 //   lamps        solids, field -> canvas, in the dark
 //   glass        panes of a tank -> canvas
+//   edges        canvas -> the same with smooth outlines; in the tiers from medium on
 // Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
 import type { DataTexture } from "three";
 
@@ -36,8 +37,9 @@ import type { ShoreWetness } from "./shore/shore_wetness";
 import { GlassPass } from "./solids/glass_pass";
 import { LampsPass } from "./solids/lamps_pass";
 import { SolidsPass } from "./solids/solids_pass";
-import { isIndoors } from "./solids/surroundings";
+import { isIndoors, makeSea } from "./solids/surroundings";
 import { CausticsPass } from "./water/caustics_pass";
+import { EdgesPass } from "./water/edges_pass";
 import { FieldPass } from "./water/field_pass";
 import { FoamPass } from "./water/foam_pass";
 import type { LocalRipple } from "./water/local_ripple";
@@ -79,11 +81,12 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const field = wave && new FieldPass(wave, frames.surfaces, ripple, quality, cellsOf);
   const shore = field && cellsOf && new ShorePass(frames, field, wetness, cellsOf, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
-  const caustics = field && quality.caustics && new CausticsPass(field.texture, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
+  const sea = makeSea(greeting, quality);
+  const caustics = field && quality.caustics && new CausticsPass(field.texture, sea?.uniforms, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
-  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, frames, quality);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality);
   shadow?.setCasters(solids);
-  return { field, foam, solids, passes: [field, shore, caustics, foam, solids.surroundings.sea, shadow, solids].filter((pass) => pass !== undefined) };
+  return { field, foam, solids, passes: [field, shore, foam, sea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
@@ -98,8 +101,9 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality.fluid) : { before: [], after: [] };
   const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
+  const edges = quality.plain ? undefined : new EdgesPass();
   const before = [...fluid.before, ...(white?.before ?? []), flatShadow, rings];
-  const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass)];
+  const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass), edges];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
   return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
 }

@@ -47,6 +47,27 @@ function rolling(x: number, z: number): number {
   return 0.5 * Math.sin(x + 1.7 * Math.sin(0.31 * z)) * Math.sin(0.83 * z + 0.4) + 0.3 * Math.sin(2.3 * x - 1.1 * z + 2) + 0.2 * Math.sin(0.37 * x + 0.53 * z);
 }
 
+/** Beyond the square a shore comes forward, and rocky land draws back, by up to this many sides, half of it within the second number of sides. */
+const kBendSides = 0.45;
+const kHalfBendSides = 1.6;
+
+/** Returns how far the coast at a side has moved at a point: toward the water at a shore, away from it at other land; 0 along the square. */
+function bendM(coast: Coast, side: SideName, xM: number, zM: number): number {
+  const { bed, sides } = coast;
+  const sideM = longSideM(bed);
+  const [beyondM, end] = side[1] === "x" ? [Math.abs(zM) - bed.widthM / 2, zM > 0 ? "+z" : "-z"] : [Math.abs(xM) - bed.sideM / 2, xM > 0 ? "+x" : "-x"];
+  // Only where the coast runs out into the open sea.
+  if (beyondM <= 0 || sides[end as SideName] === "closed") return 0;
+  const beyond = beyondM / sideM;
+  const wavy = 1 + 0.35 * Math.sin(2.1 * beyond + (zM > 0 ? 1 : 4)) + 0.2 * Math.sin(5.3 * beyond);
+  return (isShore(coast, side) ? 1 : -1) * kBendSides * sideM * wavy * (beyond ** 2 / (beyond ** 2 + kHalfBendSides ** 2));
+}
+
+/** Returns the distance of a point from the coast at a side, on the land. */
+function outOfM(coast: Coast, side: SideName, xM: number, zM: number): number {
+  return bendM(coast, side, xM, zM) - insideM(side, coast.bed, xM, zM);
+}
+
 /** A closed side whose bed is shallow is a shore, otherwise a quay. */
 function isShore({ bed }: Coast, side: SideName): boolean {
   if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && isShoreDepth(bed, beach.shoreDepthM));
@@ -67,7 +88,10 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
   let heightM = -depthAtM(bed, xM, zM);
   for (const side of kSideNames) {
     if (sides[side] !== "closed") continue;
-    const outM = -insideM(side, bed, xM, zM);
+    const movedM = bendM(coast, side, xM, zM);
+    const outM = movedM - insideM(side, bed, xM, zM);
+    // The bed comes forward with its shore.
+    if (movedM > 0) heightM = Math.max(heightM, -(side[1] === "x" ? depthAtM(bed, xM + Math.sign(xM) * movedM, zM) : depthAtM(bed, xM, zM + Math.sign(zM) * movedM)));
     if (outM < -1e-9) continue;
     const hillsM = kHillSides * sideM * smoothstep(kHillsFromSides, kHillsToSides, outM / sideM) * (0.55 + 0.45 * rolling((3.1 * xM) / sideM / 3, (3.1 * zM) / sideM / 3));
     const roll = rolling((9 * xM) / sideM, (9 * zM) / sideM);
@@ -78,7 +102,7 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
       const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
       heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
     } else if (outM > 1e-9 || pastQuay) {
-      const uneven = hasRockyShores(bed.beaches) ? 1 + 0.55 * rolling((31 * xM) / sideM, (31 * zM) / sideM) : 1;
+      const uneven = hasRockyShores(bed.beaches) ? 1 + 0.45 * rolling((11 * xM) / sideM, (11 * zM) / sideM) + 0.4 * rolling((53 * xM) / sideM, (53 * zM) / sideM) : 1;
       heightM = Math.max(heightM, uneven * quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
     }
   }
@@ -91,7 +115,7 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
   const sideM = longSideM(bed);
   let paint = bedPaint(yM, depthM);
   for (const side of kSideNames) {
-    const outM = -insideM(side, bed, xM, zM);
+    const outM = outOfM(coast, side, xM, zM);
     if (sides[side] !== "closed" || outM < -1e-9) continue;
     const out = outM / sideM;
     const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));

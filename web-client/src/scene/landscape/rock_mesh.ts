@@ -2,7 +2,7 @@
 import type { BufferGeometry } from "three";
 
 import type { RockInfo } from "../../codec/scene_info";
-import { mix, smooth, smoothstep } from "../maths/interpolate";
+import { clamp, mix, smooth, smoothstep } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { bedPaint, mixPaint, overgrown, shaded } from "./paints";
@@ -50,11 +50,12 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
       let [x, y, z] = [c * out, Math.sin(polar), s * out];
       for (const [cutX, cutY, cutZ, away] of cuts) {
         // The flat faces end where the foot begins, whose outline is seen through the water.
-        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0) * (1 - under);
+        // At the waterline they hardly begin: there the outline is that of the simulated rock.
+        const beyond = Math.max(cutX * x + cutY * y + cutZ * z - away, 0) * (1 - under) * clamp(0.2 + 2.2 * Math.sin(polar), 0, 1);
         [x, y, z] = [x - cutX * beyond, y - cutY * beyond, z - cutZ * beyond];
       }
       const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * (y - under) + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * (y - under) + 7, 6 * z + 20, seed + 1);
-      const wide = radiusM * (0.98 + (0.26 + 0.42 * under) * rough) * (1 + 0.3 * under);
+      const wide = radiusM * (0.98 + (0.26 + 0.2 * under) * rough) * (1 + 0.15 * under);
       const high = under > 0 ? bottomM * under + heightM * y * (1 - under) : heightM * y * (1.02 + 0.22 * (rough - 0.5));
       row.push([rock.xM + x * wide, high, rock.zM + z * wide]);
     }
@@ -66,7 +67,7 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
     const highM = rows[row]![column]![1];
     const stone = overgrown(shaded(kStone, uneven), highM, weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
     // Sand lies on the foot.
-    return mixPaint(stone, bedPaint(bottomM, -bottomM), smoothstep(0.25, 0.85, highM / bottomM));
+    return mixPaint(stone, bedPaint(bottomM, -bottomM), smoothstep(0.05, 0.6, highM / bottomM));
   });
 }
 

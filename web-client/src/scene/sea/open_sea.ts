@@ -59,7 +59,8 @@ export class OpenSea implements Pass {
   private next: { waves: PlaneWave[]; slope: number; beganS: number } | undefined;
   private lastS = 0;
 
-  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount, texelType }: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">) {
+  /** `slope`: root mean square of the ripples' slopes, instead of what follows from the wind. */
+  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount, texelType }: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">, private readonly givenSlope?: number) {
     this.wave = wave;
     this.wind = wind;
     const kind = plain ? "plain" : "full";
@@ -125,6 +126,6 @@ export class OpenSea implements Pass {
   }
 
   private slope(): number {
-    return rippleSlope(this.wind);
+    return this.givenSlope ?? rippleSlope(this.wind);
   }
 }

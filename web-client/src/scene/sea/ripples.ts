@@ -8,10 +8,10 @@ import { makeRandom, type PlaneWave } from "./sea_state";
 const kSurfaceTension = 7.3e-5;
 const kSpreadRad = 1.25;
 /** Root mean square slope without wind, and what a full storm adds (half of what Cox & Munk 1954 give for 15 m/s: the rest is in the longer waves). */
-const kCalmSlope = 0.022;
+const kCalmSlope = 0.05;
 const kStormSlope = 0.11;
 /** Where a storm brings rain without wind, so that one sees the rings. */
-const kWindlessSlope = 0.004;
+const kWindlessSlope = 0.012;
 
 /** Returns the root mean square slope of the ripples; without a storm there is a little wind. */
 export function rippleSlope(wind: Pick<WindInfo, "levelRatio" | "waveHeightM"> | undefined): number {

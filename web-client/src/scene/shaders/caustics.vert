@@ -6,11 +6,18 @@ uniform vec3 u_sun_direction;
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_deep_m;   // of the layer, below the still water
 uniform float u_reach;    // size of the grid in sides: light comes in from beside the square
+#ifdef RIPPLES
+#include <ripples>
+#endif
 out vec2 v_from_m;
 
 void main() {
   v_from_m = position.xz * (u_reach * u_extent_m);
   vec4 field = textureLod(u_field, v_from_m / u_extent_m + 0.5, 0.0);
+#ifdef RIPPLES
+  // Those that the grid resolves.
+  field.gb += textureLod(u_ripples, v_from_m / u_tiles_m.y, 2.0).gb;
+#endif
   vec3 bent = refract(-u_sun_direction, normalize(vec3(-field.g, 1.0, -field.b)), 0.75);
   vec3 level = refract(-u_sun_direction, vec3(0.0, 1.0, 0.0), 0.75);
   vec2 at = v_from_m + bent.xz / max(-bent.y, 0.2) * max(u_deep_m + field.r, 0.0) - level.xz / max(-level.y, 0.2) * u_deep_m;

@@ -8,10 +8,13 @@ uniform sampler2D u_cells;
 uniform float u_unit_m;
 uniform float u_film_m;  // thinner water counts as none
 
+// Water that runs up an obstacle and is thinner than this counts as none: drawn, it would be a dome of glass round a rock.
+const float kObstacleFilmM = 0.2;
+
 #ifdef PLAIN
 const int kReach = 1;
 #else
-const int kReach = 2;
+const int kReach = 3;
 #endif
 
 layout(location = 0) out int level;
@@ -21,7 +24,8 @@ void main() {
   ivec2 last = textureSize(u_elevation, 0) - 1;
   int here = texelFetch(u_elevation, at, 0).r;
   vec2 ground_m = texelFetch(u_cells, at, 0).rg;
-  if (float(here) * u_unit_m - ground_m.r > u_film_m) {
+  bool is_obstacle = ground_m.r - ground_m.g > 0.01;
+  if (float(here) * u_unit_m - ground_m.r > (is_obstacle ? kObstacleFilmM : u_film_m)) {
     level = here;
     return;
   }
@@ -31,10 +35,10 @@ void main() {
     for (int x = -kReach; x <= kReach; ++x) {
       ivec2 beside = clamp(at + ivec2(x, z), ivec2(0), last);
       float high_m = float(texelFetch(u_elevation, beside, 0).r) * u_unit_m;
-      float deep_m = high_m - texelFetch(u_cells, beside, 0).r;
-      if (deep_m > u_film_m) near += vec3(high_m, deep_m, 1.0) / float(x * x + z * z);
+      vec2 cells_m = texelFetch(u_cells, beside, 0).rg;
+      float deep_m = high_m - cells_m.r;
+      if (deep_m > (cells_m.r - cells_m.g > 0.01 ? kObstacleFilmM : u_film_m)) near += vec3(high_m, deep_m, 1.0) / float(x * x + z * z);
     }
-  bool is_obstacle = ground_m.r - ground_m.g > 0.01;
   float level_m = ground_m.g - 0.02;
   if (near.z > 0.0) {
     near.xy /= near.z;

@@ -8,6 +8,7 @@ import caustics from "./caustics.glsl?raw";
 import causticsFrag from "./caustics.frag?raw";
 import causticsVert from "./caustics.vert?raw";
 import cellHash from "./cell_hash.glsl?raw";
+import edgesFrag from "./edges.frag?raw";
 import elevationFrag from "./elevation.frag?raw";
 import fieldFrag from "./field.frag?raw";
 import flatShadowFrag from "./flat_shadow.frag?raw";
@@ -42,6 +43,7 @@ import rainRingFrag from "./rain_ring.frag?raw";
 import rainRingVert from "./rain_ring.vert?raw";
 import rainStreakFrag from "./rain_streak.frag?raw";
 import rainStreakVert from "./rain_streak.vert?raw";
+import ripples from "./ripples.glsl?raw";
 import roomBakeFrag from "./room_bake.frag?raw";
 import seaBlend from "./sea_blend.glsl?raw";
 import seaTileFrag from "./sea_tile.frag?raw";
@@ -67,6 +69,7 @@ import whitewaterVert from "./whitewater.vert?raw";
 const kPrograms = {
   bubbles: [whitewaterVert, bubblesFrag],
   caustics: [causticsVert, causticsFrag],
+  edges: [fullscreenVert, edgesFrag],
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   flatShadow: [flatShadowVert, flatShadowFrag],
@@ -114,6 +117,7 @@ const kShared: Record<string, string> = {
   fluid_sizes: fluidSizes,
   instance,
   look_map: lookMap,
+  ripples,
   sea_blend: seaBlend,
   shadow,
   shore,

@@ -1,7 +1,6 @@
 // Include: the sea outside the simulated square, and the simulated water's share. Sides in the order +x, -x, +z, -z.
 uniform sampler2D u_swell;    // elevation (m), slope along x, slope along z
-uniform sampler2D u_ripples;  // the same of ripples
-uniform vec2 u_tiles_m;
+#include <ripples>
 uniform vec4 u_blend_beyond_m;
 uniform vec4 u_blend_width_m;
 

@@ -54,6 +54,8 @@ void main() {
     float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
     float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
+    // Spray and the last waves have left a damp band above.
+    wet = max(wet, 0.45 * (1.0 - smoothstep(1.5, 5.0, v_world.y / u_wet_m - 4.0 * coarse)));
 #ifdef SHORE
     float inner = simulatedShore(v_world.xz, u_extent_m);
     // Sand has slopes on which it stays, and less grain than stone.

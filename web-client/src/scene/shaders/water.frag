@@ -3,7 +3,7 @@
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
-// RAIN: with the rings of rain.
+// RIPPLES: of a pool, whose walls others draw, as with WALLS. RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
 #include <sky>
@@ -35,8 +35,15 @@ uniform float u_lift_m;  // by which thin water may lie below the ground that is
 #ifdef OPEN_SEA
 #include <sea_blend>
 in vec2 v_share_away;
-uniform vec2 u_slope_variances;  // of the swell and of the ripples
 uniform float u_haze_m;
+#endif
+#ifdef RIPPLES
+#include <ripples>
+#endif
+#if defined(OPEN_SEA) || defined(RIPPLES)
+uniform vec2 u_slope_variances;  // of the swell and of the ripples
+uniform vec3 u_veiled_sky[3];    // zenith, middle, horizon
+uniform vec3 u_glow;
 #endif
 #ifdef FOAM
 uniform sampler2D u_foam_from;
@@ -55,6 +62,13 @@ uniform float u_lace_m;
 #include <shadow>
 #endif
 layout(location = 0) out vec4 color;
+
+// Share of the mirrored sky without single clouds: waves finer than the ripples blur them.
+const float kVeiledShare = 0.5;
+// Variance of the slopes of those waves.
+const float kFinestVariance = 0.0006;
+// Foam and shade beside what stands in the water reach this far from it along the ray, m.
+const float kContactM = 0.6;
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
@@ -87,6 +101,31 @@ float wayOut(vec3 from, vec3 direction) {
   return max(min(t.x, min(t.y, t.z)), 0.0);
 }
 
+#if defined(OPEN_SEA) || defined(RIPPLES)
+// The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
+vec3 veiledSky(vec3 direction) {
+  vec3 sky = mix(u_veiled_sky[1], u_veiled_sky[0], smoothstep(0.12, 0.75, direction.y));
+  sky = mix(u_veiled_sky[2], sky, smoothstep(-0.02, 0.20, direction.y));
+  float toward_sun = max(dot(direction, u_sun_direction), 0.0);
+  toward_sun *= toward_sun;
+  return sky + 0.08 * u_glow * toward_sun * toward_sun;
+}
+#endif
+
+// The sky as a surface mirrors it whose slopes have this variance within a pixel.
+vec3 mirroredSky(vec3 direction, float variance) {
+#if defined(OPEN_SEA) && defined(PLAIN)
+  return veiledSky(direction);
+#elif (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
+  // Mip levels whose texels are as wide as the reflection: twice the slopes, and the turn of the mirror over a pixel.
+  vec3 turn = fwidth(direction);
+  float spread = float(textureSize(u_sky, 0).x) * (1.3 * sqrt(variance) + 0.5 * length(turn));
+  return mix(textureLod(u_sky, direction, log2(max(spread, 1.0))).rgb, veiledSky(direction), kVeiledShare);
+#else
+  return skyLight(direction);
+#endif
+}
+
 #if defined(MIRROR) && !defined(SKIRT)
 uniform mat4 projectionMatrix;
 const int kMirrorSteps = MIRROR;
@@ -102,8 +141,7 @@ float behindScreen(vec3 at, out vec2 uv) {
 }
 
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
-vec3 mirroredLight(vec3 from, vec3 direction) {
-  vec3 sky = skyLight(direction);
+vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
   float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float before_m = 0.0;
@@ -127,19 +165,6 @@ vec3 mirroredLight(vec3 from, vec3 direction) {
   }
   return sky;
 }
-#elif defined(OPEN_SEA) && defined(PLAIN)
-// The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
-uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
-uniform vec3 u_glow;
-vec3 mirroredLight(vec3 from, vec3 direction) {
-  vec3 sky = mix(u_veiled_sky[1], u_veiled_sky[0], smoothstep(0.12, 0.75, direction.y));
-  sky = mix(u_veiled_sky[2], sky, smoothstep(-0.02, 0.20, direction.y));
-  float toward_sun = max(dot(direction, u_sun_direction), 0.0);
-  toward_sun *= toward_sun;
-  return sky + 0.08 * u_glow * toward_sun * toward_sun;
-}
-#else
-vec3 mirroredLight(vec3 from, vec3 direction) { return skyLight(direction); }
 #endif
 
 void main() {
@@ -186,23 +211,36 @@ void main() {
   vec2 lost = smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), max(width_m.x, width_m.y) / u_tiles_m);
   // Somewhere far out there is always some wind.
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
-  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out;
+  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + kFinestVariance;
 #ifdef PLAIN
   // Without mip levels the waves are faded here.
   if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
   if (lost.y < 1.0) field.gb += (1.0 - lost.y) * textureLod(u_ripples, sea_at / u_tiles_m.y, 0.0).gb;
 #else
   field.gb = mix(texture(u_swell, sea_at / u_tiles_m.x).gb, field.gb, v_share_away.x);
-  // A second copy, turned and stretched, so that the tile does not show.
-  vec2 ripples = texture(u_ripples, sea_at / u_tiles_m.y).gb;
-  field.gb += 0.71 * (ripples + mat2(0.8, -0.6, 0.6, 0.8) * texture(u_ripples, mat2(0.8, 0.6, -0.6, 0.8) * sea_at * 0.618 / u_tiles_m.y).gb);
+  field.gb += rippleSlopes(sea_at);
 #endif
+#endif
+#ifdef RIPPLES
+  vec2 width_m = fwidth(v_world.xz);
+  variance = 0.2 * kFinestVariance + u_slope_variances.y * smoothstep(0.01, 0.12, max(width_m.x, width_m.y) / u_tiles_m.y);
+  field.gb += rippleSlopes(v_world.xz);
 #endif
 #ifdef RAIN
   if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
 #endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
+#endif
+
+#ifndef SKIRT
+  // What stands in the water is close behind its surface; the bed below shallow water is not meant.
+  float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
+  float contact = 1.0 - smoothstep(0.0, kContactM, solid_m);
+#ifdef BEACH
+  contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
+#endif
+  contact *= contact;
 #endif
 
   // The scene behind, shifted by refraction. If the shifted pixel lies in front of the water, the unshifted one is used.
@@ -216,7 +254,10 @@ void main() {
   reach_m = min(reach_m, deep_m);
 #endif
   vec3 shift = mat3(viewMatrix) * (bent - ray) * reach_m;
-  shifted_uv = clamp(uv + shift.xy / max(-v_view_z, 0.1) * vec2(u_resolution.y / u_resolution.x, 1.0), 0.001, 0.999);
+  shift.xy *= vec2(u_resolution.y / u_resolution.x, 1.0) / max(-v_view_z, 0.1);
+  // Nothing is known beyond the edges of the picture: the shift fades toward them.
+  vec2 room = clamp((0.5 - abs(uv - 0.5)) / (4.0 * abs(shift.xy) + 1e-5), 0.0, 1.0);
+  shifted_uv = clamp(uv + shift.xy * min(room.x, room.y), 0.001, 0.999);
   float shifted_depth = texture(u_behind_depth, shifted_uv).r;
   if (shifted_depth < gl_FragCoord.z) shifted_uv = uv;
   else behind_depth = shifted_depth;
@@ -269,11 +310,16 @@ void main() {
 #else
   float crest_m = max(v_top_m, 0.0);
 #endif
-  scattered += u_crest * u_sun_light * against_sun * crest_m * 1.6;
+  // A crest is thin, a mound of splashed water is not.
+  scattered += u_crest * u_sun_light * against_sun * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m);
   vec3 under = behind * passed + scattered * (1.0 - passed);
 
   float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   float fresnel = waterFresnel(facing);
+#ifdef SHORE
+  // Thin water is broken by the sand below it, and mirrors less.
+  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.6, deep_m));
+#endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
   // A rough surface seen at a low angle shows more of its facing slopes (fit after Bruneton et al. 2010), and reflects higher sky.
@@ -289,11 +335,13 @@ void main() {
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23) * u_water_light;
 #else
   mirrored.y = abs(mirrored.y);
-#if defined(OPEN_SEA) && defined(PLAIN)
-  vec3 water = mix(under, mirroredLight(v_world, mirrored), fresnel);
-#else
-  vec3 water = mix(under, fresnel > 0.03 ? mirroredLight(v_world, mirrored) : skyLight(mirrored), fresnel);
+  vec3 over = mirroredSky(mirrored, variance);
+#ifdef MIRROR
+  if (fresnel > 0.03) over = mirroredLight(v_world, mirrored, over);
 #endif
+  vec3 water = mix(under, over, fresnel);
+  // Less of the sky lights the water beside what stands in it.
+  water *= 1.0 - 0.45 * contact * contact;
 #ifdef OPEN_SEA
   // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
   // of the same width stands for their Gaussian).
@@ -304,8 +352,8 @@ void main() {
     vec2 missing = halfway.xz / max(halfway.y, 0.05) + field.gb;
     float spread = 1.0 + dot(missing, missing) / (8.0 * variance);
     spread *= spread;
-    float glitter = 0.07 * waterFresnel(max(-dot(halfway, ray), 0.0)) / (variance * spread * spread * max(facing, 0.15));
-    water += u_sun_light * unresolved * min(glitter, 2.5);
+    float glitter = 0.05 * waterFresnel(max(-dot(halfway, ray), 0.0)) / (variance * spread * spread * max(facing, 0.15));
+    water += u_sun_light * unresolved * glitter / (1.0 + 0.5 * glitter);
   }
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
@@ -319,12 +367,16 @@ void main() {
 #endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_extent_m + 0.5;
+#if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
+#else
+  float foam = 0.85 * contact;
+#endif
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
 #endif
     vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
-    foam = foam_shade.r;
+    foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
@@ -336,7 +388,7 @@ void main() {
 #ifdef BEACH
   // Shallow water at a beach always has a little foam; a moving shore knows where.
 #ifdef SHORE
-  foam = max(foam, inner * shore.b);
+  foam = max(foam, max(inner * shore.b, 0.4 * (1.0 - smoothstep(0.0, 0.07, deep_m))));
 #else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
@@ -347,12 +399,14 @@ void main() {
 #ifndef PLAIN
     lace = clamp(0.54 * lace + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
 #endif
+    // Patches, not an even veil with straight edges.
+    foam *= 0.55 + 0.9 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
     float white = smoothstep(1.0 - strength, 1.0 - strength + 0.26 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
-    float clouded = 0.45 * foam;
+    float clouded = 0.45 * foam * foam;
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif

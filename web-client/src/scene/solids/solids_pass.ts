@@ -21,6 +21,7 @@ import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
 import { clamp } from "../maths/interpolate";
+import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
 import { isIndoors, Surroundings } from "./surroundings";
@@ -63,6 +64,7 @@ export class SolidsPass implements Pass {
     noise: Texture,
     field: Texture | undefined,
     sunlight: LitBy,
+    sea: OpenSea | undefined,
     private readonly frames: Pick<StreamedFrames, "bodies" | "floaters">,
     quality: Quality,
   ) {
@@ -85,7 +87,7 @@ export class SolidsPass implements Pass {
     };
     const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
     this.material = makeMaterial("solid", uniforms, { defines });
-    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, haze: this.haze, solid: this.material, quality });
+    this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, sea, haze: this.haze, solid: this.material, quality });
     this.gauges = new GaugePoles(greeting, this.material);
     this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
     if (greeting.hasBoats) {

@@ -7,6 +7,7 @@ import type { ViewedBox } from "../camera/framing";
 import { makeCoastGeometry } from "../landscape/coast";
 import { Landscape, makeGroundGeometry } from "../landscape/landscape";
 import { bedOf } from "../landscape/terrain";
+import type { Quality } from "../drawing/quality";
 import type { Lamps } from "../light/lamps";
 import { OpenSea } from "../sea/open_sea";
 import { GlassTank } from "./glass_tank";
@@ -52,6 +53,15 @@ export function isIndoors({ setting }: GreetingInfo): boolean {
   return setting === "glassTank" || setting === "flume";
 }
 
+/** Root mean square slope of the ripples in a pool. */
+const kPoolSlope = 0.02;
+
+/** Returns the waves that the simulation does not have: the sea around an open sea's square, and ripples. The caller disposes it. */
+export function makeSea({ setting, wave, wind }: GreetingInfo, quality: Quality): OpenSea | undefined {
+  if (wave && setting === "openSea") return new OpenSea(wave, wind, quality);
+  return wave && setting === "pool" && !quality.plain ? new OpenSea(wave, undefined, quality, kPoolSlope) : undefined;
+}
+
 export class Surroundings {
   /** Drawn before the water. */
   readonly solids: Object3D[] = [];
@@ -60,20 +70,19 @@ export class Surroundings {
   readonly edge: WaterEdge;
   /** Height of the floor below the water. */
   floorM: number;
-  /** The pass of the sea around the square, in an open sea; the list that it is in disposes it. */
-  readonly sea: OpenSea | undefined;
+  private readonly sea: OpenSea | undefined;
   private readonly basin: PoolBasin | undefined;
   private readonly tank: GlassTank | undefined;
   private readonly landscape: Landscape | undefined;
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
-    const { setting, wave, wind, obstacles, beaches, hasBed } = greeting;
+    const { setting, wave, obstacles, beaches, hasBed } = greeting;
     const { plain } = context.quality;
+    this.sea = context.sea;
     const bed = bedOf(greeting);
     this.floorM = wave ? -wave.depthM : 0;
     const cellsCount = bed.ground ? Math.min(Math.max(bed.ground.countX, bed.ground.countZ), plain ? kPlainGroundCells : kGroundCells) : plain ? kPlainBedCells : kBedCells;
-    if (setting === "openSea" && wave) {
-      this.sea = new OpenSea(wave, wind, context.quality);
+    if (setting === "openSea" && wave && this.sea) {
       this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
       this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
@@ -84,7 +93,7 @@ export class Surroundings {
       this.solids.push(this.landscape.group);
     }
     if (setting === "pool") {
-      this.edge = { kind: "walls" };
+      this.edge = { kind: "walls", ripples: this.sea?.uniforms };
       this.basin = new PoolBasin(greeting, context);
       this.solids.push(this.basin.group);
     } else {

@@ -4,6 +4,7 @@ import type { IUniform, RawShaderMaterial, Texture } from "three";
 import type { SideKind, SideName } from "../../codec/scene_info";
 import type { Quality } from "../drawing/quality";
 import type { Sky } from "../light/sky";
+import type { OpenSea } from "../sea/open_sea";
 import type { Uniforms } from "../shaders/materials";
 
 export interface SurroundingsContext {
@@ -16,9 +17,11 @@ export interface SurroundingsContext {
   shadow: Uniforms | undefined;
   /** u_haze_m of the shaders: distance at which haze has half of the light; 0 without haze. */
   haze: IUniform<number>;
+  /** Waves that the simulation does not have. */
+  sea: OpenSea | undefined;
   /** Shared by rocks, land and lawns; the caller disposes it. */
   solid: RawShaderMaterial;
-  quality: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">;
+  quality: Pick<Quality, "plain">;
 }
 
 /** What bounds the water at its sides. */
@@ -28,4 +31,4 @@ export type WaterEdge =
   /** Its sides are seen: a block of water, or water behind glass. */
   | { kind: "cut" }
   /** Walls, which others draw. */
-  | { kind: "walls" };
+  | { kind: "walls"; ripples: Uniforms | undefined };

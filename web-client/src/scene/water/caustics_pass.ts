@@ -1,6 +1,6 @@
 // Sunlight that the waves focus on what is below them: a grid of the surface is refracted along the light and drawn with the ratio of its
 // areas, added up (after Stam 1996; Shah, Konttinen & Pattanaik 2007). Two layers: at the floor, and above it, because focus grows with the depth.
-// Reads the field. Writes the caustics: light relative to level water, over the square, mean 1.
+// Reads the field and the ripples. Writes the caustics: light relative to level water, over the square, mean 1.
 import { AdditiveBlending, DoubleSide, HalfFloatType, LinearMipmapLinearFilter, Mesh, RGFormat, Scene, Vector2, Vector3, Camera, Color, WebGLRenderTarget, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
@@ -20,7 +20,7 @@ const kLeastLight = 0.02;
 
 export class CausticsPass implements Pass {
   readonly name = "caustics";
-  readonly reads = ["field"] as const;
+  readonly reads = ["field", "sea"] as const;
   readonly writes = ["caustics"] as const;
   /** Of caustics.glsl. */
   readonly uniforms: Uniforms;
@@ -31,7 +31,8 @@ export class CausticsPass implements Pass {
   private readonly white = new Color(1, 1, 1);
   private readonly cleared = new Color();
 
-  constructor(field: Texture, private readonly sky: Sky, size: { sideM: number; widthM: number; depthM: number }, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
+  /** `ripples`: of ripples.glsl; undefined: there are none. */
+  constructor(field: Texture, ripples: Uniforms | undefined, private readonly sky: Sky, size: { sideM: number; widthM: number; depthM: number }, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
     const { sideM, widthM, depthM } = size;
     const extentM = new Vector2(sideM, widthM);
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
@@ -45,6 +46,7 @@ export class CausticsPass implements Pass {
     const lines = gridLines(cellsCount, false, false);
     const uniforms = {
       ...sky.uniforms,
+      ...ripples,
       u_field: { value: field },
       u_extent_m: { value: extentM },
       u_deep_m: { value: depthM },
@@ -52,7 +54,7 @@ export class CausticsPass implements Pass {
       u_layer: { value: new Vector2() },
       u_texel_m: { value: Math.sqrt((sideM / texelsCount) * (widthM / texelsCount)) },
     };
-    this.mesh = new Mesh(makeGrid(lines, lines), makeMaterial("caustics", uniforms, { side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true }));
+    this.mesh = new Mesh(makeGrid(lines, lines), makeMaterial("caustics", uniforms, { ...(ripples && { defines: { RIPPLES: 1 } }), side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true }));
     this.mesh.frustumCulled = false;
     this.scene.add(this.mesh);
   }

@@ -77,9 +77,12 @@ function makeSkirt(cellsCount: number): BufferGeometry {
   return geometry;
 }
 
+const kBeside: Record<"x" | "z", readonly SideName[]> = { x: ["+z", "-z"], z: ["+x", "-x"] };
+
 /** Returns the meshes of a water's surface and, where they are seen, of its sides. */
 export function makeWaterGeometries(edge: WaterEdge, cellsCount: number): { top: BufferGeometry; sides: BufferGeometry | undefined } {
-  const opens = (side: SideName): boolean => edge.kind === "sea" && edge.sides[side] !== "closed";
+  // Land at a closed side draws back where the sides beside it are open (landscape/coast.ts).
+  const opens = (side: SideName): boolean => edge.kind === "sea" && (edge.sides[side] !== "closed" || kBeside[side[1] as "x" | "z"].some((each) => edge.sides[each] !== "closed"));
   return {
     top: makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z"))),
     sides: edge.kind === "cut" ? makeSkirt(cellsCount) : undefined,

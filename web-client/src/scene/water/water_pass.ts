@@ -84,6 +84,7 @@ export class WaterPass implements Pass {
       ...foam,
       ...rain,
       ...(edge.kind === "sea" && edge.sea),
+      ...(edge.kind === "walls" && edge.ripples),
       ...(this.ground && { u_ground: { value: this.ground } }),
     };
     const defines: Record<string, number> = {};
@@ -96,6 +97,7 @@ export class WaterPass implements Pass {
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
     if (shadow) defines["SHADOWS"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
+    if (edge.kind === "walls") defines[edge.ripples ? "RIPPLES" : "WALLS"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
     this.grid = new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }));
     this.below = new BelowSurface(greeting.setting, this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
