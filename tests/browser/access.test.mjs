@@ -1,4 +1,4 @@
-// Access: no finding of axe-core, everything by keyboard, and the page in German.
+// Access: no finding of axe-core, everything by keyboard, nothing cut off at a zoom of 200 %, and the page in German.
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
@@ -6,12 +6,19 @@ import { after, before, describe, it } from "node:test";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
+import { layoutFaults } from "./layout_faults.mjs";
 import { startClass } from "./server.mjs";
 import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
 const kAxe = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 const kDesk = { viewport: { width: 1280, height: 720 } };
 const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
+
+/** Windows of 1280 x 720 at a zoom of 200 %, and of a phone whose width is 320 CSS pixels. */
+const kZoomed = {
+  "a window at 200 %": { viewport: { width: 640, height: 360 }, deviceScaleFactor: 2 },
+  "a phone of 320 px": { viewport: { width: 320, height: 692 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
+};
 
 describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
   let server;
@@ -138,6 +145,66 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
       await page.context().close();
     }
   });
+
+  /** Opens a page, goes through its states, and expects that nothing is cut off, covered or on top of something else in any of them. */
+  async function fits(opening, steps) {
+    const page = await opening;
+    const found = [];
+    try {
+      for (const [what, step] of Object.entries(steps)) {
+        await step(page);
+        found.push(...(await layoutFaults(page)).map((each) => `${what}: ${each}`));
+      }
+    } finally {
+      await page.context().close();
+    }
+    assert.deepEqual(found, []);
+  }
+
+  for (const [name, options] of Object.entries(kZoomed))
+    for (const locale of ["en-US", "de-DE"]) {
+      const zoomed = { ...options, locale };
+      it(`has no control cut off and no texts on one another, water page: ${name}, ${locale}`, async () => {
+        await fits(water(zoomed), {
+          "as it opens": nothing,
+          "with the whole panel": async (page) => {
+            await page.getByTestId("class-box").waitFor({ state: "attached", timeout: WAIT_MS });
+            if (await page.evaluate(() => document.body.classList.contains("panel-closed"))) await page.locator("#panel-toggle").dispatchEvent("click");
+            await page.evaluate(() => document.querySelectorAll("#panel details:not([hidden])").forEach((each) => (each.open = true)));
+          },
+          "with the panel closed": (page) => page.locator("#panel-toggle").dispatchEvent("click"),
+          "with the share card": async (page) => {
+            await page.getByTestId("share").dispatchEvent("click");
+            await page.getByTestId("share-card").waitFor({ timeout: WAIT_MS });
+          },
+          "with the card of keys": async (page) => {
+            await page.keyboard.press("Escape");
+            await page.getByTestId("share-card").waitFor({ state: "hidden", timeout: WAIT_MS });
+            await page.keyboard.press("?");
+            await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
+          },
+        });
+      });
+
+      it(`has no control cut off and no texts on one another, front page: ${name}, ${locale}`, async () => {
+        const page = await (await browser.newContext(zoomed)).newPage();
+        await page.goto(`http://127.0.0.1:${server.port}/?room=nowhere#token=${token}`, { timeout: WAIT_MS });
+        await fits(page, {
+          "with a room that does not exist": async () => {
+            await page.getByTestId("room-main").waitFor({ timeout: WAIT_MS });
+            await page.getByTestId("front-open").waitFor({ timeout: WAIT_MS });
+          },
+        });
+      });
+
+      it(`has no control cut off and no texts on one another, pad: ${name}, ${locale}`, async () => {
+        await fits(open("pad", zoomed), {
+          "with a finger": nothing,
+          "with the helm": (page) => page.getByTestId("pad-tool-boat").dispatchEvent("click"),
+          "with the name": (page) => page.getByTestId("pad-me").dispatchEvent("click"),
+        });
+      });
+    }
 
   /** Everything of at least two words that the page shows or names, but what the server says. */
   const sentences = (page) =>
