@@ -105,7 +105,7 @@ void main() {
 #ifndef WAVE
   // The edge between the flat side and the surface is sharp, although that of the particles is round.
   float toward_pane = dot(normal, pane);
-  float at_pane = near_pane * smoothstep(0.4, 0.7, toward_pane);
+  float at_pane = near_pane * smoothstep(0.25, 0.75, toward_pane);
   normal -= pane * max(toward_pane, 0.0) * (1.0 - smoothstep(2.0, 5.0, off_pane));
   normal = normalize(mix(normal, pane, at_pane) + vec3(0.0, 1e-4, 0.0));
   ahead_m = mix(ahead_m, tank.x, at_pane);

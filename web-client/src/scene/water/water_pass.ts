@@ -27,7 +27,7 @@ function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingIn
 const kLiftPerCell = 0.1;
 
 /** Water in a tank has the colour of so much more, because little of it looks like glass. */
-const kTankColourM = 3;
+const kTankColourM = 5;
 
 interface WaterTools {
   sky: Sky;
