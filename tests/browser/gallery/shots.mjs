@@ -20,7 +20,7 @@ const kShots = {
   breaking_wave: { tick: 138 },
   breaking_wave_particles: { tick: 96 },
   breaking_wave_wave: { tick: 120 },
-  dam_break: { tick: 42 },
+  dam_break: { tick: 60 },
   flume: { tick: 900 },
   flotsam: { tick: 300 },
   harbor: { tick: 330 },

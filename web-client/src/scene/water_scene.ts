@@ -317,7 +317,7 @@ export class WaterScene {
   /** Without a wave the lowest particles tell where the floor is. */
   private findFloor(): void {
     const frame = this.greeting?.wave ? undefined : this.frames.particles.newest();
-    if (frame && frame.count > 0) this.base?.solids.surroundings.setFloorM(frame.minM[1] - frame.radiusM);
+    if (frame && frame.count > 0) this.base?.solids.surroundings.setFloorM(frame.minM[1]);
   }
 
   private setLight(light: Light): void {

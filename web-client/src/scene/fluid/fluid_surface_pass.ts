@@ -26,11 +26,13 @@ export class FluidSurfacePass implements Pass {
   readonly reads = ["fluidTiles", "fluidSurface", "fluidNormals", "fluidThickness", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly tiles: FluidTilesPass;
+  private readonly solids: SolidsPass;
   private readonly material: RawShaderMaterial;
 
   /** `hasWave`: the fluid is one body with the wave, whose textures are in `particleUniforms`. */
   constructor({ tiles, smooth, normal, thickness, solids }: FluidSurfaceInputs, sky: Sky, noise: Texture, particleUniforms: Uniforms, hasWave: boolean, colourRatio: number) {
     this.tiles = tiles;
+    this.solids = solids;
     const { color, depth } = solids.textures;
     this.material = makeMaterial(
       "fluidSurface",
@@ -49,6 +51,7 @@ export class FluidSurfacePass implements Pass {
         u_projection: { value: new Matrix4() },
         u_camera_world: { value: new Matrix4() },
         u_camera_m: { value: new Vector3() },
+        u_floor_m: { value: 0 },
         u_colour_ratio: { value: colourRatio },
       },
       { defines: hasWave ? { WAVE: 1 } : {}, transparent: true },
@@ -62,6 +65,7 @@ export class FluidSurfacePass implements Pass {
     (uniforms["u_projection"]!.value as Matrix4).copy(camera.projectionMatrix);
     (uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
     (uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
+    uniforms["u_floor_m"]!.value = this.solids.surroundings.floorM;
     this.tiles.cover(renderer, this.material, null);
   }
 

@@ -11,11 +11,14 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
+/** A bed in a laboratory is made of painted boards. */
+const kBoards: Paint = [0.64, 0.62, 0.57, 0.08];
+const kBoardsCut: Paint = [0.17, 0.19, 0.21, 0.08];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
 /** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
-export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry {
+export function makeGroundGeometry(bed: Bed, cellsCount: number, isIndoors = false): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
   const floorM = -bed.depthM - kFloorDropSides * longSideM(bed);
   const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
@@ -24,10 +27,10 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number): BufferGeometry
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
   const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  builder.grid(rows, isIndoors ? kBoards : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
-  for (const edge of edges) builder.grid([edge.map(down), edge], kCut);
+  for (const edge of edges) builder.grid([edge.map(down), edge], isIndoors ? kBoardsCut : kCut);
   return builder.build();
 }
 

@@ -40,7 +40,7 @@ void main() {
   vec3 velocity = vec3(signedByte(words.x & 255u), signedByte(words.x >> 8u), signedByte(words.y & 255u)) * u_max_speed_mps;
   vec3 center = mix(u_min_m, u_max_m, position.xzy) + velocity * u_advance_s;
   float foam = smoothstep(0.1, 0.8, float(words.z & 255u) / 255.0);
-  float bulk = smoothstep(kAloneTint, kBulkTint, float(words.y >> 8u) / 255.0);
+  float bulk = smoothstep(kAloneTint, u_has_water ? kBulkTintOverWave : kBulkTint, float(words.y >> 8u) / 255.0);
   v_strength = 1.0;
   if (u_has_water) {
     float surface_m = texture(u_field, center.xz / u_extent_m + 0.5).r;
@@ -82,7 +82,9 @@ void main() {
   // Every tile that the square touches.
   gl_PointSize += 1.5;
 #else
-  // A distant drop must not be lost between pixels.
-  gl_PointSize = max(gl_PointSize, 2.0);
+  // A distant drop must not be lost between pixels: it is larger and fainter instead.
+  float shown = min(gl_PointSize / kLeastPx, 1.0);
+  v_strength *= mix(shown * shown, 1.0, bulk);
+  gl_PointSize = max(gl_PointSize, kLeastPx);
 #endif
 }

@@ -10,7 +10,7 @@ void main() {
   if (inside <= 0.0) discard;
   float thickness_m = 5.093 * u_radius_m * u_radius_m * u_radius_m / (v_radius_m * v_radius_m * v_flight.z) * inside;
   float weight = inside * inside;
-  // A single drop has a sharp outline; neighbours melt into each other.
-  float covered = mix(min(2.5 * inside, 1.0), weight, v_foam_bulk.y);
+  // A single drop is dense in its middle; neighbours melt into each other.
+  float covered = mix(min(1.6 * inside, 1.0), weight, v_foam_bulk.y);
   sum = vec4(thickness_m, weight, v_foam_bulk.y * weight, covered * v_strength);
 }

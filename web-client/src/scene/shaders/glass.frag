@@ -1,9 +1,10 @@
-// A pane of glass: the room reflected by Fresnel's equations, a little green in its thickness. Blended: the colour is added to what is
-// behind times alpha.
+// A pane of glass: the room reflected by Fresnel's equations, a little green in its thickness; its cut edges collect light. Blended: the
+// colour is added to what is behind times alpha.
 #include <sky>
 
 in vec3 v_world;
 in vec3 v_normal;
+in vec4 v_color;
 uniform vec3 u_camera_m;
 layout(location = 0) out vec4 color;
 
@@ -14,8 +15,8 @@ void main() {
   float away = (1.0 - facing) * (1.0 - facing);
   // Two faces reflect.
   float fresnel = 0.05 + 0.7 * away * away * (1.0 - facing);
-  vec3 mirrored = reflect(ray, normal);
-  vec3 light = skyLight(mirrored) * fresnel;
-  // What is behind is already on the screen in display values; light of this size adds about linearly there.
-  color = vec4(toDisplay(light) * 0.45, 0.94 * (1.0 - fresnel));
+  // What is behind is on the screen in display values already, whose squares are about linear: a dim reflection adds little to them.
+  vec3 mirrored = toDisplay(skyLight(reflect(ray, normal)) * fresnel);
+  color = vec4(mirrored * mirrored, 0.97 * (1.0 - fresnel));
+  if (v_color.a > 0.5) color = vec4(0.4 * toDisplay(vec3(0.36, 0.50, 0.46) * (u_ambient_up + 0.4 * u_sun_light)), 0.6);
 }

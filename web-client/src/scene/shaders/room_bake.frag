@@ -1,4 +1,4 @@
-// Bakes a lit room into one face of the cube: a grey floor, blue walls, high windows on the sun's side, and lamps under the ceiling.
+// Bakes a lit room into one face of the cube: a dark floor, walls of warm plaster, unlike water in hue, high windows on the sun's side, and lamps under the ceiling.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;    // of walls, floor and ceiling, relative to noon
@@ -21,32 +21,34 @@ void main() {
   vec3 t = max(kHigh / safe, kLow / safe);
   float way = min(t.x, min(t.y, t.z));
   vec3 at = direction * way;
-  // Darker than what stands in it, so that water and glass are what is seen; windows and lamps are what they mirror.
+  // Windows and lamps are what water and glass mirror: much brighter than the walls.
   vec3 light;
   if (way == t.y) {
     if (direction.y > 0.0) {
       vec2 lamp = abs(fract(at.xz * vec2(1.0, 1.5)) - 0.5);
-      light = vec3(0.16, 0.17, 0.18) * u_room_light + vec3(1.8, 1.75, 1.6) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
+      light = vec3(0.13, 0.115, 0.095) * u_room_light + vec3(3.4, 3.2, 2.8) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
     } else {
       float plank = fract(at.z * 9.0);
-      light = mix(vec3(0.11, 0.115, 0.12), vec3(0.125, 0.13, 0.135), smoothstep(0.0, 0.1, plank)) * u_room_light;
+      light = mix(vec3(0.050, 0.036, 0.026), vec3(0.066, 0.048, 0.034), smoothstep(0.0, 0.1, plank)) * u_room_light;
       // The window's light on the floor.
-      light += vec3(0.07, 0.068, 0.06) * u_window_light * within(at.xz, vec2(-0.75, -0.85), vec2(0.25, -0.1), 0.25);
+      light += vec3(0.10, 0.08, 0.055) * u_window_light * within(at.xz, vec2(-0.75, -0.85), vec2(0.25, -0.1), 0.25);
     }
   } else {
     float high = (at.y - kLow.y) / (kHigh.y - kLow.y);
-    light = mix(vec3(0.10, 0.17, 0.23), vec3(0.30, 0.43, 0.52), smoothstep(0.1, 0.8, high)) * u_room_light;
     vec2 along = way == t.z ? vec2(at.x * sign(-direction.z), high) : vec2(at.z * sign(direction.x), high);
+    // Lit from below the windows, darker toward the corners and the ceiling.
+    float lit = (1.0 - 0.55 * along.x * along.x) * mix(1.0, 0.45, smoothstep(0.25, 0.75, high));
+    light = mix(vec3(0.075, 0.055, 0.042), vec3(0.36, 0.27, 0.185), lit) * u_room_light;
     bool has_window = way == t.z ? direction.z < 0.0 : direction.x < 0.0;
     if (has_window) {
       vec2 pane = vec2(fract(along.x * 1.5 + 0.25), along.y);
       float open = within(pane, vec2(0.12, 0.64), vec2(0.88, 0.92), 0.012);
-      vec3 sky = mix(vec3(0.95, 1.0, 1.05), vec3(0.55, 0.78, 1.1), smoothstep(0.6, 0.95, high)) * 1.3 * u_window_light;
+      vec3 sky = mix(vec3(0.95, 1.0, 1.05), vec3(0.55, 0.78, 1.1), smoothstep(0.6, 0.95, high)) * 1.25 * u_window_light;
       float frame = within(abs(pane - vec2(0.5, 0.78)), vec2(-1.0), vec2(0.012, 1.0), 0.006);
       light = mix(light, sky, open * (1.0 - frame));
-      light += vec3(0.05, 0.05, 0.048) * u_window_light * within(pane, vec2(0.02, 0.5), vec2(0.98, 0.99), 0.15) * (1.0 - open);
     }
-    light *= mix(0.55, 1.0, smoothstep(0.0, 0.035, high));
+    // A dark skirting board.
+    light *= mix(0.35, 1.0, smoothstep(0.05, 0.06, high));
   }
   color = vec4(light, 1.0);
 }

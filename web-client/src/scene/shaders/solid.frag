@@ -1,4 +1,5 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
+// TANK: indoors, where only what is inside the water's sides is under water.
 // SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
 // INSTANCES: the grain turns with the object. PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
@@ -38,6 +39,11 @@ void main() {
   vec3 albedo = v_color.rgb;
   float grain = max(v_color.a, 0.0);
   float wet_film = 0.0;
+#ifdef TANK
+  float over_water_m = any(greaterThan(abs(v_world.xz), 0.5 * u_extent_m)) ? 1e3 : v_world.y;
+#else
+  float over_water_m = v_world.y;
+#endif
   if (grain > 0.0) {
 #ifdef INSTANCES
     vec3 steep = abs(v_own_normal);
@@ -53,9 +59,9 @@ void main() {
     float fine = texture(u_noise, at / grain_m).r - 0.5;
     float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
-    float wet = 1.0 - smoothstep(0.0, 1.0, v_world.y / u_wet_m - 0.5 * coarse);
+    float wet = 1.0 - smoothstep(0.0, 1.0, over_water_m / u_wet_m - 0.5 * coarse);
     // Spray and the last waves have left a damp band above.
-    wet = max(wet, 0.45 * (1.0 - smoothstep(1.5, 5.0, v_world.y / u_wet_m - 4.0 * coarse)));
+    wet = max(wet, 0.45 * (1.0 - smoothstep(1.5, 5.0, over_water_m / u_wet_m - 4.0 * coarse)));
 #ifdef SHORE
     float inner = simulatedShore(v_world.xz, u_extent_m);
     // Sand has slopes on which it stays, and less grain than stone.
@@ -89,7 +95,7 @@ void main() {
   vec3 lit_normal = normal;
   float soft_m = 0.0;
 #ifdef CAUSTICS
-  if (v_world.y < 0.0) {
+  if (over_water_m < 0.0) {
     // Sunlight on this point crossed the surface further toward the sun and was refracted to a steeper path; some was reflected.
     vec3 level = refract(-u_sun_direction, vec3(0.0, 1.0, 0.0), 0.75);
     vec2 crossed = v_world.xz - level.xz / level.y * v_world.y;
@@ -123,7 +129,7 @@ void main() {
 #endif
   float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
   float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0));
-  if (shine > 0.01 && v_world.y > 0.0) {
+  if (shine > 0.01 && over_water_m > 0.0) {
     vec3 mirrored = reflect(ray, normal);
     mirrored.y = abs(mirrored.y);
     lit += shine * skyLight(mirrored) + (1.0 - grain) * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);

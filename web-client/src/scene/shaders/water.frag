@@ -25,6 +25,7 @@ uniform vec2 u_resolution;
 uniform vec2 u_near_far_m;
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
+uniform float u_colour_ratio;  // lengths in the water of a tank count as so much longer for its colour
 #ifdef BEACH
 #include <bed>
 #endif
@@ -143,6 +144,8 @@ float behindScreen(vec3 at, out vec2 uv) {
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
+  // Of what stands on the screen, whose back is not seen.
+  float thick_m = min(1.0, 0.2 * min(u_extent_m.x, u_extent_m.y));
   float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float before_m = 0.0;
   vec2 uv;
@@ -151,7 +154,7 @@ vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
     float share = (float(i) - 0.7 * jitter) / float(kMirrorSteps);
     float along_m = reach_m * share * share;
     float deep_m = behindScreen(from + direction * along_m, uv);
-    if (deep_m > 0.0 && deep_m < 1.0 + 1.5 * (along_m - before_m)) {
+    if (deep_m > 0.0 && deep_m < thick_m + 1.5 * (along_m - before_m)) {
       for (int half_step = 0; half_step < kMirrorHalvings; ++half_step) {
         float middle_m = 0.5 * (before_m + along_m);
         if (behindScreen(from + direction * middle_m, uv) > 0.0) along_m = middle_m;
@@ -293,9 +296,9 @@ void main() {
   path_m = mix(deep_m * inversesqrt(1.0 - sine2), path_m, smoothstep(0.15, 0.6, deep_m));
 #endif
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = fading(u_loss_per_m * path_m * (1.0 + max(-ray.y, 0.25)));
+  vec3 passed = fading(u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = waterScattered(lifted) * u_water_light;
+  vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
   float sunlit_share = 1.0;
 #ifdef SHADOWS
   sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.12);
@@ -309,6 +312,10 @@ void main() {
   float crest_m = min(max(v_top_m, 0.0), deep_m);
 #else
   float crest_m = max(v_top_m, 0.0);
+#endif
+#ifndef SKIRT
+  // The steep face of a breaker is thin: light from its back comes through whatever the sun's direction.
+  against_sun += 0.6 * sunlit_share * smoothstep(0.2, 0.8, length(field.gb));
 #endif
   // A crest is thin, a mound of splashed water is not.
   scattered += u_crest * u_sun_light * against_sun * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m);
@@ -331,7 +338,7 @@ void main() {
 #endif
   fresnel *= edge;
 #ifdef SKIRT
-  float rim = smoothstep(0.07, 0.0, v_top_m - v_world.y);
+  float rim = smoothstep(min(0.07, 0.1 * u_depth_m), 0.0, v_top_m - v_world.y);
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23) * u_water_light;
 #else
   mirrored.y = abs(mirrored.y);

@@ -15,21 +15,22 @@ const kTableReach = 0.35;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
-/** Height of the bar that holds the upper edges of a tank's glass, as a share of its size. */
-const kRimThickness = 0.014;
-/** Thickness of a flume's beams and posts, in its widths: thin, because one looks between them. */
+/** Thickness of the beams and legs that carry a flume, in its widths. */
 const kBeamWidths = 0.025;
-/** Bays of a flume's frame along its length, for each of its sizes. */
+/** Pairs of a flume's legs along its length, for each of its sizes. */
 const kBayCount = 2;
 /** The size of a long channel is this many of its shorter sides: its glass and frame are not those of a wide tank. */
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kTable: Paint = [0.40, 0.39, 0.36, 0.35];
-const kTableEdge: Paint = [0.24, 0.235, 0.22, 0.35];
+const kTable: Paint = [0.155, 0.10, 0.062, 0.3];
+const kTableEdge: Paint = [0.10, 0.064, 0.04, 0.3];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
-const kBase: Paint = [0.20, 0.22, 0.24, 0.1];
-const kGlassPaint: Paint = [1, 1, 1, 0];
+/** Pale, so that it shows the light that the water focuses. */
+const kBase: Paint = [0.60, 0.575, 0.52, 0.1];
+// Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
+const kPane: Paint = [1, 1, 1, 0];
+const kCutEdge: Paint = [1, 1, 1, 1];
 
 interface TankSize {
   sideM: number;
@@ -52,23 +53,24 @@ export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "wate
   return { sideM, widthM, heightM: depthM + freeboardM, isFlume: greeting.setting === "flume" };
 }
 
-/** Four panes. The floor of the tank is at y = 0. */
+/** Four panes between four edges, without a frame: nothing stands before the water. The floor of the tank is at y = 0. */
 export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferGeometry {
-  const thickM = kGlassThickness * sizeM({ sideM, widthM });
+  const halfM = (kGlassThickness * sizeM({ sideM, widthM })) / 2;
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2, widthM / 2];
-  const pane = (xM: number, zM: number, halfX: number, halfZ: number): void => {
-    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, kGlassPaint, kGlassPaint);
+  const upright = (xM: number, zM: number, halfX: number, halfZ: number, paint: Paint): void => {
+    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, paint, kCutEdge);
   };
-  pane(0, hz + thickM / 2, hx + thickM, thickM / 2);
-  pane(0, -hz - thickM / 2, hx + thickM, thickM / 2);
-  pane(hx + thickM / 2, 0, thickM / 2, hz);
-  pane(-hx - thickM / 2, 0, thickM / 2, hz);
+  for (const side of [-1, 1]) {
+    upright(0, side * (hz + halfM), hx, halfM, kPane);
+    upright(side * (hx + halfM), 0, halfM, hz, kPane);
+    for (const end of [-1, 1]) upright(side * (hx + halfM), end * (hz + halfM), halfM, halfM, kCutEdge);
+  }
   return builder.build();
 }
 
-/** What carries the tank, and its rim: a table, or the frame of a flume. */
-export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize): BufferGeometry {
+/** What carries the tank: a table, or the frame of a flume. */
+export function makeStandGeometry({ sideM, widthM, isFlume }: TankSize): BufferGeometry {
   const longM = sizeM({ sideM, widthM });
   const bayCount = Math.max(Math.round((kBayCount * Math.max(sideM, widthM)) / longM), 1);
   const thickM = kGlassThickness * longM;
@@ -83,11 +85,6 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
     const reachM = kTableReach * longM;
     const tableM = kTableThickness * longM;
     box(0, 0, -bedM - tableM, -bedM, hx + reachM, hz + reachM, kTableEdge, kTable);
-    const rimM = kRimThickness * longM;
-    for (const side of [-1, 1]) {
-      box(0, side * (hz - thickM / 2), heightM - rimM, heightM, hx, thickM / 2, kSteel);
-      box(side * (hx - thickM / 2), 0, heightM - rimM, heightM, thickM / 2, hz, kSteel);
-    }
     const legM = 0.05 * longM;
     for (const x of [-1, 1])
       for (const z of [-1, 1]) box(x * (hx + reachM - 2 * legM), z * (hz + reachM - 2 * legM), -bedM - tableM - 0.9 * longM, -bedM - tableM, legM, legM, kTableEdge);
@@ -99,14 +96,9 @@ export function makeStandGeometry({ sideM, widthM, heightM, isFlume }: TankSize)
   for (let bay = 0; bay <= bayCount; ++bay) {
     const along = (bay / bayCount - 0.5) * 2;
     for (const side of [-1, 1]) {
-      const [post, leg] = isAlongX ? [[along * hx, side * (hz + beamM / 2)], [along * hx, side * hz]] : [[side * (hx + beamM / 2), along * hz], [side * hx, along * hz]];
-      box(post![0]!, post![1]!, -bedM, heightM + beamM / 2, beamM / 2, beamM / 2, kSteel);
-      box(leg![0]!, leg![1]!, -bedM - 0.4 * longM, -bedM - 2.5 * beamM, beamM, beamM, kSteel);
+      const [xM, zM] = isAlongX ? [along * hx, side * hz] : [side * hx, along * hz];
+      box(xM, zM, -bedM - 0.4 * longM, -bedM - 2.5 * beamM, beamM, beamM, kSteel);
     }
-  }
-  for (const side of [-1, 1]) {
-    if (isAlongX) box(0, side * (hz + beamM / 2), heightM, heightM + beamM, hx + beamM / 2, beamM / 2, kSteel);
-    else box(side * (hx + beamM / 2), 0, heightM, heightM + beamM, beamM / 2, hz + beamM / 2, kSteel);
   }
   return builder.build();
 }
