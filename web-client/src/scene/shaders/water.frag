@@ -236,7 +236,7 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
-#ifndef SKIRT
+#if (defined(OPEN_SEA) || defined(RIPPLES) || defined(WALLS)) && !defined(SKIRT)
   // What stands in the water is close behind its surface; the bed below shallow water is not meant.
   float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float contact = 1.0 - smoothstep(0.0, kContactM, solid_m);
@@ -244,6 +244,9 @@ void main() {
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
 #endif
   contact *= contact;
+#elif !defined(SKIRT)
+  // The floor and the panes of a tank are close everywhere.
+  const float contact = 0.0;
 #endif
 
   // The scene behind, shifted by refraction. If the shifted pixel lies in front of the water, the unshifted one is used.
