@@ -107,11 +107,11 @@ test_wire() {
 
 # Installs the Python client as a user would, into a virtual environment with Debian's numpy, websockets and protobuf, and runs its tests.
 test_python() {
-  local environment="$root/build/python"
-  [[ -x "$environment/bin/python" ]] || /usr/bin/python3 -m venv --system-site-packages "$environment"
-  step python-client "installing the Python client into build/python" "$environment/bin/python" -m pip install --quiet --no-deps --no-build-isolation \
+  local venv="$root/build/python"
+  [[ -x "$venv/bin/python" ]] || /usr/bin/python3 -m venv --system-site-packages "$venv"
+  step python-client "installing the Python client into build/python" "$venv/bin/python" -m pip install --quiet --no-deps --no-build-isolation \
     --force-reinstall ./python-client
-  run_part python "$python_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" "$environment/bin/python" -m pytest --quiet -p no:cacheprovider \
+  run_part python "$python_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" "$venv/bin/python" -m pytest --quiet -p no:cacheprovider \
     "--junitxml=$root/build/reports/python.xml" python-client/tests
 }
 
