@@ -61,6 +61,8 @@ class Water:
             self._loop = None
 
     def __getattr__(self, name):
+        if name.startswith("_"):  # not yet connected, or asked for by copy and pickle
+            raise AttributeError(name)
         value = getattr(self._water, name)
         if not inspect.ismethod(value):
             return value

@@ -17,20 +17,15 @@ namespace {
 
 static_assert(sizeof(FloaterRecord) == 28);
 
-/// The payload with the zeros behind it that readers need. Empty: it is too long.
-std::vector<std::uint8_t> withSlack(const std::uint8_t* payload, std::size_t byte_count) {
-  if (byte_count > BitSource::kMaxBytes) return {};
-  std::vector<std::uint8_t> bytes(byte_count + BitSource::kSlackBytes);
-  std::copy_n(payload, byte_count, bytes.begin());
-  return bytes;
-}
-
-/// Calls `read` with the payload and its size; false if that throws for lack of memory or the payload is too long.
+/// Calls `read` with the payload, behind which are the zeros that readers need, and its size. False if the payload is
+/// too long or there is no memory.
 template <typename Read>
 bool withPayload(const std::uint8_t* payload, std::size_t byte_count, Read read) {
+  if (byte_count > BitSource::kMaxBytes) return false;
   try {
-    const std::vector<std::uint8_t> bytes = withSlack(payload, byte_count);
-    return !bytes.empty() && read(bytes.data(), static_cast<std::uint32_t>(byte_count));
+    std::vector<std::uint8_t> bytes(byte_count + BitSource::kSlackBytes);
+    std::copy_n(payload, byte_count, bytes.begin());
+    return read(bytes.data(), static_cast<std::uint32_t>(byte_count));
   } catch (const std::bad_alloc&) {
     return false;
   }
