@@ -49,20 +49,23 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
     const { violations } = await page.evaluate(() => window.axe.run(document, { resultTypes: ["violations"] }));
     return violations.map(({ id, help, nodes }) => `${id} (${help}): ${nodes.map(({ html, failureSummary }) => `${html.slice(0, 160)} ${failureSummary.replaceAll("\n", " ").slice(0, 200)}`).join(" | ")}`);
   }
-  /** Opens a page, goes through its states, and expects no finding in any of them. */
-  async function isClean(opening, steps) {
+  /** Opens a page, goes through its states, and expects that `faultsOf` finds nothing in any of them. */
+  async function expectNone(faultsOf, opening, steps) {
     const page = await opening;
     const found = [];
     try {
       for (const [what, step] of Object.entries(steps)) {
         await step(page);
-        found.push(...(await findings(page)).map((each) => `${what}: ${each}`));
+        found.push(...(await faultsOf(page)).map((each) => `${what}: ${each}`));
       }
     } finally {
       await page.context().close();
     }
     assert.deepEqual(found, []);
   }
+  const isClean = (opening, steps) => expectNone(findings, opening, steps);
+  /** Nothing is cut off, covered or on top of something else. */
+  const fits = (opening, steps) => expectNone(layoutFaults, opening, steps);
   const nothing = async () => {};
 
   for (const [name, options] of Object.entries({ desk: kDesk, phone: kPhone })) {
@@ -145,21 +148,6 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
       await page.context().close();
     }
   });
-
-  /** Opens a page, goes through its states, and expects that nothing is cut off, covered or on top of something else in any of them. */
-  async function fits(opening, steps) {
-    const page = await opening;
-    const found = [];
-    try {
-      for (const [what, step] of Object.entries(steps)) {
-        await step(page);
-        found.push(...(await layoutFaults(page)).map((each) => `${what}: ${each}`));
-      }
-    } finally {
-      await page.context().close();
-    }
-    assert.deepEqual(found, []);
-  }
 
   for (const [name, options] of Object.entries(kZoomed))
     for (const locale of ["en-US", "de-DE"]) {

@@ -13,7 +13,7 @@ import type { Pass } from "../drawing/pass";
 import type { FluidQuality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import type { Sky } from "../light/sky";
-import { clamp } from "../maths/interpolate";
+import { tankColourRatio } from "../light/water_optics";
 import type { SolidsPass } from "../solids/solids_pass";
 import { FluidDepthPass } from "./fluid_depth_pass";
 import { FluidNormalPass } from "./fluid_normal_pass";
@@ -23,10 +23,6 @@ import { FluidSmoothPass } from "./fluid_smooth_pass";
 import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidThicknessPass } from "./fluid_thickness_pass";
 import { FluidTilesPass } from "./fluid_tiles_pass";
-
-/** A tank of particles absorbs light as if its narrower side were this long, because small ones would look like glass; by at most this factor. */
-const kColourSideM = 6;
-const kMostColourRatio = 4;
 
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {
@@ -40,7 +36,7 @@ interface FluidPasses {
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, quality: FluidQuality): FluidPasses {
   const { scale, samplesCount, roundsCount } = quality;
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
-  const colourRatio = field ? 1 : clamp(kColourSideM / Math.min(size.sideM, size.widthM), 1, kMostColourRatio);
+  const colourRatio = field ? 1 : tankColourRatio(size);
   const tiles = new FluidTilesPass(particles);
   const depth = new FluidDepthPass(particles, scale);
   const smooth = new FluidSmoothPass(tiles, particles, depth, samplesCount, roundsCount);

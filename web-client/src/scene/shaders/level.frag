@@ -19,13 +19,16 @@ const int kReach = 3;
 
 layout(location = 0) out int level;
 
+// `ground_m`: height of the ground with obstacles, and without them.
+bool isObstacle(vec2 ground_m) { return ground_m.r - ground_m.g > 0.01; }
+float filmOf(vec2 ground_m) { return isObstacle(ground_m) ? kObstacleFilmM : u_film_m; }
+
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   ivec2 last = textureSize(u_elevation, 0) - 1;
   int here = texelFetch(u_elevation, at, 0).r;
   vec2 ground_m = texelFetch(u_cells, at, 0).rg;
-  bool is_obstacle = ground_m.r - ground_m.g > 0.01;
-  if (float(here) * u_unit_m - ground_m.r > (is_obstacle ? kObstacleFilmM : u_film_m)) {
+  if (float(here) * u_unit_m - ground_m.r > filmOf(ground_m)) {
     level = here;
     return;
   }
@@ -35,15 +38,15 @@ void main() {
     for (int x = -kReach; x <= kReach; ++x) {
       ivec2 beside = clamp(at + ivec2(x, z), ivec2(0), last);
       float high_m = float(texelFetch(u_elevation, beside, 0).r) * u_unit_m;
-      vec2 cells_m = texelFetch(u_cells, beside, 0).rg;
-      float deep_m = high_m - cells_m.r;
-      if (deep_m > (cells_m.r - cells_m.g > 0.01 ? kObstacleFilmM : u_film_m)) near += vec3(high_m, deep_m, 1.0) / float(x * x + z * z);
+      vec2 beside_m = texelFetch(u_cells, beside, 0).rg;
+      float deep_m = high_m - beside_m.r;
+      if (deep_m > filmOf(beside_m)) near += vec3(high_m, deep_m, 1.0) / float(x * x + z * z);
     }
   float level_m = ground_m.g - 0.02;
   if (near.z > 0.0) {
     near.xy /= near.z;
     // Beside an obstacle the water continues into it. Elsewhere it ends before this texel: halfway for water that runs downhill.
-    level_m = is_obstacle ? near.x : min(near.x, ground_m.g - 0.5 * near.y);
+    level_m = isObstacle(ground_m) ? near.x : min(near.x, ground_m.g - 0.5 * near.y);
   }
   level = int(round(level_m / u_unit_m));
 }

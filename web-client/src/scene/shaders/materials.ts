@@ -38,6 +38,7 @@ import lookParticleVert from "./look_particle.vert?raw";
 import lookSurfaceFrag from "./look_surface.frag?raw";
 import lookValueFrag from "./look_value.frag?raw";
 import presentBelowFrag from "./present_below.frag?raw";
+import mirror from "./mirror.glsl?raw";
 import presentFrag from "./present.frag?raw";
 import rainRingFrag from "./rain_ring.frag?raw";
 import rainRingVert from "./rain_ring.vert?raw";
@@ -117,6 +118,7 @@ const kShared: Record<string, string> = {
   fluid_sizes: fluidSizes,
   instance,
   look_map: lookMap,
+  mirror,
   ripples,
   sea_blend: seaBlend,
   shadow,

@@ -11,6 +11,7 @@ import type { Quality } from "../drawing/quality";
 import { makeGroundTexture } from "../landscape/ground_texture";
 import { bedOf, bedUniformValues, longSideM } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
+import { tankColourRatio } from "../light/water_optics";
 import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
@@ -25,9 +26,6 @@ function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingIn
 
 /** Thin water is drawn although the ground is in front of it by this share of a cell of the drawn surface: both are triangles, over a sloping bed. */
 const kLiftPerCell = 0.1;
-
-/** Water in a tank has the colour of so much more, because little of it looks like glass. */
-const kTankColourM = 5;
 
 interface WaterTools {
   sky: Sky;
@@ -80,7 +78,7 @@ export class WaterPass implements Pass {
       u_near_far_m: { value: new Vector2(1, 2) },
       u_extent_m: { value: new Vector2(bed.sideM, bed.widthM) },
       u_depth_m: { value: depthM },
-      u_colour_ratio: { value: isIndoors(greeting) ? Math.max(kTankColourM / Math.min(bed.sideM, bed.widthM), 1) : 1 },
+      u_colour_ratio: { value: isIndoors(greeting) ? tankColourRatio(bed) : 1 },
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
