@@ -150,10 +150,11 @@ describe("a page of another origin", { skip, concurrency: 1 }, () => {
     await connectedAs("operator");
     const [{ room, scene, title }] = (await eventsOf("connected")).slice(-1);
     assert.deepEqual({ room, scene, title }, { room: "main", scene: "browser_test", title: "Browser test" });
-    const frames = await until("frames", () => eventsOf("frame"), (events) => events.length >= 6);
+    const frames = await until("frames", () => eventsOf("frame"), (events) => events.length >= 24);
     const [first, last] = [frames[1], frames.at(-1)];
     assert.ok(last.tick > first.tick && last.timeS > first.timeS, JSON.stringify(frames));
-    assert.ok(last.atMs - first.atMs > 200 * (frames.length - 2), `${frames.length} frames: ${JSON.stringify(frames)}`);
+    // From the page's own beginning: a busy machine hands late events over together.
+    assert.ok(frames.length <= 2 + last.atMs / 250, `${frames.length} frames: ${JSON.stringify(frames)}`);
     assert.ok((await until("people", () => eventsOf("people"), (events) => events.length > 0)).at(-1).count >= 1);
     assert.deepEqual(errors(), []);
   });
