@@ -6,44 +6,37 @@ import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
-import type { FluidNormalPass } from "./fluid_normal_pass";
-import type { FluidSmoothPass } from "./fluid_smooth_pass";
-import type { FluidThicknessPass } from "./fluid_thickness_pass";
 import type { FluidTilesPass } from "./fluid_tiles_pass";
+import type { FluidVolumePass } from "./fluid_volume_pass";
 import { viewRay } from "./view_ray";
 
 /** What the surface is shaded from. */
 interface FluidSurfaceInputs {
   tiles: FluidTilesPass;
-  smooth: FluidSmoothPass;
-  normal: FluidNormalPass;
-  thickness: FluidThicknessPass;
+  volume: FluidVolumePass;
   solids: SolidsPass;
 }
 
 export class FluidSurfacePass implements Pass {
   readonly name = "fluid surface";
-  readonly reads = ["fluidTiles", "fluidSurface", "fluidNormals", "fluidThickness", "solids", "canvas"] as const;
+  readonly reads = ["fluidTiles", "fluidVolume", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly tiles: FluidTilesPass;
   private readonly solids: SolidsPass;
   private readonly material: RawShaderMaterial;
 
   /** `hasWave`: the fluid is one body with the wave, whose textures are in `particleUniforms`. */
-  constructor({ tiles, smooth, normal, thickness, solids }: FluidSurfaceInputs, sky: Sky, noise: Texture, particleUniforms: Uniforms, hasWave: boolean, colourRatio: number) {
+  constructor({ tiles, volume, solids }: FluidSurfaceInputs, sky: Sky, noise: Texture, particleUniforms: Uniforms, hasWave: boolean, colourRatio: number) {
     this.tiles = tiles;
     this.solids = solids;
     const { color, depth } = solids.textures;
     this.material = makeMaterial(
-      "fluidSurface",
+      "liquid",
       {
         ...sky.uniforms,
         ...tiles.uniforms,
         ...particleUniforms,
-        u_noise: { value: noise },
-        u_front: { value: smooth.target.texture },
-        u_normals: { value: normal.target.texture },
-        u_thickness: { value: thickness.target.texture },
+        ...volume.uniforms,
         u_behind: { value: color },
         u_behind_depth: { value: depth },
         u_ray: { value: new Vector4() },
@@ -52,6 +45,7 @@ export class FluidSurfacePass implements Pass {
         u_camera_world: { value: new Matrix4() },
         u_camera_m: { value: new Vector3() },
         u_floor_m: { value: 0 },
+        u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
       { defines: hasWave ? { WAVE: 1 } : {}, transparent: true },
@@ -66,7 +60,7 @@ export class FluidSurfacePass implements Pass {
     (uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
     (uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
     uniforms["u_floor_m"]!.value = this.solids.surroundings.floorM;
-    this.tiles.cover(renderer, this.material, null);
+    this.tiles.cover(renderer, this.material);
   }
 
   dispose(): void {

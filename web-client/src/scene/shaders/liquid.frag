@@ -1,0 +1,209 @@
+// Light from the particles' liquid to the eye. A ray goes through the volume to the surface, where the sky is mirrored by Fresnel. The
+// refracted ray goes on through the liquid, is reflected where no light leaves, and shows what lies behind the liquid; on its way light is
+// absorbed and scattered (water_optics.glsl), and white water hides it.
+// Reads the volume, the solids' colour and depth. Blends over the picture; writes the surface's depth.
+// WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
+// volume is a tank with walls of glass.
+#include <sky>
+#include <water_optics>
+#include <fluid_volume>
+
+in vec2 v_uv;
+uniform sampler2D u_behind;
+uniform sampler2D u_behind_depth;
+uniform sampler2D u_noise;
+uniform vec4 u_ray;            // view ray (x, y, -1) = ndc * u_ray.xy + u_ray.zw
+uniform vec2 u_near_far_m;
+uniform mat4 u_projection;
+uniform mat4 u_camera_world;
+uniform vec3 u_camera_m;
+uniform float u_radius_m;      // of a particle
+uniform float u_colour_ratio;  // lengths in the liquid count as so much longer for its colour
+uniform float u_floor_m;
+#ifdef WAVE
+uniform sampler2D u_field;
+uniform vec2 u_extent_m;       // length and width of the wave
+#endif
+layout(location = 0) out vec4 color;
+
+const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indices
+const float kStepRadii = 1.1;
+const int kMostSteps = 128, kMostStepsInside = 64;
+// How far white water is torn, as density; one tile of the noise, in particle radii.
+const float kTorn = 0.5;
+const float kLaceRadii = 23.0;
+// Light that white water scatters over one particle radius.
+const float kWhiteness = 0.5;
+#ifndef WAVE
+const float kTankGlow = 1.8;  // a pale floor and walls light the water from all sides
+#endif
+
+float distanceAt(vec2 uv) {
+  float near = u_near_far_m.x, far = u_near_far_m.y;
+  return near * far / (far - (far - near) * texture(u_behind_depth, uv).r);
+}
+
+// Lengths of the ray at which it enters the volume and leaves it.
+vec2 throughVolume(vec3 from, vec3 ray) {
+  ray = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
+  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_min_m + u_cells_count * u_cell_m - from) / ray;
+  vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// The outward normal of the volume's nearest side.
+vec3 sideAt(vec3 at_m) {
+  vec3 half_m = 0.5 * u_cells_count * u_cell_m;
+  vec3 away_m = at_m - u_volume_min_m - half_m;
+  vec3 left_m = half_m - abs(away_m);
+  vec3 nearest = step(left_m, vec3(min(left_m.x, min(left_m.y, left_m.z))));
+  return normalize(nearest * sign(away_m));
+}
+
+// How far a position lies above the wave, in particle radii.
+float overWave(vec3 at_m) {
+#ifdef WAVE
+  return (at_m.y - texture(u_field, at_m.xz / u_extent_m + 0.5).r) / u_radius_m;
+#else
+  return 1e3;
+#endif
+}
+
+// Density over that of the surface, and its white share: white water is torn.
+vec2 liquidAt(vec3 at_m) {
+  vec2 density = volumeAt(at_m);
+  float white = density.g / max(density.r, 1e-3);
+  if (density.r > kSurface && white > 0.1) {
+    vec3 at = at_m / (kLaceRadii * u_radius_m);
+    density.r -= kTorn * white * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.6);
+  }
+  return vec2(density.r - kSurface, white);
+}
+
+// Where the ray crosses the surface between two lengths of which one lies in the liquid.
+float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
+  bool is_end_inside = liquidAt(from + ray * b_m).x > 0.0;
+  for (int i = 0; i < 5; ++i) {
+    float middle_m = 0.5 * (a_m + b_m);
+    if ((liquidAt(from + ray * middle_m).x > 0.0) == is_end_inside) b_m = middle_m;
+    else a_m = middle_m;
+  }
+  return b_m;
+}
+
+vec3 normalAt(vec3 at_m) {
+  vec2 apart_m = vec2(0.9 * u_radius_m, 0.0);
+  vec3 slope = vec3(volumeAt(at_m + apart_m.xyy).r - volumeAt(at_m - apart_m.xyy).r, volumeAt(at_m + apart_m.yxy).r - volumeAt(at_m - apart_m.yxy).r,
+                    volumeAt(at_m + apart_m.yyx).r - volumeAt(at_m - apart_m.yyx).r);
+  return -slope / max(length(slope), 1e-5);
+}
+
+// The light along a ray at a distance: that of the picture of the solids where it shows the place, and does not show something in front of
+// the liquid; elsewhere that of the sky.
+vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
+  vec3 at = transpose(mat3(u_camera_world)) * (from + ray * away_m - u_camera_m);
+  vec2 uv = ((at.xy / -at.z - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
+  if (distanceAt(uv) < surface_m) uv = v_uv;
+  vec2 rim = smoothstep(0.5, 0.47, abs(uv - 0.5));
+  vec3 sky = textureLod(u_sky, ray, 1.0).rgb;
+  return mix(sky, texture(u_behind, clamp(uv, 0.0, 1.0)).rgb, at.z < 0.0 ? rim.x * rim.y : 0.0);
+}
+
+void main() {
+  vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
+  float per_m = length(view_ray);
+  vec3 ray = mat3(u_camera_world) * view_ray / per_m;
+  float solid_m = distanceAt(v_uv) * per_m;
+  vec2 way_m = throughVolume(u_camera_m, ray);
+  float end_m = min(way_m.y, solid_m);
+  float at_m = max(way_m.x, 0.0) + 1e-4, before_m = at_m;
+  if (at_m >= end_m) discard;
+  float step_m = kStepRadii * u_radius_m;
+
+  vec2 liquid = liquidAt(u_camera_m + ray * at_m);
+  bool is_pane = liquid.x > 0.0;
+  for (int i = 0; i < kMostSteps && liquid.x <= 0.0; ++i) {
+    if (at_m >= end_m) discard;
+    before_m = at_m;
+    at_m = min(at_m + step_m, end_m);
+    liquid = liquidAt(u_camera_m + ray * at_m);
+  }
+  if (liquid.x <= 0.0) discard;
+  if (!is_pane) at_m = crossing(u_camera_m, ray, before_m, at_m);
+  vec3 surface = u_camera_m + ray * at_m;
+  float raised = smoothstep(0.4, 1.6, overWave(surface));
+  if (raised <= 0.0) discard;
+  vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
+  if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);
+  float ahead_m = at_m / per_m;
+
+  // Through the liquid to where the ray leaves it, at most two times reflected.
+  vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
+  float length_m = 0.0, white_m = 0.0, past_m = 0.0;
+  for (int part = 0; part < 3; ++part) {
+    float along_m = 0.2 * u_radius_m;
+    float most_m = throughVolume(from, bent).y;
+    bool is_side = true;
+    for (int i = 0; i < kMostStepsInside; ++i) {
+      float next_m = min(along_m + step_m, most_m);
+      vec3 at = from + bent * next_m;
+      vec2 through = liquidAt(at);
+      if (through.x < 0.0) {
+        next_m = crossing(from, bent, along_m, next_m);
+        is_side = false;
+      }
+      white_m += (next_m - along_m) * through.y * through.y;
+      along_m = next_m;
+      if (!is_side || along_m >= most_m || overWave(at) < 0.0) break;
+    }
+    from += bent * along_m;
+    length_m += along_m;
+    leaving = bent;
+    bool is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
+    if (is_floor || overWave(from) < 0.0) break;
+    vec3 outward = is_side ? sideAt(from) : normalAt(from);
+    leaving = refract(bent, -outward, kFromWater);
+    past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
+    if (dot(leaving, leaving) > 0.0) break;
+    past_m = 0.0;
+    bent = leaving = reflect(bent, outward);
+    from += 0.2 * u_radius_m * bent;
+  }
+#ifdef WAVE
+  // Further down it is the wave's water.
+  if (leaving.y < -0.05) {
+    float down_m = clamp((from.y - u_floor_m) / -leaving.y, 0.0, 40.0);
+    past_m = down_m;
+    length_m += down_m;
+  }
+#else
+  // What stands in the liquid is seen through less of it.
+  length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
+#endif
+  vec3 behind = behindAt(from, leaving, past_m, ahead_m);
+
+  vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
+  float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
+  float against_sun = max(dot(ray, u_sun_direction), 0.0);
+  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+#ifndef WAVE
+  scattered *= kTankGlow;
+#endif
+  scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
+  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
+  vec3 under = mix(behind * passed + scattered * (1.0 - passed), froth, white);
+
+  // Glass hides most of the reflection of the water behind it.
+  float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
+  vec3 mirrored = reflect(ray, normal);
+  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
+  float at_sun = dot(mirrored, u_sun_direction);
+  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
+  color = vec4(toDisplay(mix(under, mirrored_light, fresnel) + glint * u_sun_light), raised);
+  gl_FragDepth = clamp(0.5 * (u_projection[3][2] / ahead_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
+#ifdef WAVE
+  // Drawn in front of the wave's surface, from which it can hardly be told.
+  gl_FragDepth -= 1e-4 * (1.0 - raised);
+#endif
+}
