@@ -7,7 +7,7 @@ import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 
 /** Radius of a particle's kernel in spacings of the particles at rest. */
-const kReachSpacings = 2;
+const kReachSpacings = 2.5;
 /** Integral of (1 - r^2)^3 over the unit ball. */
 const kKernelIntegral = 0.6383;
 /** About so many cells are the most. */
@@ -32,14 +32,14 @@ export class FluidVolumePass implements Pass {
     this.uniforms = {
       u_volume: { value: this.target.texture },
       u_volume_min_m: { value: new Vector3() },
+      u_volume_max_m: { value: new Vector3() },
       u_cell_m: { value: 1 },
       u_cells_count: { value: new Vector3(1, 1, 1) },
       u_slices_per_row: { value: 1 },
       u_reach_m: { value: 1 },
     };
-    const isTank = surroundings !== undefined;
-    const uniforms = { ...particles.uniforms, ...this.uniforms, u_volume: { value: null }, u_slice: { value: 0 }, u_at_rest: { value: 1 }, u_target_px: { value: new Vector2() }, u_walls: { value: [isTank, isTank, isTank] } };
-    this.material = makeMaterial("fluidVolume", uniforms, { blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneFactor, depthTest: false, depthWrite: false, transparent: true });
+    const uniforms = { ...particles.uniforms, ...this.uniforms, u_volume: { value: null }, u_slice: { value: 0 }, u_at_rest: { value: 1 }, u_target_px: { value: new Vector2() } };
+    this.material = makeMaterial("fluidVolume", uniforms, { defines: surroundings ? { WALLS: 1 } : {}, blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneFactor, depthTest: false, depthWrite: false, transparent: true });
   }
 
   draw({ renderer, camera }: Picture): void {
@@ -83,6 +83,7 @@ export class FluidVolumePass implements Pass {
     const perRow = Math.max(Math.ceil(Math.sqrt((y * z) / x)), 1);
     this.target.setSize(Math.max(this.target.width, perRow * x), Math.max(this.target.height, Math.ceil(y / perRow) * z));
     (uniforms["u_volume_min_m"]!.value as Vector3).fromArray(from);
+    (uniforms["u_volume_max_m"]!.value as Vector3).fromArray(high);
     (uniforms["u_cells_count"]!.value as Vector3).set(x, y, z);
     uniforms["u_cell_m"]!.value = cellM;
     uniforms["u_slices_per_row"]!.value = perRow;

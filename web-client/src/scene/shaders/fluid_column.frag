@@ -7,16 +7,16 @@ uniform float u_floor_m;   // height of the floor
 uniform float u_shaded_m;  // side of the square of floor that the target shows, around the origin
 layout(location = 0) out float length_m;
 
-const float kSteps = 32.0;
+const float kSteps = 24.0;
 
 void main() {
-  vec2 at = (v_uv - 0.5) * u_shaded_m;
-  vec3 step_m = u_sun_direction / u_sun_direction.y * (u_cells_count.y * u_cell_m / kSteps);
-  vec3 away_m = u_volume_min_m + u_cells_count * u_cell_m;
+  vec3 from = vec3((v_uv - 0.5) * u_shaded_m, 0.0).xzy;
+  from.y = u_floor_m + 1e-3;
+  vec3 safe = mix(vec3(1e-6), u_sun_direction, step(vec3(1e-6), abs(u_sun_direction)));
+  vec3 a = (u_volume_min_m - from) / safe, b = (u_volume_max_m - from) / safe;
+  vec3 near = min(a, b), far = max(a, b);
+  float enters_m = max(max(near.x, near.z), 0.0), leaves_m = min(min(far.x, far.z), far.y);
+  float step_m = max(leaves_m - enters_m, 0.0) / kSteps;
   length_m = 0.0;
-  for (float i = 0.5; i < kSteps; ++i) {
-    vec3 place = vec3(at.x, u_floor_m, at.y) + step_m * i;
-    if (any(lessThan(place, u_volume_min_m)) || any(greaterThan(place, away_m))) continue;
-    length_m += length(step_m) * smoothstep(0.6 * kSurface, 1.4 * kSurface, volumeAt(place).r);
-  }
+  for (float i = 0.5; i < kSteps; ++i) length_m += step_m * smoothstep(0.5 * kSurface, 1.5 * kSurface, volumeAt(from + u_sun_direction * (enters_m + i * step_m)).r);
 }

@@ -1,17 +1,16 @@
-// A particle's share of the density in a cell, over that of the lattice at rest. Blending adds them up. Beside a wall the kernel is cut,
-// and its rest counts for more.
+// A particle's share of the density in a cell, over that of the lattice at rest. Blending adds them up.
+// WALLS: beside a wall the kernel is cut, and its rest counts for more.
 #include <fluid_volume>
 
 uniform float u_reach_m;
 uniform float u_at_rest;    // sum of the kernel over the lattice at rest
-uniform bvec3 u_walls;      // x, y from below, z: the volume ends at a wall
 flat in vec3 v_center;
 flat in vec3 v_slice;
 flat in float v_foam;
 layout(location = 0) out vec2 density;
 
 // Share of a kernel that lies on this side of a wall at a distance in its radii: the integral of (1 - t^2)^4 within 2 %.
-float uncut(float away) { float left = max(1.0 - away, 0.0); return 1.0 - 0.5 * left * left * left; }
+float uncut(float away) { float left = clamp(1.0 - away, 0.0, 1.0); return 1.0 - 0.5 * left * left * left; }
 
 void main() {
   vec2 cell = gl_FragCoord.xy - v_slice.xy;
@@ -21,9 +20,9 @@ void main() {
   float left = 1.0 - dot(away, away);
   if (left <= 0.0) discard;
   float weight = left * left * left / u_at_rest;
-  vec3 low = at * u_cell_m / u_reach_m, high = (u_cells_count - at) * u_cell_m / u_reach_m;
-  if (u_walls.x) weight /= uncut(low.x) * uncut(high.x);
-  if (u_walls.y) weight /= uncut(low.y);
-  if (u_walls.z) weight /= uncut(low.z) * uncut(high.z);
+#ifdef WALLS
+  vec3 at_m = at * u_cell_m, size_m = u_volume_max_m - u_volume_min_m;
+  weight /= uncut(at_m.x / u_reach_m) * uncut((size_m.x - at_m.x) / u_reach_m) * uncut(at_m.y / u_reach_m) * uncut(at_m.z / u_reach_m) * uncut((size_m.z - at_m.z) / u_reach_m);
+#endif
   density = vec2(weight, weight * v_foam);
 }

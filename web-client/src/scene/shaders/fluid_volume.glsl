@@ -1,6 +1,7 @@
 // Include: the volume that the particles fill, as horizontal slices side by side in one texture (fluid_volume.frag).
 uniform sampler2D u_volume;     // red: density over that at rest; green: the white part of it
 uniform vec3 u_volume_min_m;
+uniform vec3 u_volume_max_m;
 uniform vec3 u_cells_count;     // along x, y, z
 uniform float u_cell_m;
 uniform float u_slices_per_row;

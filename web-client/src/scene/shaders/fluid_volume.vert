@@ -13,7 +13,7 @@ flat out float v_foam;
 void main() {
   Particle particle = unpackParticle();
   v_center = (particle.center_m - u_volume_min_m) / u_cell_m;
-  v_foam = smoothstep(0.3, 1.0, particle.foam);
+  v_foam = smoothstep(0.45, 1.0, particle.foam);
   float slice = floor(v_center.y - u_reach_m / u_cell_m + 0.5) + u_slice;
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 1.0;

@@ -30,10 +30,12 @@ const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indice
 const float kStepRadii = 1.1;
 const int kMostSteps = 128, kMostStepsInside = 64;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
-const float kTorn = 0.5;
-const float kLaceRadii = 23.0;
+const float kTorn = 0.16;
+const float kLaceRadii = 31.0;
+// Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
+const float kMist = 0.6;
 // Light that white water scatters over one particle radius.
-const float kWhiteness = 0.5;
+const float kWhiteness = 0.3;
 #ifndef WAVE
 const float kTankGlow = 1.8;  // a pale floor and walls light the water from all sides
 #endif
@@ -46,14 +48,14 @@ float distanceAt(vec2 uv) {
 // Lengths of the ray at which it enters the volume and leaves it.
 vec2 throughVolume(vec3 from, vec3 ray) {
   ray = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
-  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_min_m + u_cells_count * u_cell_m - from) / ray;
+  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_max_m - from) / ray;
   vec3 near = min(a, b), far = max(a, b);
   return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
 }
 
 // The outward normal of the volume's nearest side.
 vec3 sideAt(vec3 at_m) {
-  vec3 half_m = 0.5 * u_cells_count * u_cell_m;
+  vec3 half_m = 0.5 * (u_volume_max_m - u_volume_min_m);
   vec3 away_m = at_m - u_volume_min_m - half_m;
   vec3 left_m = half_m - abs(away_m);
   vec3 nearest = step(left_m, vec3(min(left_m.x, min(left_m.y, left_m.z))));
@@ -71,11 +73,15 @@ float overWave(vec3 at_m) {
 
 // Density over that of the surface, and its white share: white water is torn.
 vec2 liquidAt(vec3 at_m) {
+#ifndef WAVE
+  // Level toward the glass, from which the particles keep away.
+  at_m.xz = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
+#endif
   vec2 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
-  if (density.r > kSurface && white > 0.1) {
+  if (density.r > 0.6 * kSurface && white > 0.05) {
     vec3 at = at_m / (kLaceRadii * u_radius_m);
-    density.r -= kTorn * white * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.6);
+    density.r -= kTorn * white * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5);
   }
   return vec2(density.r - kSurface, white);
 }
@@ -92,7 +98,7 @@ float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
 }
 
 vec3 normalAt(vec3 at_m) {
-  vec2 apart_m = vec2(0.9 * u_radius_m, 0.0);
+  vec2 apart_m = vec2(2.0 * u_radius_m, 0.0);
   vec3 slope = vec3(volumeAt(at_m + apart_m.xyy).r - volumeAt(at_m - apart_m.xyy).r, volumeAt(at_m + apart_m.yxy).r - volumeAt(at_m - apart_m.yxy).r,
                     volumeAt(at_m + apart_m.yyx).r - volumeAt(at_m - apart_m.yyx).r);
   return -slope / max(length(slope), 1e-5);
@@ -118,17 +124,27 @@ void main() {
   float end_m = min(way_m.y, solid_m);
   float at_m = max(way_m.x, 0.0) + 1e-4, before_m = at_m;
   if (at_m >= end_m) discard;
+  // The first step differs from pixel to pixel, so that steps make no bands.
   float step_m = kStepRadii * u_radius_m;
+  float first_m = step_m * fract(52.98 * fract(0.067 * gl_FragCoord.x + 0.0058 * gl_FragCoord.y));
 
   vec2 liquid = liquidAt(u_camera_m + ray * at_m);
   bool is_pane = liquid.x > 0.0;
-  for (int i = 0; i < kMostSteps && liquid.x <= 0.0; ++i) {
-    if (at_m >= end_m) discard;
+  float mist = 0.0;
+  for (int i = 0; i < kMostSteps && liquid.x <= 0.0 && at_m < end_m; ++i) {
     before_m = at_m;
-    at_m = min(at_m + step_m, end_m);
+    at_m = min(at_m + (i == 0 ? first_m : step_m), end_m);
     liquid = liquidAt(u_camera_m + ray * at_m);
+    mist += (at_m - before_m) * max(liquid.x + kSurface - 0.2, 0.0) * liquid.y * liquid.y;
   }
-  if (liquid.x <= 0.0) discard;
+  mist = 1.0 - exp(-kMist / u_radius_m * mist);
+  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 0.7 + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  if (liquid.x <= 0.0) {
+    if (mist < 0.01) discard;
+    color = vec4(toDisplay(froth), mist);
+    gl_FragDepth = clamp(0.5 * (u_projection[3][2] * per_m / before_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
+    return;
+  }
   if (!is_pane) at_m = crossing(u_camera_m, ray, before_m, at_m);
   vec3 surface = u_camera_m + ray * at_m;
   float raised = smoothstep(0.4, 1.6, overWave(surface));
@@ -190,9 +206,9 @@ void main() {
   scattered *= kTankGlow;
 #endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
-  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  vec3 lit_froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
-  vec3 under = mix(behind * passed + scattered * (1.0 - passed), froth, white);
+  vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
@@ -200,7 +216,7 @@ void main() {
   vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
   float at_sun = dot(mirrored, u_sun_direction);
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
-  color = vec4(toDisplay(mix(under, mirrored_light, fresnel) + glint * u_sun_light), raised);
+  color = vec4(toDisplay(mix(mix(under, mirrored_light, fresnel) + glint * u_sun_light, froth, mist)), raised);
   gl_FragDepth = clamp(0.5 * (u_projection[3][2] / ahead_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
 #ifdef WAVE
   // Drawn in front of the wave's surface, from which it can hardly be told.
