@@ -63,27 +63,27 @@ export type QualityChoice = TierName | "automatic";
 export const kTiers: Record<TierName, Tier> = {
   minimal: {
     maxPixelRatio: 0.45, frameRateMaxHz: 15, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
-    fluid: { cellSpacings: 0.65, dropsCount: 6 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
+    fluid: { cellSpacings: 0.65, dropsCount: 9 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined, shadows: undefined,
   },
   low: {
     maxPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
-    fluid: { cellSpacings: 0.65, dropsCount: 6 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
+    fluid: { cellSpacings: 0.65, dropsCount: 9 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
     rain: { ringTexelsCount: 0, streaksCount: 3000 }, caustics: undefined, shadows: undefined,
   },
   medium: {
     maxPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
-    fluid: { cellSpacings: 0.65, dropsCount: 6 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
+    fluid: { cellSpacings: 0.65, dropsCount: 9 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
     rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: undefined, shadows: { texelsCount: 1024 },
   },
   high: {
     maxPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
-    fluid: { cellSpacings: 0.65, dropsCount: 6 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
+    fluid: { cellSpacings: 0.65, dropsCount: 9 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
     rain: { ringTexelsCount: 256, streaksCount: 10_000 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 },
   },
   highest: {
     maxPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
-    fluid: { cellSpacings: 0.65, dropsCount: 6 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
+    fluid: { cellSpacings: 0.65, dropsCount: 9 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
     rain: { ringTexelsCount: 512, streaksCount: 16_000 }, caustics: { cellsCount: 384, texelsCount: 1024 }, shadows: { texelsCount: 4096 },
   },
 };

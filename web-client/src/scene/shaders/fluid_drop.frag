@@ -2,7 +2,7 @@
 #include <sky>
 
 flat in vec3 v_flight;
-flat in vec2 v_strength_white;
+flat in vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 uniform mat4 u_camera_world;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
@@ -22,5 +22,9 @@ void main() {
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + u_sun_sharp * u_sun_light * pow(max(dot(reflect(-toward, normal), u_sun_direction), 0.0), 40.0) * 2.0;
   vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * sun * sun + u_ambient_up);
+  if (v_strength_white.y > 1.0) {
+    color = vec4(toDisplay(froth), v_strength_white.x * (1.0 - away2) * (1.0 - away2));
+    return;
+  }
   color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * (1.0 - away2 * away2));
 }
