@@ -31,12 +31,12 @@ interface FluidPasses {
 /** `field` undefined: no wave around the particles. */
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, quality: FluidQuality): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
-  const colourRatio = field ? 1 : tankColourRatio(size);
-  const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellSpacings);
+  const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing);
   const tiles = new FluidTilesPass(particles, volume);
-  const surface = new FluidSurfacePass({ tiles, volume, solids }, sky, noise, particles.uniforms, field !== undefined, colourRatio);
+  const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
+  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : tankColourRatio(size), quality);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
   // A wave has no floor of its own.
-  const before = field ? [particles, volume] : [particles, volume, new FluidShadowPass(particles, volume, solids, sky, size.sideM, colourRatio)];
+  const before = field ? [particles, volume] : [particles, volume, new FluidShadowPass(particles, volume, solids, sky, size.sideM, tankColourRatio(size))];
   return { before, after: [tiles, surface, drops] };
 }

@@ -9,7 +9,7 @@ import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
 import type { FluidVolumePass } from "./fluid_volume_pass";
 
-const kTargetPx = 256;
+const kTargetPx = 160;
 /** The floor that is shaded, in sides of the tank. */
 const kShadedSides = 2;
 /** Distance between samples in particle radii. */

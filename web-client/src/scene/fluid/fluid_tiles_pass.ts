@@ -42,11 +42,11 @@ export class FluidTilesPass implements Pass {
     this.particles.render(renderer, camera, this.material, this.target);
   }
 
-  /** Draws `material` over the marked tiles of the canvas; nothing where there are no particles. */
-  cover(renderer: WebGLRenderer, material: RawShaderMaterial): void {
+  /** Draws `material` over the marked tiles of `target`; nothing where there are no particles. */
+  cover(renderer: WebGLRenderer, material: RawShaderMaterial, target: WebGLRenderTarget | null): void {
     if (this.particles.isEmpty) return;
     this.mesh.material = material;
-    renderer.setRenderTarget(null);
+    renderer.setRenderTarget(target);
     renderer.render(this.scene, this.camera);
   }
 

@@ -22,12 +22,12 @@ export class FluidVolumePass implements Pass {
   private readonly target = new WebGLRenderTarget(1, 1, { format: RGFormat, type: HalfFloatType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
   private readonly material: RawShaderMaterial;
 
-  /** `cellSpacings`: side of a cell in spacings of the particles at rest. `size`: of the water, m; `floorM` its floor in a tank. */
+  /** `size`: of the water, m. `surroundings`: with the floor of a tank; undefined in a wave. */
   constructor(
     private readonly particles: FluidParticles,
     private readonly size: { sideM: number; widthM: number },
     private readonly surroundings: { readonly floorM: number } | undefined,
-    private readonly cellSpacings: number,
+    private readonly cellsPerSpacing: number,
   ) {
     this.uniforms = {
       u_volume: { value: this.target.texture },
@@ -48,7 +48,7 @@ export class FluidVolumePass implements Pass {
     const { uniforms } = material;
     const spacingM = 2 * particles.radiusM;
     const reachM = kReachSpacings * spacingM;
-    const cellM = this.place(this.cellSpacings * spacingM, reachM);
+    const cellM = this.place(spacingM / this.cellsPerSpacing, reachM);
     uniforms["u_reach_m"]!.value = reachM;
     uniforms["u_at_rest"]!.value = kKernelIntegral * kReachSpacings ** 3;
     (uniforms["u_target_px"]!.value as Vector2).set(this.target.width, this.target.height);

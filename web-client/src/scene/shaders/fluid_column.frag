@@ -16,7 +16,8 @@ void main() {
   vec3 a = (u_volume_min_m - from) / safe, b = (u_volume_max_m - from) / safe;
   vec3 near = min(a, b), far = max(a, b);
   float enters_m = max(max(near.x, near.z), 0.0), leaves_m = min(min(far.x, far.z), far.y);
-  float step_m = max(leaves_m - enters_m, 0.0) / kSteps;
+  float step_m = (leaves_m - enters_m) / kSteps;
   length_m = 0.0;
+  if (step_m <= 0.0) return;
   for (float i = 0.5; i < kSteps; ++i) length_m += step_m * smoothstep(0.5 * kSurface, 1.5 * kSurface, volumeAt(from + u_sun_direction * (enters_m + i * step_m)).r);
 }

@@ -16,6 +16,8 @@ flat out vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 
 // Density of the volume at a particle between which it comes away from the liquid.
 const float kAlone = 0.30, kAmongOthers = 0.55;
+// Density (as streamed) of particles that are never apart from it.
+const float kDense = 0.7;
 // A drop is drawn as long as it flies in this time.
 const float kExposureS = 0.02;
 const float kLeastPx = 1.6;
@@ -33,6 +35,7 @@ void main() {
   gl_PointSize = 1.0;
   v_flight = vec3(1.0, 0.0, 1.0);
   v_strength_white = vec2(0.0);
+  if (particle.density > kDense) return;
   float strength = 1.0 - smoothstep(kAlone, kAmongOthers, volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));

@@ -5,6 +5,9 @@
 uniform float u_reach_m;    // radius of a particle's kernel
 uniform float u_slice;      // of those around a particle
 uniform vec2 u_target_px;
+uniform sampler2D u_field;
+uniform vec2 u_extent_m;    // length and width of the water
+uniform bool u_has_water;
 
 flat out vec3 v_center;     // cells
 flat out vec3 v_slice;      // its first texel, its height in cells
@@ -18,6 +21,8 @@ void main() {
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 1.0;
   if (slice < 0.0 || slice >= u_cells_count.y) return;
+  // Deep in the wave nothing of it is drawn.
+  if (u_has_water && particle.center_m.y < texture(u_field, particle.center_m.xz / u_extent_m + 0.5).r - u_reach_m) return;
   v_slice = vec3(sliceOrigin(slice), slice + 0.5);
   vec2 at = v_slice.xy + clamp(v_center.xz, vec2(0.0), u_cells_count.xz);
   gl_Position = vec4(at / u_target_px * 2.0 - 1.0, 0.0, 1.0);

@@ -16,8 +16,10 @@ import flatShadowVert from "./flat_shadow.vert?raw";
 import fluidColumnFrag from "./fluid_column.frag?raw";
 import fluidDropFrag from "./fluid_drop.frag?raw";
 import fluidDropVert from "./fluid_drop.vert?raw";
+import fluidPresentFrag from "./fluid_present.frag?raw";
 import fluidShadowFrag from "./fluid_shadow.frag?raw";
 import fluidShadowVert from "./fluid_shadow.vert?raw";
+import fluidSurfaceFrag from "./fluid_surface.frag?raw";
 import fluidTileMarkVert from "./fluid_tile_mark.vert?raw";
 import fluidTileMarkFrag from "./fluid_tile_mark.frag?raw";
 import fluidTileVert from "./fluid_tile.vert?raw";
@@ -32,7 +34,6 @@ import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
 import lampVert from "./lamp.vert?raw";
 import levelFrag from "./level.frag?raw";
-import liquidFrag from "./liquid.frag?raw";
 import lookMap from "./look_map.glsl?raw";
 import lookParticleFrag from "./look_particle.frag?raw";
 import lookParticleVert from "./look_particle.vert?raw";
@@ -77,14 +78,15 @@ const kPrograms = {
   flatShadow: [flatShadowVert, flatShadowFrag],
   fluidColumn: [fullscreenVert, fluidColumnFrag],
   fluidDrop: [fluidDropVert, fluidDropFrag],
+  fluidPresent: [fluidTileVert, fluidPresentFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
+  fluidSurface: [fluidTileVert, fluidSurfaceFrag],
   fluidTileMark: [fluidTileMarkVert, fluidTileMarkFrag],
   fluidVolume: [fluidVolumeVert, fluidVolumeFrag],
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
   lamp: [lampVert, lampFrag],
   level: [fullscreenVert, levelFrag],
-  liquid: [fluidTileVert, liquidFrag],
   lookParticle: [lookParticleVert, lookParticleFrag],
   lookSurface: [waterVert, lookSurfaceFrag],
   lookValue: [fullscreenVert, lookValueFrag],

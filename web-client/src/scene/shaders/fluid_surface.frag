@@ -27,7 +27,10 @@ uniform vec2 u_extent_m;       // length and width of the wave
 layout(location = 0) out vec4 color;
 
 const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indices
-const float kStepRadii = 1.1;
+// Step of a ray near the liquid.
+const float kStepCells = 0.85;
+// Where no kernel reaches, the surface is at least so many particle radii away.
+const float kEmptyRadii = 3.6;
 const int kMostSteps = 128, kMostStepsInside = 64;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
 const float kTorn = 0.16;
@@ -126,7 +129,7 @@ void main() {
   float at_m = max(way_m.x, 0.0) + 1e-4, before_m = at_m;
   if (at_m >= end_m) discard;
   // The first step differs from pixel to pixel, so that steps make no bands.
-  float step_m = kStepRadii * u_radius_m;
+  float step_m = kStepCells * u_cell_m;
   float first_m = step_m * fract(52.98 * fract(0.067 * gl_FragCoord.x + 0.0058 * gl_FragCoord.y));
 
   vec2 liquid = liquidAt(u_camera_m + ray * at_m);
@@ -134,8 +137,12 @@ void main() {
   float mist = 0.0;
   for (int i = 0; i < kMostSteps && liquid.x <= 0.0 && at_m < end_m; ++i) {
     before_m = at_m;
-    at_m = min(at_m + (i == 0 ? first_m : step_m), end_m);
+    at_m = min(at_m + (i == 0 ? first_m : liquid.x <= -kSurface ? max(step_m, kEmptyRadii * u_radius_m) : step_m), end_m);
     liquid = liquidAt(u_camera_m + ray * at_m);
+#ifdef WAVE
+    // Hidden by the wave.
+    if (overWave(u_camera_m + ray * at_m) < -1.0) break;
+#endif
     mist += (at_m - before_m) * max(liquid.x + kSurface - 0.2, 0.0) * liquid.y * liquid.y;
   }
   mist = 1.0 - exp(-kMist / u_radius_m * mist);
@@ -162,7 +169,7 @@ void main() {
     float most_m = throughVolume(from, bent).y;
     bool is_side = true;
     for (int i = 0; i < kMostStepsInside; ++i) {
-      float next_m = min(along_m + step_m, most_m);
+      float next_m = min(along_m + 2.0 * step_m, most_m);
       vec3 at = from + bent * next_m;
       vec2 through = liquidAt(at);
       if (through.x < 0.0) {
