@@ -5,13 +5,12 @@ import { AddEquation, CustomBlending, HalfFloatType, LinearFilter, OneFactor, RG
 import type { Pass, Picture } from "../drawing/pass";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
+import { volumeShape, type VolumeShape } from "./volume_shape";
 
 /** Radius of a particle's kernel in spacings of the particles at rest. */
 const kReachSpacings = 2.5;
 /** Integral of (1 - r^2)^3 over the unit ball. */
 const kKernelIntegral = 0.6383;
-/** About so many cells are the most. */
-const kMostCellsCount = 1_500_000;
 
 export class FluidVolumePass implements Pass {
   readonly name = "fluid volume";
@@ -48,8 +47,7 @@ export class FluidVolumePass implements Pass {
     const { uniforms } = material;
     const spacingM = 2 * particles.radiusM;
     const reachM = kReachSpacings * spacingM;
-    const cellM = this.place(spacingM / this.cellsPerSpacing, reachM);
-    uniforms["u_reach_m"]!.value = reachM;
+    const { cellM } = this.place(reachM, spacingM / this.cellsPerSpacing);
     uniforms["u_at_rest"]!.value = kKernelIntegral * kReachSpacings ** 3;
     (uniforms["u_target_px"]!.value as Vector2).set(this.target.width, this.target.height);
     renderer.setRenderTarget(this.target);
@@ -67,26 +65,18 @@ export class FluidVolumePass implements Pass {
     this.material.dispose();
   }
 
-  /** Puts the volume around the particles; in a tank its sides are those of the tank. Returns the side of its cells, which are larger where there would be too many. */
-  private place(finestM: number, reachM: number): number {
-    const { uniforms, size } = this;
-    const floorM = this.surroundings?.floorM;
+  /** Puts the volume around the particles. */
+  private place(reachM: number, finestM: number): VolumeShape {
+    const { uniforms, size, surroundings, target } = this;
     const { minM, maxM } = this.particles.bounds;
-    const half = [size.sideM / 2, 0, size.widthM / 2];
-    const low = floorM === undefined ? minM.map((at) => at - reachM) : [-half[0]!, floorM, -half[2]!];
-    const high = floorM === undefined ? maxM.map((at) => at + reachM) : [half[0]!, maxM[1]! + reachM, half[2]!];
-    const lengths = low.map((at, axis) => high[axis]! - at);
-    const cellM = Math.max(finestM, Math.cbrt((lengths[0]! * lengths[1]! * lengths[2]!) / kMostCellsCount));
-    // In a wave the cells keep their places when the particles move, so that the surface does not tremble.
-    const from = floorM === undefined ? low.map((at) => Math.floor(at / cellM) * cellM) : low;
-    const [x, y, z] = from.map((at, axis) => Math.max(Math.ceil((high[axis]! - at) / cellM - 1e-3), 2)) as [number, number, number];
-    const perRow = Math.max(Math.ceil(Math.sqrt((y * z) / x)), 1);
-    this.target.setSize(Math.max(this.target.width, perRow * x), Math.max(this.target.height, Math.ceil(y / perRow) * z));
-    (uniforms["u_volume_min_m"]!.value as Vector3).fromArray(from);
-    (uniforms["u_volume_max_m"]!.value as Vector3).fromArray(high);
-    (uniforms["u_cells_count"]!.value as Vector3).set(x, y, z);
-    uniforms["u_cell_m"]!.value = cellM;
-    uniforms["u_slices_per_row"]!.value = perRow;
-    return cellM;
+    const shape = volumeShape(minM, maxM, reachM, finestM, surroundings && { ...size, floorM: surroundings.floorM });
+    target.setSize(Math.max(target.width, shape.widthPx), Math.max(target.height, shape.heightPx));
+    (uniforms["u_volume_min_m"]!.value as Vector3).fromArray(shape.minM);
+    (uniforms["u_volume_max_m"]!.value as Vector3).fromArray(shape.maxM);
+    (uniforms["u_cells_count"]!.value as Vector3).fromArray(shape.cellsCount);
+    uniforms["u_cell_m"]!.value = shape.cellM;
+    uniforms["u_slices_per_row"]!.value = shape.slicesPerRow;
+    uniforms["u_reach_m"]!.value = reachM;
+    return shape;
   }
 }

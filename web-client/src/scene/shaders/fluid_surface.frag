@@ -107,12 +107,14 @@ vec3 normalAt(vec3 at_m) {
   return -slope / max(length(slope), 1e-5);
 }
 
-// The light along a ray at a distance: that of the picture of the solids at the place where it shows it, or, where something stands in front
-// of the liquid there, nearer to this pixel. Above the picture's edges it is that of the sky.
+// The light along a ray at a distance: that of the picture of the solids at the place where it shows it. Toward the picture's edges and
+// where something stands in front of the liquid it is that of a place nearer to this pixel; for rays that rise past the edges, of the sky.
 vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
   vec3 at = transpose(mat3(u_camera_world)) * (from + ray * away_m - u_camera_m);
-  vec2 uv = ((at.xy / min(at.z, -1e-3) * -1.0 - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
-  vec2 shown = 1.0 - abs(1.0 - abs(clamp(uv, -1.0, 2.0)));
+  vec2 uv = ((at.xy / max(-at.z, 1e-3) - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
+  vec2 away = uv - v_uv;
+  vec2 most = max(step(0.0, away) - v_uv, v_uv - step(0.0, away)) / max(abs(away), vec2(1e-5));
+  vec2 shown = v_uv + away * min(min(most.x, most.y), 1.0);
   for (int i = 0; i < 3 && distanceAt(shown) < surface_m; ++i) shown = mix(shown, v_uv, i == 2 ? 1.0 : 0.5);
   vec2 rim = smoothstep(0.5, 0.47, abs(uv - 0.5));
   float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z < 0.0 ? rim.x * rim.y : 0.0));
