@@ -161,7 +161,8 @@ void main() {
   if (raised <= 0.0) discard;
   vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
   if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);
-  float ahead_m = at_m / per_m;
+  // Behind the pane's inner face.
+  float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
 
   // Through the liquid to where the ray leaves it, at most two times reflected.
   vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
