@@ -31,7 +31,7 @@ const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indice
 const float kStepCells = 0.85;
 // Where no kernel reaches, the surface is at least so many particle radii away.
 const float kEmptyRadii = 3.6;
-const int kMostSteps = 128, kMostStepsInside = 64;
+const int kMostSteps = 256, kMostStepsInside = 96;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
 const float kTorn = 0.16;
 const float kLaceRadii = 31.0;
