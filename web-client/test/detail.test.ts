@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { Layer, Level, Packing } from "../src/gen/spindrift/v1/wire_pb";
+import { Layer, Level, Packing } from "../client/gen/spindrift/v1/wire_pb";
 import { LoadGovernor } from "../src/net/load_governor";
 import { Rig } from "./fakes";
 import { greeting, surfaceFrame } from "./wire";

@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 
-import { crc32c } from "../src/codec/frame_reader";
-import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
-import { parse } from "../src/codec/parse";
-import { CouplingMode, Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
-import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../client/codec/frame_reader";
+import { kMaxBodyCount, kMaxParticleCount } from "../client/codec/frame_types";
+import { parse } from "../client/codec/parse";
+import { CouplingMode, Side, WaveBoundary } from "../client/gen/spindrift/v1/scene_pb";
+import { Layer, RejectReason, RoomEventKind } from "../client/gen/spindrift/v1/wire_pb";
 import { bodiesFrame, bodiesPayload, encode, foamFrame, greeting, particleFrame, surfaceFrame } from "./wire";
 
 function expectMalformed(buffer: ArrayBuffer, reason: RegExp): void {

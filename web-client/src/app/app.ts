@@ -1,10 +1,11 @@
 // The page: connects the client in the worker, the display and the panels. handlers() takes the messages of the server and the worker;
 // input.ts calls the methods for the user's actions.
-import type { GreetingInfo } from "../codec/greeting";
-import type { RoleName } from "../codec/people";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { RoleName } from "../../client/codec/people";
 import { GroundRequests } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
-import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
+import type { ConnectionState } from "../../client/session/events";
+import type { LinkStats, PageEventHandlers } from "../net/messages";
 import { roomOf, wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";

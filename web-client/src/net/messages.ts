@@ -1,39 +1,11 @@
-// Messages between the page and the worker. The server's messages pass as codec/parse.ts declares them; calls to the connection
+// Messages between the page and the worker. The server's messages pass as client/codec/parse.ts declares them; calls to the connection
 // pass as ConnectionCalls declares them. Frames travel as transferred ArrayBuffers: the page returns every one with
 // "release", which bounds the frames on their way.
-import type { MessageInitShape } from "@bufbuild/protobuf";
-
-import type { FrameHeaders, PackedFrame, PlainFrame } from "../codec/frame_types";
-import type { GroundGrid } from "../codec/ground";
-import type { FrameLayer, LayerName, LevelName } from "../codec/layers";
-import type { Malformed } from "../codec/malformed";
-import type { ParsedMessage } from "../codec/parse";
-import type { CommandSchema } from "../gen/spindrift/v1/wire_pb";
-import type { RoomWish } from "./room_address";
-
-/** A command's action as plain data: one member of the oneof in wire.proto. */
-export type CommandAction = Exclude<
-  NonNullable<MessageInitShape<typeof CommandSchema>["action"]>,
-  { case: undefined }
->;
-
-/** The user's data in Hello. */
-export interface Identity {
-  name: string;
-  /** Gives a role; empty for a guest. */
-  token: string;
-  /** From an earlier Welcome, or empty. */
-  resumeKey: string;
-}
-
-export type ConnectionState =
-  | { name: "connecting" }
-  /** The page's room does not exist yet. */
-  | { name: "opening"; room: string }
-  | { name: "live" }
-  | { name: "retrying"; inS: number; why: string }
-  /** `rooms`: those that there are, if the page's room does not exist. */
-  | { name: "refused"; reason: string; rooms: string[] };
+import type { FrameHeaders } from "../../client/codec/frame_types";
+import type { GroundGrid } from "../../client/codec/ground";
+import type { FrameLayer, LayerName, LevelName } from "../../client/codec/layers";
+import type { RoomWish } from "../../client/rest/rooms";
+import type { CommandAction, ConnectionEvent, Identity, LinkStats as ConnectionStats } from "../../client/session/events";
 
 /** The user's choice: a level of detail, or automatic. */
 export type DetailChoice = "auto" | LevelName;
@@ -48,32 +20,17 @@ export type FloatersFrame = FrameOf<"floaters">;
 export type Frame = { [L in FrameLayer]: FrameOf<L> }[FrameLayer];
 
 /** Rates over the last half second; counts since the page was opened. */
-export interface LinkStats {
-  kilobytesPerS: number;
-  framesPerS: number;
-  /** Shortest round trip of the last pings; undefined before the first pong. */
-  latencyMs: number | undefined;
-  receivedCount: Record<LayerName, number>;
-  malformedCount: number;
-  lastMalformed: string;
+export interface LinkStats extends ConnectionStats {
   /** Finest level at which surface and particles are sent now, and what limits it. */
   level: LevelName;
   levelLimitedBy: "none" | "choice" | "link" | "device";
 }
 
-/** Messages that the connection handles itself. All others go to the page. */
-type Handled = PlainFrame | PackedFrame | Malformed | { kind: "unknown" | "levelChanged" | "pong" | "refusal" };
-
 /** What the connection reports besides frames. */
-export type ConnectionEvent =
-  | Exclude<ParsedMessage, { kind: Handled["kind"] }>
-  | { kind: "state"; state: ConnectionState }
-  /** The server's clock minus Unix time [s]. */
-  | { kind: "clock"; leadS: number }
-  | { kind: "stats"; stats: LinkStats };
+export type PageConnectionEvent = Exclude<ConnectionEvent, { kind: "stats" }> | { kind: "stats"; stats: LinkStats };
 
 export type PageEvent =
-  | Exclude<ConnectionEvent, { kind: "stats" }>
+  | Exclude<PageConnectionEvent, { kind: "stats" }>
   | { kind: "frame"; frame: Frame }
   /** `supersededCount`: frames dropped for newer ones because the page was busy. */
   | { kind: "stats"; stats: LinkStats; supersededCount: number };

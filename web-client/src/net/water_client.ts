@@ -1,7 +1,9 @@
 // The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
-import type { GroundGrid } from "../codec/ground";
-import type { CommandAction, ConnectionCalls, Frame, GroundAnswer, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
-import { roomOf, type RoomWish } from "./room_address";
+import type { GroundGrid } from "../../client/codec/ground";
+import type { CommandAction, Identity } from "../../client/session/events";
+import type { ConnectionCalls, Frame, GroundAnswer, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
+import type { RoomWish } from "../../client/rest/rooms";
+import { roomOf } from "./room_address";
 
 /** Starts the worker; the page calls it once. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
