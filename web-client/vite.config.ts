@@ -2,15 +2,9 @@ import { readFileSync } from "node:fs";
 
 import { defineConfig } from "vitest/config";
 
-const server = "http://127.0.0.1:8080";
+import { programVersion } from "./scripts/program_version.mjs";
 
-/** The version of the program; CMakeLists.txt is the only file that holds it. */
-function programVersion(): string {
-  const text = readFileSync(new URL("../CMakeLists.txt", import.meta.url), "utf8");
-  const version = /^project\(spindrift VERSION ([0-9.]+)/m.exec(text)?.[1];
-  if (version === undefined) throw new Error("CMakeLists.txt: project(spindrift VERSION ...) not found");
-  return version;
-}
+const server = "http://127.0.0.1:8080";
 
 /** Leaves out text that no browser needs: comments and indentation of the page's shaders, and the shaders of three's own materials, which
  *  the page does not use: a tenth of the page. */

@@ -63,7 +63,7 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 5n, boatId: 3 } });
     expect(rig.eventsOf("boatList")).toEqual([{ kind: "boatList", boats: [boat] }]);
     expect(rig.eventsOf("roomEvent")).toEqual([{ kind: "roomEvent", event: "recovered", tick: 4n, personId: 0, message: "the water was put back" }]);
-    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 5n, boatId: 3, floaterId: 0 }]);
+    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 5n, boatId: 3, floaterId: 0, gaugeId: 0 }]);
   });
 
   it("counts the layers of one tick as one frame, in any order", () => {
@@ -180,7 +180,7 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "reject", value: { commandId: 2n, reason: RejectReason.BUSY, field: "", message: "try again" } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 77n } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 78n } });
-    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 77n, boatId: 0, floaterId: 0 }]);
+    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 77n, boatId: 0, floaterId: 0, gaugeId: 0 }]);
     expect(rig.eventsOf("reject")).toEqual([{ kind: "reject", commandId: 2n, reason: "BUSY", field: "", message: "try again" }]);
   });
 

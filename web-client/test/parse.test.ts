@@ -92,7 +92,7 @@ describe("parse", () => {
   });
 
   it("reads every other kind of message", () => {
-    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7, floaterId: 0 });
+    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7, floaterId: 0, gaugeId: 0 });
     expect(
       parse(encode({ case: "reject", value: { commandId: 4n, reason: RejectReason.OUT_OF_RANGE, field: "splash.radius_m", message: "too wide" } })),
     ).toEqual({ kind: "reject", commandId: 4n, reason: "OUT_OF_RANGE", field: "splash.radius_m", message: "too wide" });

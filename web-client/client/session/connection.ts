@@ -122,8 +122,10 @@ export class Connection {
       return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.tooManyWait(kMaxPendingCount));
     if (this.socket!.bufferedAmount > kMaxUnsentBytes)
       return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.congested);
+    // Throws for a value that its field cannot hold.
+    const bytes = encode({ case: "command", value: { commandId: BigInt(commandId), action } });
     this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + this.options.answerWithinS * 1000);
-    this.send({ case: "command", value: { commandId: BigInt(commandId), action } });
+    this.socket!.send(bytes);
   }
 
   private connect(): void {
@@ -275,7 +277,8 @@ export class Connection {
 
   private ping(): void {
     this.lastPingMs = this.world.nowMs();
-    if (this.socket!.bufferedAmount > kMaxUnsentBytes) return;
+    // Who was told of the greeting may have stopped the connection.
+    if (!this.socket || this.socket.bufferedAmount > kMaxUnsentBytes) return;
     ++this.pingCount;
     this.send({ case: "ping", value: { clientTimeS: this.lastPingMs / 1000 } });
   }
@@ -309,8 +312,8 @@ export class Connection {
     this.dropSocket();
     this.failPending(kSessionTexts.lost);
     const inS = backoffS(this.failedCount, this.world.random());
-    this.setState({ name: "retrying", inS, why });
     this.retryTimer = this.world.setTimer(() => this.connect(), inS * 1000);
+    this.setState({ name: "retrying", inS, why });
   }
 
   /** Opens a missing room if the world can. One that this client was in was closed on purpose: it stays closed. */
@@ -361,7 +364,7 @@ export class Connection {
   }
 
   private send(message: ClientBody): void {
-    this.socket?.send(toBinary(ClientMessageSchema, create(ClientMessageSchema, { message })));
+    this.socket?.send(encode(message));
   }
 
   private setState(state: ConnectionState): void {
@@ -376,4 +379,8 @@ export class Connection {
   private failPending(message: string): void {
     for (const commandId of this.pending.takeAll()) this.rejectHere(commandId, "LOST", message);
   }
+}
+
+function encode(message: ClientBody): Uint8Array<ArrayBuffer> {
+  return toBinary(ClientMessageSchema, create(ClientMessageSchema, { message }));
 }
