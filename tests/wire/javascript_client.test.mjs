@@ -297,7 +297,7 @@ describe("the connection", () => {
     const fake = await fakeServer({ version: { major: 2, minor: 0 } });
     const error = await failure(connected(fake.url));
     expect(error).toMatchObject({ name: "Refused" });
-    expect(error.message).toMatch(/^the server speaks version 2\.0 of the wire, this client 1\.\d+; update the older one$/);
+    expect(error.message).toMatch(/^the server speaks version 2\.0 of the wire, this client 1\.\d+; reload the page, or update the client$/);
     await fake.stop();
   });
 

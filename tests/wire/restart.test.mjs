@@ -48,7 +48,7 @@ class Page {
       findMissingRoom: async () => undefined, // the room is there, or the server is away
     };
     const sink = { event: (event) => this.events.push(event), frame: () => {} };
-    this.connection = new PageConnection(`ws://127.0.0.1:${port}/ws`, world, sink, { name, token: "", resumeKey: "" });
+    this.connection = new PageConnection(`ws://127.0.0.1:${port}/ws`, world, sink, { name, token: "", resumeKey: "" }).session;
     this.connection.start();
   }
   newest(kind) {

@@ -255,11 +255,11 @@ describe("the connection", () => {
 
   it("subscribes to no frames while the page is hidden", () => {
     const rig = liveRig();
-    rig.connection.setVisible(false);
+    rig.page.want({ visible: false });
     expect(rig.socket.sentOf("subscribe").slice(3).map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
       [Layer.SURFACE, 0], [Layer.PARTICLES, 0], [Layer.DIAGNOSTICS, 10],
     ]);
-    rig.connection.setVisible(true);
+    rig.page.want({ visible: true });
     expect(rig.socket.sentOf("subscribe").slice(6).map(({ value }) => value.maxRateHz)).toEqual([30, 30, 10]);
   });
 

@@ -3,6 +3,7 @@ import { fromBinary } from "@bufbuild/protobuf";
 
 import type { PlainFrame } from "../client/codec/frame_types";
 import { ClientMessageSchema, type ClientMessage } from "../client/gen/spindrift/v1/wire_pb";
+import type { Connection } from "../client/session/connection";
 import { PageConnection } from "../src/net/page_connection";
 import type { ConnectionSink, ConnectionWorld, SocketLike } from "../client/session/world";
 import type { ConnectionState } from "../client/session/events";
@@ -87,7 +88,8 @@ export class Rig {
   readonly sockets: FakeSocket[] = [];
   readonly events: PageConnectionEvent[] = [];
   readonly frames: PlainFrame[] = [];
-  readonly connection: PageConnection;
+  readonly page: PageConnection;
+  readonly connection: Connection;
   /** What REST says about the room, and how often it was asked. */
   missing: MissingRoom | undefined;
   askedCount = 0;
@@ -122,7 +124,8 @@ export class Rig {
       event: (event) => this.events.push(event),
       frame: (frame) => this.frames.push(frame),
     };
-    this.connection = new PageConnection("ws://host/ws", world, sink);
+    this.page = new PageConnection("ws://host/ws", world, sink);
+    this.connection = this.page.session;
     this.connection.start();
   }
 

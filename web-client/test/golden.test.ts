@@ -218,6 +218,7 @@ describe("golden bytes", () => {
       kind: "ack", commandId: BigInt(golden["command_id"] as string), appliedTick: BigInt(golden["applied_tick"] as string),
       boatId: golden["boat_id"] ?? 0,
       floaterId: golden["floater_id"] ?? 0,
+      gaugeId: golden["gauge_id"] ?? 0,
     });
   });
 

@@ -1,7 +1,7 @@
 // Rooms in the page's address, and how they are opened.
 import { describe, expect, it } from "vitest";
 
-import { openRoom } from "../client/rest/open_room";
+import { openRoom } from "../src/net/open_room";
 import { roomOf, textOfValues, wishOf } from "../src/net/room_address";
 
 describe("the room of an address", () => {

@@ -168,14 +168,14 @@ export class App {
       this.client.call("introduce", name, token);
     });
     this.lightRows = new LightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
-    this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
+    this.looks = new LookControls(this.display, (exactParticles) => this.client.want({ exactParticles }));
     this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
       setAddressParameter("quality", choice === "automatic" ? undefined : choice);
       this.display.chooseQuality(choice);
       this.showQuality();
     });
     this.qualityRow.show(this.display.quality);
-    addDetailRow((detail) => this.client.call("setDetail", detail));
+    addDetailRow((detail) => this.client.want({ detail }));
     this.answerListeners = [this.parameters, this.room, this.boats];
     this.lessons.watch(() => {
       const { game } = this.lessons;
@@ -364,7 +364,7 @@ export class App {
   private showQuality(): void {
     const { quality } = this.display;
     this.qualityRow.show(quality);
-    this.client.call("setFrameRate", kTiers[quality.tier].frameRateMaxHz);
+    this.client.want({ frameRateHz: kTiers[quality.tier].frameRateMaxHz });
   }
 
   private showTags(atS: number): void {

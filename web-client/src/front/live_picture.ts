@@ -27,9 +27,7 @@ export class LivePicture {
   ) {
     this.map = new PadMap(canvas);
     this.client.start(`${socketUrl(page)}?onlooker`, { name: "", token, resumeKey: "" });
-    this.client.call("setLayers", ["surface", "bodies", "floaters"]);
-    this.client.call("setDetail", "coarse");
-    this.client.call("setFrameRate", kFrameRateHz);
+    this.client.want({ layers: ["surface", "bodies", "floaters"], detail: "coarse", frameRateHz: kFrameRateHz });
   }
 
   /** Newest time of the simulation; 0 before the first frame. */

@@ -1,11 +1,12 @@
-// Messages between the page and the worker. The server's messages pass as client/codec/parse.ts declares them; calls to the connection
-// pass as ConnectionCalls declares them. Frames travel as transferred ArrayBuffers: the page returns every one with
+// Messages between the page and the worker. The server's messages pass as client/codec/parse.ts declares them; calls to the session
+// pass as its methods declare them. Frames travel as transferred ArrayBuffers: the page returns every one with
 // "release", which bounds the frames on their way.
 import type { FrameHeaders } from "../../client/codec/frame_types";
 import type { GroundGrid } from "../../client/codec/ground";
 import type { FrameLayer, LayerName, LevelName } from "../../client/codec/layers";
 import type { RoomWish } from "../../client/rest/rooms";
-import type { CommandAction, ConnectionEvent, Identity, LinkStats as ConnectionStats } from "../../client/session/events";
+import type { Connection } from "../../client/session/connection";
+import type { ConnectionEvent, Identity, LinkStats as ConnectionStats } from "../../client/session/events";
 
 /** The user's choice: a level of detail, or automatic. */
 export type DetailChoice = "auto" | LevelName;
@@ -41,29 +42,27 @@ export type GroundAnswer = { kind: "ground"; requestId: number } & ({ ground: Gr
 /** One handler per event; a missing one does not compile. */
 export type PageEventHandlers = { [K in PageEvent["kind"]]: (event: Extract<PageEvent, { kind: K }>) => void };
 
-/** The methods of the connection that the page calls. */
-export interface ConnectionCalls {
-  /** Connects anew with another name or token; the server resumes the same person if it still can. */
-  introduce(name: string, token: string): void;
-  /** Exactly one ack or reject follows: the server's, or a local one if nothing was sent or no answer came. */
-  command(commandId: number, action: CommandAction): void;
-  setDetail(detail: DetailChoice): void;
+/** What follows from what the page shows. */
+export interface PageWishes {
+  detail: DetailChoice;
   /** Particles in the plain packing: finer velocities and densities, and more bytes. */
-  setExactParticles(exact: boolean): void;
-  /** The layers that the page shows, of those that the room has; all unless called. */
-  setLayers(layers: readonly LayerName[]): void;
+  exactParticles: boolean;
+  /** The layers that the page shows, of those that the room has. */
+  layers: readonly LayerName[];
   /** Frames of each layer per second, at most. */
-  setFrameRate(maxHz: number): void;
+  frameRateHz: number;
   /** A hidden page gets no frames; showing it again subscribes to them again. */
-  setVisible(visible: boolean): void;
-  /** Connects now: after a refusal, or instead of waiting. */
-  retryNow(): void;
+  visible: boolean;
 }
 
-type Call = { [K in keyof ConnectionCalls]: { kind: "call"; name: K; args: Parameters<ConnectionCalls[K]> } }[keyof ConnectionCalls];
+/** The methods of the session that the page calls. */
+export type SessionCalls = Pick<Connection, "introduce" | "command" | "retryNow">;
+
+type Call = { [K in keyof SessionCalls]: { kind: "call"; name: K; args: Parameters<SessionCalls[K]> } }[keyof SessionCalls];
 
 export type WorkerRequest =
   | Call
+  | { kind: "want"; wishes: Partial<PageWishes> }
   /** `language`: of the connection's lines for people. */
   | { kind: "start"; url: string; identity: Identity; wish: RoomWish | undefined; language: string }
   | { kind: "ground"; requestId: number; address: string; room: string; token: string }

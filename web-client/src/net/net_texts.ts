@@ -1,13 +1,10 @@
-// Lines for people about the connection and about requests: those of the client, some in other words, and the page's own. English;
-// net_texts_de.ts has the German ones. The worker has a table of its own.
+// Lines for people about the connection and about requests: those of the client and the page's own. English; net_texts_de.ts has the German
+// ones. The worker has a table of its own.
 import { kSessionTexts, type SessionTexts } from "../../client/session/texts";
 import { translation } from "./translation";
 
 const kOfThePage = {
-  closedHere: "the page closed the connection",
-  renamed: "the page connects again under another name",
-  moves: "the page moves to another server",
-  otherVersion: (server: string, page: string) => `the server speaks version ${server} of the wire, this page ${page}; reload the page`,
+  unreadableName: "its name cannot be read",
   notOperator: (why: string) => `${why}. Open the operator's link first, or choose one of these rooms`,
   noJoin: (status: number) => `The server does not say how to join (${status}).`,
 };

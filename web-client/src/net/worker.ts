@@ -3,7 +3,6 @@
 import { readerFault } from "../../client/codec/frame_reader";
 import type { FrameLayer } from "../../client/codec/layers";
 import { requestGround } from "../../client/rest/ground";
-import { openRoom } from "../../client/rest/open_room";
 import type { RoomWish } from "../../client/rest/rooms";
 import type { Identity } from "../../client/session/events";
 import { findMissingRoom } from "../../client/session/missing_room";
@@ -11,6 +10,7 @@ import type { ConnectionWorld, SocketLike } from "../../client/session/world";
 import { FrameHandover } from "./handover";
 import type { Frame, GroundAnswer, PageConnectionEvent, PageEvent, WorkerRequest } from "./messages";
 import { kNetTexts } from "./net_texts";
+import { openRoom } from "./open_room";
 import { PageConnection } from "./page_connection";
 
 /** The page's ring holds five; one more may be on its way. */
@@ -46,7 +46,7 @@ const world: ConnectionWorld = {
 let connection: PageConnection | undefined;
 
 function start(url: string, identity: Identity, wish: RoomWish | undefined): void {
-  connection?.stop();
+  connection?.session.stop();
   const fault = readerFault();
   if (fault) return post({ kind: "state", state: { name: "refused", reason: fault, rooms: [] } });
   const wait = (ms: number): Promise<void> => new Promise((done) => self.setTimeout(done, ms));
@@ -59,7 +59,7 @@ function start(url: string, identity: Identity, wish: RoomWish | undefined): voi
       handovers[kind].offer({ layer: kind, ...header, buffer } as Frame);
     },
   }, identity);
-  connection.start();
+  connection.session.start();
 }
 
 function passOn(event: PageConnectionEvent): void {
@@ -89,7 +89,9 @@ self.addEventListener("message", ({ data: request }: MessageEvent<WorkerRequest>
       return void answerGround(request);
     case "release":
       return handovers[request.layer].release(request.buffer);
+    case "want":
+      return connection?.want(request.wishes);
     case "call":
-      return (connection?.[request.name] as ((...args: unknown[]) => void) | undefined)?.apply(connection, request.args);
+      return (connection?.session[request.name] as ((...args: unknown[]) => void) | undefined)?.apply(connection?.session, request.args);
   }
 });

@@ -98,8 +98,7 @@ class PadPage {
     this.connectMap();
     connectKeyboardTools({ canvas: this.elements.canvas, isHelm: () => this.mode === "boat", isPaddle: () => this.mode === "wave" });
     this.client.start(url, this.identity);
-    this.client.call("setLayers", ["surface", "bodies", "floaters"]);
-    this.client.call("setDetail", "coarse");
+    this.client.want({ layers: ["surface", "bodies", "floaters"], detail: "coarse" });
     this.choose((keptChoice(kModeKey) as LessonTool | undefined) ?? "finger");
     const frame = (): void => {
       requestAnimationFrame(frame);
@@ -199,7 +198,7 @@ class PadPage {
     }
     this.mode = mode;
     keepChoice(kModeKey, mode);
-    this.client.call("setFrameRate", mode === "boat" ? kRatesHz.boat : kRatesHz.other);
+    this.client.want({ frameRateHz: mode === "boat" ? kRatesHz.boat : kRatesHz.other });
     this.refresh();
   }
 
@@ -266,7 +265,7 @@ class PadPage {
       this.boat.rest();
     };
     document.addEventListener("visibilitychange", () => {
-      this.client.call("setVisible", !document.hidden);
+      this.client.want({ visible: !document.hidden });
       if (document.hidden) leave();
     });
     window.addEventListener("blur", leave);

@@ -1,7 +1,7 @@
 // Opens the room of a link by REST. Who may not open rooms gets the reason.
-import type { Fetch } from "../session/missing_room";
-import { kSessionTexts } from "../session/texts";
-import type { RoomWish } from "./rooms";
+import type { Fetch } from "../../client/session/missing_room";
+import type { RoomWish } from "../../client/rest/rooms";
+import { kNetTexts } from "./net_texts";
 
 const kForbidden = 403;
 /** Somebody else opens the room at this moment, or a busy server takes longer than it lets a request wait. */
@@ -13,7 +13,7 @@ const kAskEveryMs = 1000;
 /** Opens the room of this socket. Returns undefined when it exists, whoever opened it; otherwise why it does not and what to do, for people. */
 export async function openRoom(socketUrl: string, token: string, { scene, parameters }: RoomWish, fetch: Fetch, wait: (ms: number) => Promise<void>): Promise<string | undefined> {
   const parts = /^ws(s?:.*\/)ws\/([^/?]+)$/.exec(socketUrl);
-  if (!parts) return kSessionTexts.unreadableName;
+  if (!parts) return kNetTexts.unreadableName;
   const list = `http${parts[1]}api/v1/rooms`;
   const authorization: Record<string, string> = token ? { Authorization: `Bearer ${token}` } : {};
   const body = JSON.stringify({ name: decodeURIComponent(parts[2]!), scene, parameters });
@@ -25,9 +25,9 @@ export async function openRoom(socketUrl: string, token: string, { scene, parame
       if ((await fetch(`${list}/${parts[2]}`, { headers: authorization, cache: "no-store" })).ok) return undefined;
       await wait(kAskEveryMs);
     }
-    const why = message || kSessionTexts.answers(opened.status);
-    return opened.status === kForbidden ? kSessionTexts.notOperator(why) : why;
+    const why = message || kNetTexts.answers(opened.status);
+    return opened.status === kForbidden ? kNetTexts.notOperator(why) : why;
   } catch {
-    return kSessionTexts.serverSilent;
+    return kNetTexts.serverSilent;
   }
 }
