@@ -3,7 +3,7 @@
 # by ./dev.
 
 # Limits against hanging parts: far above their times on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=2700 python_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=900 browser_limit_s=2700 python_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
 # writes build/reports/NAME.xml.

@@ -1,6 +1,6 @@
 // The npm package spindrift-client as its users have it: packed, and installed into a folder of its own.
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 
@@ -15,11 +15,19 @@ export function npm(folder, ...command) {
   return stdout.trim();
 }
 
-/** Makes a temporary folder with a project that has the package; returns its path. The caller removes it. */
-export function installClient() {
+/** Makes a temporary folder with a project that has the package, and what spindrift-mcp needs besides if `withAgent`; returns its path. The
+ *  caller removes it. */
+export function installClient({ withAgent = false } = {}) {
   const folder = mkdtempSync(join(tmpdir(), "spindrift-client-"));
   writeFileSync(join(folder, "package.json"), '{ "private": true, "type": "module" }');
   const tarball = npm(folder, "pack", kClientDist, "--silent");
-  npm(folder, "install", "--prefer-offline", "--no-audit", "--no-fund", `./${tarball}`);
+  npm(folder, "install", "--prefer-offline", "--no-audit", "--no-fund", `./${tarball}`, ...(withAgent ? agentPackages() : []));
   return folder;
+}
+
+/** The optional packages, in the versions that the client is built with. */
+function agentPackages() {
+  const { peerDependencies } = JSON.parse(readFileSync(join(kClientDist, "package.json"), "utf8"));
+  const { devDependencies } = JSON.parse(readFileSync(join(repository, "web-client/package.json"), "utf8"));
+  return Object.keys(peerDependencies).map((name) => `${name}@${devDependencies[name]}`);
 }

@@ -11,7 +11,7 @@ export default defineConfig({
     target: "es2022",
     minify: false,
     outDir: "dist",
-    lib: { entry: ["index.ts", "node.ts"], formats: ["es"] },
-    rollupOptions: { external: [/^@bufbuild\/protobuf/, "ws"], output: { entryFileNames: "[name].js", chunkFileNames: "[name].js" } },
+    lib: { entry: { index: "index.ts", node: "node.ts", mcp: "mcp/main.ts" }, formats: ["es"] },
+    rollupOptions: { external: [/^@bufbuild\/protobuf/, /^@modelcontextprotocol\//, /^node:/, "ws", "fast-png", "zod"], output: { entryFileNames: "[name].js", chunkFileNames: "[name].js" } },
   },
 });

@@ -7,14 +7,14 @@ import { describe, expect, it } from "vitest";
 const kRoot = join(import.meta.dirname, "..");
 /** Folders from the lowest to the highest; each may import from itself and from those before it. Those of the package first. */
 const kFolders = [
-  "client/gen", "client/codec", "client/session", "client/rest", "client/water", "client",
+  "client/gen", "client/codec", "client/session", "client/rest", "client/water", "client", "client/mcp",
   "net",
   "scene/maths", "scene/drawing", "scene/shaders", "scene/meshes", "scene/frames", "scene/light", "scene/landscape", "scene/camera", "scene/sea", "scene/boats", "scene/floaters", "scene/shore",
   "scene/shadows", "scene/solids", "scene/water", "scene/rain", "scene/whitewater", "scene/fluid", "scene/looks", "scene",
   "sound", "ui", "gauges", "class", "kiosk", "embed", "app", "pad", "front", ".",
 ];
 /** Roots: nothing has to import them. */
-const kRoots = ["main.ts", "net/worker.ts", "client/index.ts", "client/node.ts", "client/vite.config.ts"];
+const kRoots = ["main.ts", "net/worker.ts", "client/index.ts", "client/vite.config.ts", "client/mcp/main.ts"];
 
 const sourcesIn = (folder: string): string[] => readdirSync(join(kRoot, folder), { recursive: true, encoding: "utf8" }).filter((file) => /^(?!dist\/).*(?<!\.d)\.ts$/.test(file));
 const pathOf = (file: string): string => join(kRoot, file.startsWith("client/") ? "" : "src", file);
