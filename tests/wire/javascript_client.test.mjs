@@ -56,7 +56,7 @@ function bytesOf(message) {
 }
 
 /** A server of this test: greets, welcomes, and then does `answer` for each message of the client. */
-async function fakeServer({ version = { major: 1, minor: 9 }, answer = () => {} } = {}) {
+async function fakeServer({ version = { major: 1, minor: client.kWireMinor }, answer = () => {} } = {}) {
   const layers = [Layer.SURFACE, Layer.PARTICLES, Layer.FOAM, Layer.BODIES, Layer.FLOATERS];
   const scene = { name: "fake", wave: { resolutionCount: 16, sideM: 8, depthM: 1 } };
   const sockets = new WebSocketServer({ port: 0, host: "127.0.0.1" });
@@ -282,14 +282,16 @@ describe("the connection", () => {
     const fake = await fakeServer({ answer: (message, socket) => message.case === "subscribe" && refusals.push(socket) });
     const [closing, refused] = [await connected(fake.url), await connected(fake.url)];
     const [a, b] = [closing.frames("surface"), refused.frames("surface")];
-    const [ended, failed, waiting] = [a.next(), failure(b.next()), failure(refused.surface())];
+    const [ended, failed, waiting, unheard] = [a.next(), failure(b.next()), failure(refused.surface()), failure(closing.once("people"))];
     const closed = refused.once("closed");
     closing.close();
     expect(await ended).toEqual({ done: true, value: undefined });
+    expect(await unheard).toMatchObject({ name: "ConnectionLost" });
     while (refusals.length < 2) await new Promise((resolve) => setTimeout(resolve, 10));
     for (const socket of refusals) socket.send(bytesOf({ case: "refusal", value: { message: "the room was closed" } }));
     for (const error of [await failed, await waiting, (await closed).error]) expect(error).toMatchObject({ name: "Refused", message: "the room was closed" });
     expect(await failure(refused.surface())).toMatchObject({ name: "Refused" });
+    expect(await failure(refused.once("people"))).toMatchObject({ name: "Refused" });
     await fake.stop();
   });
 

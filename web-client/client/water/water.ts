@@ -171,13 +171,15 @@ export class Water {
     return this.listeners.on(kind, listener);
   }
 
-  /** The next event of a kind. */
+  /** The next event of a kind. Rejects if nothing comes any more. */
   once<K extends keyof WaterEvents>(kind: K): Promise<WaterEvents[K]> {
-    return new Promise((resolve) => {
-      const forget = this.on(kind, (event) => {
-        forget();
-        resolve(event);
-      });
+    return new Promise((resolve, reject) => {
+      if (this.failure) return reject(this.failure);
+      const forget = [this.on(kind, (event) => settle(() => resolve(event))), this.on("closed", () => settle(() => reject(this.failure)))];
+      const settle = (how: () => void): void => {
+        for (const each of forget) each();
+        how();
+      };
     });
   }
 
