@@ -2,18 +2,15 @@ import { readFileSync } from "node:fs";
 
 import { defineConfig } from "vitest/config";
 
+import { programVersion } from "./scripts/program_version.mjs";
+
 const server = "http://127.0.0.1:8080";
 
-/** The version of the program; CMakeLists.txt is the only file that holds it. */
-function programVersion(): string {
-  const text = readFileSync(new URL("../CMakeLists.txt", import.meta.url), "utf8");
-  const version = /^project\(spindrift VERSION ([0-9.]+)/m.exec(text)?.[1];
-  if (version === undefined) throw new Error("CMakeLists.txt: project(spindrift VERSION ...) not found");
-  return version;
-}
+/** As TypeScript writes an enum. */
+const kEnum = /^export var (\w+);\n\(function \(\1\) \{(.*?)^\}\)\(\1 \|\| \(\1 = \{\}\)\);$/gms;
 
-/** Leaves out text that no browser needs: comments and indentation of the page's shaders, and the shaders of three's own materials, which
- *  the page does not use: a tenth of the page. */
+/** Leaves out text that no browser needs: comments and indentation of the page's shaders, the shaders of three's own materials, which
+ *  the page does not use (a tenth of the page), and enums of Protobuf's descriptors, which bundlers keep unless they are called pure. */
 function withoutUnusedText() {
   return {
     name: "without-unused-text",
@@ -24,6 +21,7 @@ function withoutUnusedText() {
         const source = readFileSync(id.replace(/\?raw$/, ""), "utf8").replace(/\/\/.*$/gm, "").replace(/^\s+/gm, "");
         return `export default ${JSON.stringify(source)};`;
       }
+      if (id.endsWith("/wkt/gen/google/protobuf/descriptor_pb.js")) return code.replace(kEnum, "export var $1 = /* @__PURE__ */ (function ($1) {$2return $1;\n})({});");
       if (!id.endsWith("three.module.js")) return undefined;
       const chunks = /^var (\w+) = "(?:[^"\\\n]|\\.)*";$/gm;
       const count = code.match(chunks)?.length ?? 0;
@@ -40,7 +38,7 @@ export default defineConfig({
   base: "./",
   // The server's Content-Security-Policy allows only files of its own: nothing is inlined as data or script.
   build: { target: "es2022", assetsInlineLimit: 0, modulePreload: { polyfill: false }, chunkSizeWarningLimit: 900 },
-  worker: { format: "es" },
+  worker: { format: "es", plugins: () => [withoutUnusedText()] },
   server: {
     host: "127.0.0.1",
     proxy: { "/ws": { target: server, ws: true }, "/api": server },

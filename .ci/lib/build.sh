@@ -18,7 +18,7 @@ build_server() {
 
 # files_digest PATH…: one hash over the names and contents of the files below the paths.
 files_digest() {
-  find "$@" -type f -not -path '*/node_modules/*' -not -path '*/src/gen/*' -not -path '*/dist/*' -print0 2>/dev/null |
+  find "$@" -type f -not -path '*/node_modules/*' -not -path '*/client/gen/*' -not -path '*/dist/*' -print0 2>/dev/null |
     LC_ALL=C sort -z | xargs -0 --no-run-if-empty sha256sum | sha256sum | cut -d ' ' -f 1
 }
 

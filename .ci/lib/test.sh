@@ -3,7 +3,7 @@
 # by ./dev.
 
 # Limits against hanging parts: far above their times on two cores without a GPU.
-readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=600 browser_limit_s=2700 python_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
+readonly ctest_limit_s=3600 web_limit_s=600 wire_limit_s=900 browser_limit_s=2700 python_limit_s=1200 tools_limit_s=1800 containers_limit_s=5400 tidy_limit_s=7200
 
 # run_part NAME SECONDS COMMAND…: runs one part, shows and logs its output, and records its exit code. The command
 # writes build/reports/NAME.xml.
@@ -99,7 +99,7 @@ test_web() {
     --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/web.xml"
 }
 
-# Tests the npm package ws with the messages of the web client, in the web client's Vitest.
+# Tests the npm package ws with the messages of the web client, and the packed JavaScript client, in the web client's Vitest.
 test_wire() {
   run_part wire "$wire_limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node web-client/node_modules/vitest/vitest.mjs run \
     --root tests/wire --reporter=default --reporter=junit "--outputFile.junit=$root/build/reports/wire.xml"
@@ -148,7 +148,7 @@ usage: ./dev test [--preset release|debug|asan|tsan] [PART…] [-R REGEX]
 
 Builds everything and runs every test, or the parts named: unit, integration, accuracy, stability, gpu (C++),
 native (all of those), zink (gpu, sim and stability tests on Mesa's second, asynchronous OpenGL), web (the client's
-own tests), wire (the npm package ws against the real server), python (the Python client against it), browser (the page in Chromium against it), tools
+own tests), wire (the npm package ws and the JavaScript client against the real server), python (the Python client against it), browser (the page in Chromium against it), tools
 (./dev itself, formatting and types, the bundle, the documents, Compose and Kubernetes files), fuzz (parsers and decoders under hostile input, some
 seconds each), memory (unit tests under the address and undefined-behaviour sanitizers: those with MEMORY in tests/unit, or
 all of them when the part is named), threads (network, encoder, access and files of the state under the thread sanitizer).

@@ -224,5 +224,5 @@ TEXT
     --all) rm -rf build web-client/node_modules tests/browser/node_modules tests/wire/node_modules ;;
     *) fail 2 "clean does not know '$1'; see ./dev clean --help" ;;
   esac
-  rm -rf dist "$web_dist" web-client/src/gen
+  rm -rf dist "$web_dist" web-client/client/gen web-client/client/dist
 }

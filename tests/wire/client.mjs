@@ -2,8 +2,8 @@
 import { create, fromBinary, toBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
 import WebSocket from "ws";
 
-import { parse } from "../../web-client/src/codec/parse";
-import { ClientMessageSchema, ServerMessageSchema } from "../../web-client/src/gen/spindrift/v1/wire_pb";
+import { parse } from "../../web-client/client/codec/parse";
+import { ClientMessageSchema, ServerMessageSchema } from "../../web-client/client/gen/spindrift/v1/wire_pb";
 
 /** Far longer than any step; only a failing test reaches it. */
 const kPatienceMs = 60_000;

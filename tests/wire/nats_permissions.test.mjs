@@ -9,7 +9,7 @@ import { join } from "node:path";
 import { connect as connectTls } from "node:tls";
 
 import { binary, repository, startServer } from "../browser/server.mjs";
-import { Layer, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
+import { Layer, Packing } from "../../web-client/client/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
 const kPath = `${process.env.PATH}:/usr/sbin:/usr/bin:/bin`;

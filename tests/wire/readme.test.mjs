@@ -1,12 +1,12 @@
-// The client of the README, as it stands there: its curl command, and its program with the npm packages that it names.
+// The clients of the README, as they stand there: its curl command, and its program with the package installed.
 import { spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, symlinkSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
 import { repository, startServer } from "../browser/server.mjs";
+import { installClient } from "./installed_client.mjs";
 
-const kMaxLineCount = 15;
+const kMaxLineCount = 10;
 
 const readme = readFileSync(join(repository, "README.md"), "utf8");
 const curl = /^ {4}(curl .*\/commands)$/m.exec(readme)?.[1] ?? "";
@@ -16,10 +16,7 @@ let server;
 let folder;
 beforeAll(async () => {
   server = await startServer();
-  // What the README asks for: a folder with proto/ and the two packages.
-  folder = mkdtempSync(join(tmpdir(), "spindrift-readme-"));
-  symlinkSync(join(repository, "proto"), join(folder, "proto"));
-  symlinkSync(join(import.meta.dirname, "node_modules"), join(folder, "node_modules"));
+  folder = installClient();
 });
 afterAll(async () => {
   if (folder) rmSync(folder, { recursive: true, force: true });

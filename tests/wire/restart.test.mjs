@@ -6,7 +6,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
 
-import { Connection } from "../../web-client/src/net/connection";
+import { PageConnection } from "../../web-client/src/net/page_connection";
 import { binary, repository, startServer } from "../browser/server.mjs";
 
 /** From the signal to the exit of a server whose clients take part. */
@@ -48,7 +48,7 @@ class Page {
       findMissingRoom: async () => undefined, // the room is there, or the server is away
     };
     const sink = { event: (event) => this.events.push(event), frame: () => {} };
-    this.connection = new Connection(`ws://127.0.0.1:${port}/ws`, world, sink, { name, token: "", resumeKey: "" });
+    this.connection = new PageConnection(`ws://127.0.0.1:${port}/ws`, world, sink, { name, token: "", resumeKey: "" }).session;
     this.connection.start();
   }
   newest(kind) {

@@ -1,7 +1,7 @@
 // An independent WebSocket client with the real server: handshake, both packings, commands, closing.
 import { startServer } from "../browser/server.mjs";
-import { FrameUnpacker } from "../../web-client/src/codec/frame_unpacker";
-import { Layer, Level, Packing } from "../../web-client/src/gen/spindrift/v1/wire_pb";
+import { FrameUnpacker } from "../../web-client/client/codec/frame_unpacker";
+import { Layer, Level, Packing } from "../../web-client/client/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
 let server;

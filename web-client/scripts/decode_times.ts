@@ -2,9 +2,9 @@
 // --chromium, in a worker of a browser.
 import { fromBinary } from "@bufbuild/protobuf";
 
-import { FrameUnpacker } from "../src/codec/frame_unpacker";
-import { parseFrame } from "../src/codec/parse_frame";
-import { ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
+import { FrameUnpacker } from "../client/codec/frame_unpacker";
+import { parseFrame } from "../client/codec/parse_frame";
+import { ServerMessageSchema } from "../client/gen/spindrift/v1/wire_pb";
 
 interface DecodeTimes {
   frames: number;

@@ -4,10 +4,10 @@ import { copyFileSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { fileURLToPath } from "node:url";
 
+import { programVersion } from "./program_version.mjs";
+
 const root = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
-const version = /^project\(spindrift VERSION ([0-9.]+)/m.exec(readFileSync(path.join(root, "../CMakeLists.txt"), "utf8"))?.[1];
-if (version === undefined) throw new Error("CMakeLists.txt: project(spindrift VERSION ...) not found");
 const { name, ...others } = JSON.parse(readFileSync(path.join(root, "element/package.json"), "utf8"));
-writeFileSync(path.join(root, "element/dist/package.json"), `${JSON.stringify({ name, version, ...others }, null, 2)}\n`);
+writeFileSync(path.join(root, "element/dist/package.json"), `${JSON.stringify({ name, version: programVersion(), ...others }, null, 2)}\n`);
 copyFileSync(path.join(root, "../LICENSE"), path.join(root, "element/dist/LICENSE"));
 copyFileSync(path.join(root, "element/example.html"), path.join(root, "element/dist/example.html"));

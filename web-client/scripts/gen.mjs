@@ -1,4 +1,4 @@
-// Generates src/gen from proto/: messages by Debian's protoc with the npm plugin, and the ranges of the fields that users set as plain
+// Generates client/gen from proto/: messages by Debian's protoc with the npm plugin, and the ranges of the fields that users set as plain
 // numbers, so that the page reads them without a library. PROTOC names another protoc.
 import { spawnSync } from "node:child_process";
 import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
@@ -11,7 +11,7 @@ import { FileDescriptorSetSchema } from "@bufbuild/protobuf/wkt";
 
 const client_root = dirname(dirname(fileURLToPath(import.meta.url)));
 const proto_root = join(client_root, "..", "proto");
-const out_root = join(client_root, "src", "gen");
+const out_root = join(client_root, "client", "gen");
 const protoc = process.env.PROTOC ?? "protoc";
 
 /** One object per message that has such fields: `kSplashRanges.radiusM.max`. The page's bundle keeps those that it uses. */

@@ -1,4 +1,4 @@
-// Compiles the frame reader (server/bitstream/decode, with the checksum of server/core) to WebAssembly and writes it to src/gen as
+// Compiles the frame reader (server/bitstream/decode, with the checksum of server/core) to WebAssembly and writes it to client/gen as
 // base64 text: the worker needs no second request, and tests and benchmarks use the same module. Needs Debian's clang, lld and
 // libc++ for wasm32; CLANG names another clang.
 import { spawnSync } from "node:child_process";
@@ -10,7 +10,7 @@ import { fileURLToPath } from "node:url";
 const clientRoot = path.dirname(path.dirname(fileURLToPath(import.meta.url)));
 const bitstreamRoot = path.join(clientRoot, "..", "server", "bitstream");
 const coreRoot = path.join(clientRoot, "..", "server", "core");
-const outFile = path.join(clientRoot, "src", "gen", "frame_reader_wasm.ts");
+const outFile = path.join(clientRoot, "client", "gen", "frame_reader_wasm.ts");
 const clang = process.env.CLANG ?? "clang";
 const kStackBytes = 64 * 1024;
 const kMemoryMaxBytes = 1024 * 1024 * 1024;

@@ -4,7 +4,7 @@ import { isEmbeddedAddress, isPadAddress, takeLinkToken } from "./app/address";
 import { showPoster } from "./app/poster";
 import { leadsToFront } from "./front/entrance";
 import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
-import { requestRooms } from "./net/room_requests";
+import { requestRooms } from "../client/rest/rooms";
 import { roomOf } from "./net/room_address";
 import { socketUrl } from "./net/water_client";
 import { translation } from "./net/translation";

@@ -1,7 +1,8 @@
 import { describe, expect, it } from "vitest";
 
 import { mixAngle, wrapAngle } from "../src/scene/maths/interpolate";
-import { makePose, mixBodies, unpackBodies, type BodiesState, type BodyPose } from "../src/scene/frames/bodies";
+import type { BodyPose } from "../client/codec/bodies";
+import { makePose, mixBodies, unpackBodies, type BodiesState } from "../src/scene/frames/bodies";
 import type { BodiesFrame } from "../src/net/messages";
 import { bodiesPayload, type BodyRecord } from "./wire";
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import type { ObstacleInfo, SideKind, SideName } from "../src/codec/scene_info";
+import type { ObstacleInfo, SideKind, SideName } from "../client/codec/scene_info";
 import { Buoys, buoyPlaces, makeBuoyGeometry, pushedAside } from "../src/scene/boats/buoys";
 import { clearanceM } from "../src/scene/landscape/clearance";
 import { Lamps } from "../src/scene/light/lamps";

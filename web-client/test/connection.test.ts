@@ -1,8 +1,9 @@
 import { describe, expect, it } from "vitest";
 
-import { kWireMinor } from "../src/codec/greeting";
-import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
-import { backoffS } from "../src/net/backoff";
+import { kWireMinor } from "../client/codec/greeting";
+import { Layer, RejectReason, RoomEventKind } from "../client/gen/spindrift/v1/wire_pb";
+import { backoffS } from "../client/session/backoff";
+import type { LocalReason } from "../client/session/events";
 import { socketUrl } from "../src/net/water_client";
 import { Rig } from "./fakes";
 import { encode, foamFrame, greeting, surfaceFrame } from "./wire";
@@ -15,8 +16,8 @@ function liveRig(): Rig {
 }
 
 /** The reject that the connection makes itself. */
-function notSent(commandId: bigint, why: string) {
-  return { commandId, reason: "NOT_SENT", field: "", message: expect.stringContaining(why) };
+function notDone(commandId: bigint, reason: LocalReason, why: string) {
+  return { commandId, reason, field: "", message: expect.stringContaining(why) };
 }
 
 const splash = { case: "splash" as const, value: { xM: 1, zM: 2, radiusM: 1, depthM: 0.5 } };
@@ -62,7 +63,7 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 5n, boatId: 3 } });
     expect(rig.eventsOf("boatList")).toEqual([{ kind: "boatList", boats: [boat] }]);
     expect(rig.eventsOf("roomEvent")).toEqual([{ kind: "roomEvent", event: "recovered", tick: 4n, personId: 0, message: "the water was put back" }]);
-    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 5n, boatId: 3, floaterId: 0 }]);
+    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 5n, boatId: 3, floaterId: 0, gaugeId: 0 }]);
   });
 
   it("counts the layers of one tick as one frame, in any order", () => {
@@ -179,19 +180,19 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "reject", value: { commandId: 2n, reason: RejectReason.BUSY, field: "", message: "try again" } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 77n } });
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 78n } });
-    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 77n, boatId: 0, floaterId: 0 }]);
+    expect(rig.eventsOf("ack")).toEqual([{ kind: "ack", commandId: 1n, appliedTick: 77n, boatId: 0, floaterId: 0, gaugeId: 0 }]);
     expect(rig.eventsOf("reject")).toEqual([{ kind: "reject", commandId: 2n, reason: "BUSY", field: "", message: "try again" }]);
   });
 
   it("rejects a command that cannot be sent, is lost or stays unanswered", () => {
     const rig = new Rig();
     rig.connection.command(1, splash);
-    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notSent(1n, "not connected"));
+    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(1n, "NOT_SENT", "not connected"));
     rig.socket.open();
     rig.socket.deliver(greeting());
     rig.connection.command(2, splash);
     rig.socket.drop();
-    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notSent(2n, "lost"));
+    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(2n, "LOST", "lost"));
     rig.time.advance(500);
     rig.socket.open();
     rig.socket.deliver(greeting());
@@ -200,7 +201,7 @@ describe("the connection", () => {
       rig.time.advance(500);
       rig.socket.deliver({ case: "roomState", value: { paused: false, speed: 1 } });
     }
-    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notSent(3n, "no answer"));
+    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(3n, "NO_ANSWER", "no answer"));
   });
 
   it("waits without a limit for commands that build water", () => {
@@ -215,18 +216,18 @@ describe("the connection", () => {
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 9n } });
     expect(rig.eventsOf("ack")).toMatchObject([{ commandId: 1n }]);
     rig.socket.drop();
-    expect(rig.eventsOf("reject")).toMatchObject([notSent(2n, "lost")]);
+    expect(rig.eventsOf("reject")).toMatchObject([notDone(2n, "LOST", "lost")]);
   });
 
   it("holds at most 64 unanswered commands, and sends none into a congested socket", () => {
     const rig = liveRig();
     for (let id = 1; id <= 65; ++id) rig.connection.command(id, splash);
     expect(rig.socket.sentOf("command")).toHaveLength(64);
-    expect(rig.eventsOf("reject")).toMatchObject([notSent(65n, "waiting")]);
+    expect(rig.eventsOf("reject")).toMatchObject([notDone(65n, "NOT_SENT", "waiting")]);
     rig.socket.deliver({ case: "ack", value: { commandId: 1n, appliedTick: 1n } });
     rig.socket.bufferedAmount = 1 << 20;
     rig.connection.command(66, splash);
-    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notSent(66n, "congested"));
+    expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(66n, "NOT_SENT", "congested"));
   });
 
   it("counts malformed messages and continues", () => {
@@ -254,11 +255,11 @@ describe("the connection", () => {
 
   it("subscribes to no frames while the page is hidden", () => {
     const rig = liveRig();
-    rig.connection.setVisible(false);
+    rig.page.want({ visible: false });
     expect(rig.socket.sentOf("subscribe").slice(3).map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
       [Layer.SURFACE, 0], [Layer.PARTICLES, 0], [Layer.DIAGNOSTICS, 10],
     ]);
-    rig.connection.setVisible(true);
+    rig.page.want({ visible: true });
     expect(rig.socket.sentOf("subscribe").slice(6).map(({ value }) => value.maxRateHz)).toEqual([30, 30, 10]);
   });
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { Layer, Level, Packing } from "../src/gen/spindrift/v1/wire_pb";
+import { Layer, Level, Packing } from "../client/gen/spindrift/v1/wire_pb";
 import { LoadGovernor } from "../src/net/load_governor";
 import { Rig } from "./fakes";
 import { greeting, surfaceFrame } from "./wire";
@@ -22,12 +22,12 @@ describe("the level of detail", () => {
   it("may be lowered by the server unless the user chose it", () => {
     const rig = liveRig();
     expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
-    rig.connection.setDetail("medium");
+    rig.page.want({ detail: "medium" });
     expect(asked(rig)).toEqual({ level: Level.MEDIUM, adapts: false });
     const { length } = rig.socket.sent;
-    rig.connection.setDetail("medium");
+    rig.page.want({ detail: "medium" });
     expect(rig.socket.sent).toHaveLength(length);
-    rig.connection.setDetail("auto");
+    rig.page.want({ detail: "auto" });
     expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
   });
 
@@ -38,7 +38,7 @@ describe("the level of detail", () => {
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
     rig.time.advance(500);
     expect(rig.lastStats()).toMatchObject({ level: "coarse", levelLimitedBy: "link" });
-    rig.connection.setDetail("fine");
+    rig.page.want({ detail: "fine" });
     rig.time.advance(500);
     expect(rig.lastStats()).toMatchObject({ level: "fine", levelLimitedBy: "choice" });
   });
@@ -47,18 +47,18 @@ describe("the level of detail", () => {
     const rig = liveRig();
     const ofParticles = (): Packing | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.PARTICLES).at(-1)?.value.packing;
     expect(ofParticles()).toBe(Packing.PACKED);
-    rig.connection.setExactParticles(true);
+    rig.page.want({ exactParticles: true });
     expect(ofParticles()).toBe(Packing.PLAIN);
     expect(rig.socket.sentOf("subscribe").filter(({ value }) => value.packing === Packing.PLAIN).map(({ value }) => value.layer)).toEqual([Layer.PARTICLES]);
     const { length } = rig.socket.sent;
-    rig.connection.setExactParticles(true);
+    rig.page.want({ exactParticles: true });
     expect(rig.socket.sent).toHaveLength(length);
     rig.socket.drop();
     rig.time.advance(1000);
     rig.socket.open();
     rig.socket.deliver(greeting());
     expect(ofParticles()).toBe(Packing.PLAIN);
-    rig.connection.setExactParticles(false);
+    rig.page.want({ exactParticles: false });
     expect(ofParticles()).toBe(Packing.PACKED);
   });
 
@@ -67,20 +67,20 @@ describe("the level of detail", () => {
     const rateHz = (): number | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)?.value.maxRateHz;
     const offeredHz = rateHz()!;
     expect(offeredHz).toBeGreaterThan(15);
-    rig.connection.setFrameRate(15);
+    rig.page.want({ frameRateHz: 15 });
     expect(rateHz()).toBe(15);
     const { length } = rig.socket.sent;
-    rig.connection.setFrameRate(15);
+    rig.page.want({ frameRateHz: 15 });
     expect(rig.socket.sent).toHaveLength(length);
     rig.socket.drop();
     rig.time.advance(1000);
     rig.socket.open();
     rig.socket.deliver(greeting());
     expect(rateHz()).toBe(15);
-    rig.connection.setVisible(false);
+    rig.page.want({ visible: false });
     expect(rateHz()).toBe(0);
-    rig.connection.setVisible(true);
-    rig.connection.setFrameRate(1000);
+    rig.page.want({ visible: true });
+    rig.page.want({ frameRateHz: 1000 });
     expect(rateHz()).toBe(offeredHz);
   });
 

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import { beginDirecting, direct, wideFraming, type DirectorState, type Sight } from "../src/class/director";
 import { standingOut } from "../src/class/splash_sense";
 import { spokenAddress, withRoom } from "../src/class/join_card";
-import type { GameInfo } from "../src/codec/game";
+import type { GameInfo } from "../client/codec/game";
 import { floatPlaces } from "../src/scene/boats/course_marks";
 
 const calm: Sight = { nowS: 0, sideM: 64, widthM: 48, boats: [], racerBoatIds: [], fingers: [], movedFloaters: [], splash: undefined, game: undefined, ball: undefined, marks: [], goals: [] };

@@ -2,8 +2,8 @@
 import { Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import type { GreetingInfo } from "../src/codec/greeting";
-import type { SideKind } from "../src/codec/scene_info";
+import type { GreetingInfo } from "../client/codec/greeting";
+import type { SideKind } from "../client/codec/scene_info";
 import { clearanceM } from "../src/scene/landscape/clearance";
 import { diveView, diveWater, keepClear } from "../src/scene/camera/dive";
 

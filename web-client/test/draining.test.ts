@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { planMove } from "../src/net/move_plan";
+import { planMove } from "../client/session/move_plan";
 import { Rig } from "./fakes";
 import { greeting, type ServerBody } from "./wire";
 

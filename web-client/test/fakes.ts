@@ -1,12 +1,14 @@
 // Sockets and a clock that the test controls.
 import { fromBinary } from "@bufbuild/protobuf";
 
-import type { PlainFrame } from "../src/codec/frame_types";
-import { ClientMessageSchema, type ClientMessage } from "../src/gen/spindrift/v1/wire_pb";
-import { Connection } from "../src/net/connection";
-import type { ConnectionSink, ConnectionWorld, SocketLike } from "../src/net/connection_world";
-import type { ConnectionEvent, ConnectionState, LinkStats } from "../src/net/messages";
-import type { MissingRoom } from "../src/net/missing_room";
+import type { PlainFrame } from "../client/codec/frame_types";
+import { ClientMessageSchema, type ClientMessage } from "../client/gen/spindrift/v1/wire_pb";
+import type { Connection } from "../client/session/connection";
+import { PageConnection } from "../src/net/page_connection";
+import type { ConnectionSink, ConnectionWorld, SocketLike } from "../client/session/world";
+import type { ConnectionState } from "../client/session/events";
+import type { PageConnectionEvent, LinkStats } from "../src/net/messages";
+import type { MissingRoom } from "../client/session/missing_room";
 import { encode, type ServerBody } from "./wire";
 
 export class FakeSocket implements SocketLike {
@@ -84,8 +86,9 @@ export class FakeTime {
 export class Rig {
   readonly time = new FakeTime();
   readonly sockets: FakeSocket[] = [];
-  readonly events: ConnectionEvent[] = [];
+  readonly events: PageConnectionEvent[] = [];
   readonly frames: PlainFrame[] = [];
+  readonly page: PageConnection;
   readonly connection: Connection;
   /** What REST says about the room, and how often it was asked. */
   missing: MissingRoom | undefined;
@@ -114,14 +117,15 @@ export class Rig {
       },
       random: () => random,
       setTimer: (callback, ms) => this.time.setTimer(callback, ms),
-      clearTimer: (timer) => this.time.clearTimer(timer),
+      clearTimer: (timer) => this.time.clearTimer(timer as number),
     };
     Object.defineProperty(world, "openRoom", { get: () => this.whyNotOpened });
-    const sink: ConnectionSink = {
+    const sink: ConnectionSink<PageConnectionEvent> = {
       event: (event) => this.events.push(event),
       frame: (frame) => this.frames.push(frame),
     };
-    this.connection = new Connection("ws://host/ws", world, sink);
+    this.page = new PageConnection("ws://host/ws", world, sink);
+    this.connection = this.page.session;
     this.connection.start();
   }
 
@@ -137,8 +141,8 @@ export class Rig {
     return this.states.at(-1)!;
   }
 
-  eventsOf<K extends ConnectionEvent["kind"]>(kind: K): Extract<ConnectionEvent, { kind: K }>[] {
-    return this.events.filter((event) => event.kind === kind) as Extract<ConnectionEvent, { kind: K }>[];
+  eventsOf<K extends PageConnectionEvent["kind"]>(kind: K): Extract<PageConnectionEvent, { kind: K }>[] {
+    return this.events.filter((event) => event.kind === kind) as Extract<PageConnectionEvent, { kind: K }>[];
   }
 
   lastStats(): LinkStats {

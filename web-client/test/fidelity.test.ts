@@ -1,9 +1,9 @@
 import { describe, expect, it } from "vitest";
 
-import { fidelityName, kFidelities, wireFidelity } from "../src/codec/fidelity";
-import { parse } from "../src/codec/parse";
-import { Fidelity } from "../src/gen/spindrift/v1/scene_pb";
-import { RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
+import { fidelityName, kFidelities, wireFidelity } from "../client/codec/fidelity";
+import { parse } from "../client/codec/parse";
+import { Fidelity } from "../client/gen/spindrift/v1/scene_pb";
+import { RoomEventKind } from "../client/gen/spindrift/v1/wire_pb";
 import { describeLevel, levelTable } from "../src/ui/fidelity_texts";
 import { PaceWatch } from "../src/ui/pace_watch";
 import { encode, greeting } from "./wire";

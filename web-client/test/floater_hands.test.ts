@@ -3,7 +3,7 @@ import { beforeEach, describe, expect, it, vi } from "vitest";
 
 import type { App } from "../src/app/app";
 import { FloaterHands, type PointerAt } from "../src/app/floater_hands";
-import type { FloaterPose } from "../src/scene/frames/floaters";
+import type { FloaterPose } from "../client/codec/floaters";
 import { LessonState } from "../src/ui/lesson_state";
 import { World } from "./fakes";
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { FloaterKind } from "../src/gen/spindrift/v1/scene_pb";
+import { FloaterKind } from "../client/gen/spindrift/v1/scene_pb";
 import { arcOf, densityName, dropOf, flickOf, floaterSizeM, throwOf, tossTo } from "../src/ui/floater_tools";
 import { HoldSender, type HoldMessage } from "../src/ui/hold_sender";
 import { linesOf } from "../src/ui/tool_preview";

@@ -1,11 +1,12 @@
 import { describe, expect, it } from "vitest";
 
-import { kMaxFloaterCount } from "../src/codec/frame_types";
-import { parse } from "../src/codec/parse";
-import { Layer } from "../src/gen/spindrift/v1/wire_pb";
+import { kMaxFloaterCount } from "../client/codec/frame_types";
+import { parse } from "../client/codec/parse";
+import { Layer } from "../client/gen/spindrift/v1/wire_pb";
 import type { FloatersFrame } from "../src/net/messages";
 import { makeFloaterGeometry } from "../src/scene/floaters/floater_meshes";
-import { kFloaterKinds, kRadiusSizes, mixFloaters, unpackFloaters, type FloaterPose, type FloatersState } from "../src/scene/frames/floaters";
+import { kFloaterKinds, type FloaterPose } from "../client/codec/floaters";
+import { kRadiusSizes, mixFloaters, unpackFloaters, type FloatersState } from "../src/scene/frames/floaters";
 import { pickFloater } from "../src/scene/frames/pick_floater";
 import { encode, floatersFrame, floatersPayload, greeting, type FloaterRecord } from "./wire";
 

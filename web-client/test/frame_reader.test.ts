@@ -4,10 +4,10 @@ import { join } from "node:path";
 import { describe, expect, it, vi } from "vitest";
 import { create, fromBinary, toBinary } from "@bufbuild/protobuf";
 
-import { crc32c, readerFault } from "../src/codec/frame_reader";
-import { FrameUnpacker } from "../src/codec/frame_unpacker";
-import { parse } from "../src/codec/parse";
-import { ServerMessageSchema, type LayerFrame, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c, readerFault } from "../client/codec/frame_reader";
+import { FrameUnpacker } from "../client/codec/frame_unpacker";
+import { parse } from "../client/codec/parse";
+import { ServerMessageSchema, type LayerFrame, type ServerMessage } from "../client/gen/spindrift/v1/wire_pb";
 import { isPacked } from "./wire";
 
 /** Long enough for thousands of frames on a busy machine. */
@@ -68,8 +68,8 @@ describe("the frame reader", () => {
   it("says in one line what a browser lacks", async () => {
     vi.resetModules();
     vi.stubGlobal("WebAssembly", undefined);
-    const { readerFault: fault } = await import("../src/codec/frame_reader");
-    expect(fault()).toMatch(/^this browser cannot read the water's frames: it lacks WebAssembly with SIMD .*$/);
+    const { readerFault: fault } = await import("../client/codec/frame_reader");
+    expect(fault()).toMatch(/^packed frames cannot be read here, for want of WebAssembly with SIMD .*$/);
     vi.unstubAllGlobals();
   });
 

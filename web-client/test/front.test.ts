@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 
 import { leadsToFront, type EntranceWorld } from "../src/front/entrance";
 import { chooseLive, pictureWidthPercent, stateOf } from "../src/front/front_model";
-import type { RoomSummary } from "../src/net/room_requests";
+import type { RoomSummary } from "../client/rest/rooms";
 
 const room = (name: string, more: Partial<RoomSummary> = {}): RoomSummary => ({ name, scene: "pool", title: "Pool", isPaused: false, isAsleep: false, peopleCount: 0, ...more });
 

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import type { GameInfo } from "../src/codec/game";
+import type { GameInfo } from "../client/codec/game";
 import { clockText, countdownText, gameHeadline, GoalNews, goalTeamOf, nextMarkOf, raceRows, raceTime, standingText, taskText } from "../src/ui/game_texts";
 import { kTexts } from "../src/ui/texts";
 

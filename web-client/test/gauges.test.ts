@@ -3,12 +3,12 @@ import { describe, expect, it } from "vitest";
 
 import type { Display } from "../src/app/display";
 import { Gauges } from "../src/app/gauges";
-import type { GreetingInfo } from "../src/codec/greeting";
-import type { DiagnosticsInfo } from "../src/codec/parse";
-import type { GaugeInfo } from "../src/codec/scene_info";
+import type { GreetingInfo } from "../client/codec/greeting";
+import type { DiagnosticsInfo } from "../client/codec/parse";
+import type { GaugeInfo } from "../client/codec/scene_info";
 import type { GaugeView } from "../src/gauges/gauge_view";
 import { GaugeRecord, kMostTimes, type GaugeReadingInfo } from "../src/gauges/gauge_record";
-import { readSeries } from "../src/net/gauge_request";
+import { readSeries } from "../client/rest/gauge_series";
 import { bandHeightM, polesOf } from "../src/scene/solids/gauge_poles";
 
 const reading = (name: string, elevationM: number): GaugeReadingInfo => ({ name, elevationM, velocityXMps: 2 * elevationM, velocityZMps: -elevationM });

@@ -3,11 +3,12 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import type { Malformed } from "../src/codec/malformed";
-import type { PackedFrame } from "../src/codec/frame_types";
-import { FrameUnpacker } from "../src/codec/frame_unpacker";
-import { parse, type ParsedMessage } from "../src/codec/parse";
-import { unpackBodies, type BodyPose } from "../src/scene/frames/bodies";
+import type { Malformed } from "../client/codec/malformed";
+import type { PackedFrame } from "../client/codec/frame_types";
+import { FrameUnpacker } from "../client/codec/frame_unpacker";
+import { parse, type ParsedMessage } from "../client/codec/parse";
+import type { BodyPose } from "../client/codec/bodies";
+import { unpackBodies } from "../src/scene/frames/bodies";
 import { unpackFloaters } from "../src/scene/frames/floaters";
 import { elevationAtM } from "../src/scene/frames/height_field";
 import { isPacked } from "./wire";
@@ -217,6 +218,7 @@ describe("golden bytes", () => {
       kind: "ack", commandId: BigInt(golden["command_id"] as string), appliedTick: BigInt(golden["applied_tick"] as string),
       boatId: golden["boat_id"] ?? 0,
       floaterId: golden["floater_id"] ?? 0,
+      gaugeId: golden["gauge_id"] ?? 0,
     });
   });
 

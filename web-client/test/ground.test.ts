@@ -1,10 +1,10 @@
 import { create, toBinary } from "@bufbuild/protobuf";
 import { describe, expect, it, vi } from "vitest";
 
-import { readGround, type GroundGrid } from "../src/codec/ground";
-import { isMalformed } from "../src/codec/malformed";
+import { readGround, type GroundGrid } from "../client/codec/ground";
+import { isMalformed } from "../client/codec/malformed";
 import { GroundRequests } from "../src/net/ground_request";
-import { GroundSchema } from "../src/gen/spindrift/v1/api_pb";
+import { GroundSchema } from "../client/gen/spindrift/v1/api_pb";
 import { makeGroundGeometry } from "../src/scene/landscape/landscape";
 import { coastHeightM } from "../src/scene/landscape/coast";
 import { depthAtM, type Bed } from "../src/scene/landscape/terrain";

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
 import { FrameHandover } from "../src/net/handover";
-import { LinkMeter } from "../src/net/link_meter";
+import { LinkMeter } from "../client/session/link_meter";
 import { FrameRing } from "../src/scene/frames/frame_ring";
 
 interface Numbered {

@@ -2,7 +2,7 @@
 import { afterEach, describe, expect, it, vi } from "vitest";
 
 import { Haptics, kGamepadId } from "../src/app/haptics";
-import type { GreetingInfo } from "../src/codec/greeting";
+import type { GreetingInfo } from "../client/codec/greeting";
 import { makePose } from "../src/scene/frames/bodies";
 
 function device(has: { phone?: boolean; motors?: boolean }) {

@@ -1,10 +1,10 @@
 import { getOption, type DescField } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import type { GreetingInfo } from "../src/codec/greeting";
-import { parameter } from "../src/gen/spindrift/v1/options_pb";
-import { BoatSchema } from "../src/gen/spindrift/v1/scene_pb";
-import { SetSpeedSchema } from "../src/gen/spindrift/v1/wire_pb";
+import type { GreetingInfo } from "../client/codec/greeting";
+import { parameter } from "../client/gen/spindrift/v1/options_pb";
+import { BoatSchema } from "../client/gen/spindrift/v1/scene_pb";
+import { SetSpeedSchema } from "../client/gen/spindrift/v1/wire_pb";
 import { boatLimits, boatOfLength, effectLimits, speedRange } from "../src/ui/effect_limits";
 import { Helm, helmKey } from "../src/ui/helm";
 import { LatestSender } from "../src/ui/latest_sender";

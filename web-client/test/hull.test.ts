@@ -2,7 +2,7 @@
 import type { BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
-import type { BoatDetail } from "../src/codec/greeting";
+import type { BoatDetail } from "../client/codec/greeting";
 import { addShell, makeBoatParts } from "../src/scene/boats/boat_geometry";
 import { HullLines, hullKind } from "../src/scene/boats/lines";
 import { liveryOf, paintOf } from "../src/scene/boats/livery";

@@ -1,30 +1,34 @@
-// The structure of src/: no include cycle, no folder that imports one above it, no export that only tests use.
+// The structure of client/ and src/: no include cycle, no folder that imports one above it, no export that only tests use.
 import { readdirSync, readFileSync } from "node:fs";
 import { dirname, join, relative } from "node:path";
 import ts from "typescript";
 import { describe, expect, it } from "vitest";
 
-const kSource = join(import.meta.dirname, "..", "src");
-/** Folders from the lowest to the highest; each may import from itself and from those before it. */
+const kRoot = join(import.meta.dirname, "..");
+/** Folders from the lowest to the highest; each may import from itself and from those before it. Those of the package first. */
 const kFolders = [
-  "gen", "codec", "net",
+  "client/gen", "client/codec", "client/session", "client/rest", "client/water", "client", "client/mcp",
+  "net",
   "scene/maths", "scene/drawing", "scene/shaders", "scene/meshes", "scene/frames", "scene/light", "scene/landscape", "scene/camera", "scene/sea", "scene/boats", "scene/floaters", "scene/shore",
   "scene/shadows", "scene/solids", "scene/water", "scene/rain", "scene/whitewater", "scene/fluid", "scene/looks", "scene",
   "sound", "ui", "gauges", "class", "kiosk", "embed", "app", "pad", "front", ".",
 ];
-/** Roots: nothing in src/ imports them. */
-const kRoots = ["main.ts", "net/worker.ts"];
+/** Roots: nothing has to import them. */
+const kRoots = ["main.ts", "net/worker.ts", "client/index.ts", "client/vite.config.ts", "client/mcp/main.ts"];
 
-const files = readdirSync(kSource, { recursive: true, encoding: "utf8" }).filter((file) => file.endsWith(".ts"));
-const texts = new Map(files.map((file) => [file, readFileSync(join(kSource, file), "utf8")]));
+const sourcesIn = (folder: string): string[] => readdirSync(join(kRoot, folder), { recursive: true, encoding: "utf8" }).filter((file) => /^(?!dist\/).*(?<!\.d)\.ts$/.test(file));
+const pathOf = (file: string): string => join(kRoot, file.startsWith("client/") ? "" : "src", file);
+/** Those of src/ without it, those of the package with client/ before. */
+const files = [...sourcesIn("src"), ...sourcesIn("client").map((file) => `client/${file}`)];
+const texts = new Map(files.map((file) => [file, readFileSync(pathOf(file), "utf8")]));
 
-/** Files of src/ that `file` imports, types included. */
+/** Files that `file` imports, types included. */
 function importsOf(file: string): string[] {
   return ts
     .preProcessFile(texts.get(file)!)
     .importedFiles.map(({ fileName }) => fileName)
     .filter((name) => name.startsWith("."))
-    .map((name) => relative(kSource, join(kSource, dirname(file), name)))
+    .map((name) => relative(kRoot, join(dirname(pathOf(file)), name)).replace(/^src\//, ""))
     .map((name) => (texts.has(`${name}.ts`) ? `${name}.ts` : name))
     .filter((name) => texts.has(name));
 }
@@ -51,7 +55,7 @@ function findCycle(edges: ReadonlyMap<string, readonly string[]>): string[] {
 }
 
 function folderOf(file: string): string {
-  return file.startsWith("gen/") ? "gen" : dirname(file);
+  return file.startsWith("client/gen/") ? "client/gen" : dirname(file);
 }
 
 describe("the search for a cycle", () => {
@@ -63,11 +67,11 @@ describe("the search for a cycle", () => {
   });
 });
 
-describe("the imports of src/", () => {
+describe("the imports", () => {
   const edges = new Map(files.map((file) => [file, importsOf(file)]));
 
   it("are found", () => {
-    expect(edges.get("app/app.ts")).toContain("codec/greeting.ts");
+    expect(edges.get("app/app.ts")).toContain("client/codec/greeting.ts");
     const unreached = files.filter((file) => !kRoots.includes(file) && ![...edges.values()].some((imported) => imported.includes(file)));
     expect(unreached).toEqual([]);
   });
@@ -85,8 +89,8 @@ describe("the imports of src/", () => {
   });
 });
 
-describe("the exports of src/", () => {
-  const own = files.filter((file) => !file.startsWith("gen/"));
+describe("the exports", () => {
+  const own = files.filter((file) => !file.startsWith("client/gen/"));
   const tests = readdirSync(import.meta.dirname, "utf8").map((file) => readFileSync(join(import.meta.dirname, file), "utf8"));
   const countOf = (text: string, name: string): number => text.match(new RegExp(`\\b${name}\\b`, "g"))?.length ?? 0;
   const exportsOf = (kinds: string): [file: string, name: string][] =>
@@ -94,7 +98,7 @@ describe("the exports of src/", () => {
       .filter((file) => !kRoots.includes(file))
       .flatMap((file) => [...texts.get(file)!.matchAll(new RegExp(`^export (?:${kinds}) (\\w+)`, "gm"))].map((match): [string, string] => [file, match[1]!]));
 
-  it("all have a use in src/, not only in tests", () => {
+  it("all have a use in the sources, not only in tests", () => {
     const unused = exportsOf("class|const|function|interface|type").filter(
       ([file, name]) => !own.some((other) => countOf(texts.get(other)!, name) > (other === file ? 1 : 0)),
     );
@@ -109,9 +113,9 @@ describe("the exports of src/", () => {
   });
 });
 
-describe("the files of src/", () => {
+describe("the files", () => {
   it("have at most 400 lines", () => {
-    const long = files.filter((file) => !file.startsWith("gen/") && texts.get(file)!.split("\n").length > 401);
+    const long = files.filter((file) => !file.startsWith("client/gen/") && texts.get(file)!.split("\n").length > 401);
     expect(long).toEqual([]);
   });
 });

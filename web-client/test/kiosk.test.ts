@@ -6,7 +6,7 @@ import { kioskOptions } from "../src/kiosk/options";
 import { Visit } from "../src/kiosk/visit";
 import { VisitorLimits } from "../src/kiosk/visitor_limits";
 import { Watchdog } from "../src/kiosk/watchdog";
-import type { CommandAction } from "../src/net/messages";
+import type { CommandAction } from "../client/session/events";
 
 describe("the address of a kiosk", () => {
   it("has the seconds until the countdown", () => {

@@ -2,7 +2,7 @@
 import { BufferGeometry, Group, RawShaderMaterial, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import type { ObstacleInfo } from "../src/codec/scene_info";
+import type { ObstacleInfo } from "../client/codec/scene_info";
 import { addBoatLamps, lampShare } from "../src/scene/boats/boat_lamps";
 import { kLampsMax, Lamps } from "../src/scene/light/lamps";
 import { beamHeadingRad, Landscape } from "../src/scene/landscape/landscape";

@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 
-import { readCourse } from "../src/codec/course";
-import { kFreeLesson, kLessonToolNames, wireLesson, type LessonInfo } from "../src/codec/lesson";
-import { parse } from "../src/codec/parse";
-import { CourseSchema } from "../src/gen/spindrift/v1/scene_pb";
-import { GameKind, GamePhase, LessonSchema, Team, Tool } from "../src/gen/spindrift/v1/wire_pb";
+import { readCourse } from "../client/codec/course";
+import { kFreeLesson, kLessonToolNames, wireLesson, type LessonInfo } from "../client/codec/lesson";
+import { parse } from "../client/codec/parse";
+import { CourseSchema } from "../client/gen/spindrift/v1/scene_pb";
+import { GameKind, GamePhase, LessonSchema, Team, Tool } from "../client/gen/spindrift/v1/wire_pb";
 import { create } from "@bufbuild/protobuf";
 import { LessonState, lessonToolOf, whyNot } from "../src/ui/lesson_state";
 import { encode } from "./wire";

@@ -1,7 +1,7 @@
 // A room that does not exist: what REST is asked, and what the connection does then.
 import { describe, expect, it } from "vitest";
 
-import { findMissingRoom, type Fetch } from "../src/net/missing_room";
+import { findMissingRoom, type Fetch } from "../client/session/missing_room";
 import { Rig } from "./fakes";
 import { greeting } from "./wire";
 

@@ -4,8 +4,8 @@ import { join } from "node:path";
 import { fromBinary } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { crc32c } from "../src/codec/frame_reader";
-import { Packing, ServerMessageSchema } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../client/codec/frame_reader";
+import { Packing, ServerMessageSchema } from "../client/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
 import { greeting, type ServerBody } from "./wire";
 

@@ -1,8 +1,8 @@
 import { describe, expect, it } from "vitest";
 
-import type { GameInfo } from "../src/codec/game";
-import type { GreetingInfo } from "../src/codec/greeting";
-import type { CommandAction } from "../src/net/messages";
+import type { GameInfo } from "../client/codec/game";
+import type { GreetingInfo } from "../client/codec/greeting";
+import type { CommandAction } from "../client/session/events";
 import { isPadAddress } from "../src/app/address";
 import { friendlyName } from "../src/pad/friendly_name";
 import { gameTouch } from "../src/pad/game_touch";

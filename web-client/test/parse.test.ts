@@ -1,10 +1,10 @@
 import { describe, expect, it } from "vitest";
 
-import { crc32c } from "../src/codec/frame_reader";
-import { kMaxBodyCount, kMaxParticleCount } from "../src/codec/frame_types";
-import { parse } from "../src/codec/parse";
-import { CouplingMode, Side, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
-import { Layer, RejectReason, RoomEventKind } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../client/codec/frame_reader";
+import { kMaxBodyCount, kMaxParticleCount } from "../client/codec/frame_types";
+import { parse } from "../client/codec/parse";
+import { CouplingMode, Side, WaveBoundary } from "../client/gen/spindrift/v1/scene_pb";
+import { Layer, RejectReason, RoomEventKind } from "../client/gen/spindrift/v1/wire_pb";
 import { bodiesFrame, bodiesPayload, encode, foamFrame, greeting, particleFrame, surfaceFrame } from "./wire";
 
 function expectMalformed(buffer: ArrayBuffer, reason: RegExp): void {
@@ -92,7 +92,7 @@ describe("parse", () => {
   });
 
   it("reads every other kind of message", () => {
-    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7, floaterId: 0 });
+    expect(parse(encode({ case: "ack", value: { commandId: 3n, appliedTick: 99n, boatId: 7 } }))).toEqual({ kind: "ack", commandId: 3n, appliedTick: 99n, boatId: 7, floaterId: 0, gaugeId: 0 });
     expect(
       parse(encode({ case: "reject", value: { commandId: 4n, reason: RejectReason.OUT_OF_RANGE, field: "splash.radius_m", message: "too wide" } })),
     ).toEqual({ kind: "reject", commandId: 4n, reason: "OUT_OF_RANGE", field: "splash.radius_m", message: "too wide" });

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import { parse } from "../src/codec/parse";
-import { Role, Team } from "../src/gen/spindrift/v1/wire_pb";
+import { parse } from "../client/codec/parse";
+import { Role, Team } from "../client/gen/spindrift/v1/wire_pb";
 import { IdentityStore, type StorageLike } from "../src/net/identity_store";
 import { Rig } from "./fakes";
 import { encode } from "./wire";

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import type { WindInfo } from "../src/codec/scene_info";
+import type { WindInfo } from "../client/codec/scene_info";
 import { hazeM, rainShare } from "../src/scene/light/weather";
 import { makeDropSeeds } from "../src/scene/rain/drop_seeds";
 import { withParameter } from "../src/scene/sea/sea_state";

@@ -3,7 +3,7 @@ import { readFileSync } from "node:fs";
 import { join } from "node:path";
 import { describe, expect, it } from "vitest";
 
-import { kSideNames, type SideKind, type SideName, type WaveInfo, type WindInfo } from "../src/codec/scene_info";
+import { kSideNames, type SideKind, type SideName, type WaveInfo, type WindInfo } from "../client/codec/scene_info";
 import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/landscape/coast";
 import { blendOf } from "../src/scene/sea/open_sea";
 import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";

@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import { ServerClock } from "../src/net/server_clock";
+import { ServerClock } from "../client/session/server_clock";
 
 describe("the server's clock", () => {
   it("uses the ping with the shortest round trip", () => {

@@ -2,8 +2,8 @@
 import { create } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { readFirstView, readSetting, readWaterType, readWind } from "../src/codec/scene_info";
-import { Boundary, Dispersion, SceneSchema, Setting, WaterType, WaveBoundary } from "../src/gen/spindrift/v1/scene_pb";
+import { readFirstView, readSetting, readWaterType, readWind } from "../client/codec/scene_info";
+import { Boundary, Dispersion, SceneSchema, Setting, WaterType, WaveBoundary } from "../client/gen/spindrift/v1/scene_pb";
 import { waterOpticsOf } from "../src/scene/light/water_optics";
 import { makeGlassGeometry, makeStandGeometry, tankSize } from "../src/scene/solids/glass_tank";
 import { makeBasinGeometries } from "../src/scene/solids/pool_basin";

@@ -1,7 +1,7 @@
 import { describe, expect, it } from "vitest";
 
-import type { GreetingInfo } from "../src/codec/greeting";
-import type { ObstacleInfo } from "../src/codec/scene_info";
+import type { GreetingInfo } from "../client/codec/greeting";
+import type { ObstacleInfo } from "../client/codec/scene_info";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { meansOver, obstacleRiseM, shoreCells, shoreOf, type ShoreCells } from "../src/scene/shore/shore_ground";
 import { frontFoam, kDryingS, kFilmM, ShoreWetness, wetnessAfter } from "../src/scene/shore/shore_wetness";

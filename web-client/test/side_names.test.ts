@@ -1,6 +1,6 @@
 import { describe, expect, it } from "vitest";
 
-import type { SideKind, SideName, WaveInfo } from "../src/codec/scene_info";
+import type { SideKind, SideName, WaveInfo } from "../client/codec/scene_info";
 import { sidesOf } from "../src/ui/side_names";
 import { kTexts } from "../src/ui/texts";
 

@@ -1,11 +1,11 @@
 import { getOption } from "@bufbuild/protobuf";
 import { describe, expect, it } from "vitest";
 
-import { parse } from "../src/codec/parse";
+import { parse } from "../client/codec/parse";
 import { kDebounceMs, SliderModel } from "../src/ui/slider_model";
 import { clampTo, effectLimits, keptValue } from "../src/ui/effect_limits";
-import { parameter, type ParameterOptions } from "../src/gen/spindrift/v1/options_pb";
-import { BreakingWaveSchema, SplashSchema } from "../src/gen/spindrift/v1/scene_pb";
+import { parameter, type ParameterOptions } from "../client/gen/spindrift/v1/options_pb";
+import { BreakingWaveSchema, SplashSchema } from "../client/gen/spindrift/v1/scene_pb";
 import { FakeTime } from "./fakes";
 import { encode, greeting } from "./wire";
 

@@ -1,7 +1,7 @@
 // What is heard of the water: from frames to events, areas, voices and the parameters of Web Audio's nodes.
 import { describe, expect, it } from "vitest";
 
-import type { GreetingInfo } from "../src/codec/greeting";
+import type { GreetingInfo } from "../client/codec/greeting";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { makePose } from "../src/scene/frames/bodies";
 import { StreamedFrames } from "../src/scene/frames/streamed_frames";

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import type { App } from "../src/app/app";
 import { nowS } from "../src/app/picture_clock";
 import { SteppedPictures, wantsSteppedPictures } from "../src/app/stepped_pictures";
-import type { FrameLayer } from "../src/codec/layers";
+import type { FrameLayer } from "../client/codec/layers";
 import type { Frame } from "../src/net/messages";
 
 const kLayers: FrameLayer[] = ["surface", "bodies"];

@@ -2,8 +2,8 @@ import { describe, expect, it } from "vitest";
 
 import { create, toBinary } from "@bufbuild/protobuf";
 
-import { parse } from "../src/codec/parse";
-import { ServerMessageSchema, StrokeTool } from "../src/gen/spindrift/v1/wire_pb";
+import { parse } from "../client/codec/parse";
+import { ServerMessageSchema, StrokeTool } from "../client/gen/spindrift/v1/wire_pb";
 import { LocalRipple } from "../src/scene/water/local_ripple";
 import { StrokeSender, type StrokeMessage } from "../src/ui/stroke_sender";
 import { World } from "./fakes";

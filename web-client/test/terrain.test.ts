@@ -1,7 +1,7 @@
 import type { BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
-import type { BreakwaterInfo, RockInfo } from "../src/codec/scene_info";
+import type { BreakwaterInfo, RockInfo } from "../client/codec/scene_info";
 import { makeBreakwater } from "../src/scene/landscape/breakwater_mesh";
 import { clearanceM } from "../src/scene/landscape/clearance";
 import { makeGroundGeometry } from "../src/scene/landscape/landscape";

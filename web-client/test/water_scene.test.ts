@@ -2,8 +2,8 @@
 import { HalfFloatType, WebGLCoordinateSystem, type WebGLRenderer } from "three";
 import { describe, expect, it } from "vitest";
 
-import type { GreetingInfo } from "../src/codec/greeting";
-import type { SideKind, WaveInfo, WindInfo } from "../src/codec/scene_info";
+import type { GreetingInfo } from "../client/codec/greeting";
+import type { SideKind, WaveInfo, WindInfo } from "../client/codec/scene_info";
 import type { Frame } from "../src/net/messages";
 import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/drawing/pass";

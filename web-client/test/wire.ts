@@ -1,9 +1,9 @@
 // Builds server messages as bytes, the way a server would send them.
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
-import { crc32c } from "../src/codec/frame_reader";
-import type { PackedFrame } from "../src/codec/frame_types";
-import { Layer, ServerMessageSchema, type ServerMessage } from "../src/gen/spindrift/v1/wire_pb";
+import { crc32c } from "../client/codec/frame_reader";
+import type { PackedFrame } from "../client/codec/frame_types";
+import { Layer, ServerMessageSchema, type ServerMessage } from "../client/gen/spindrift/v1/wire_pb";
 
 export type ServerBody = Exclude<NonNullable<MessageInitShape<typeof ServerMessageSchema>["message"]>, { case: undefined }>;
 

@@ -1,10 +1,11 @@
 // The page: connects the client in the worker, the display and the panels. handlers() takes the messages of the server and the worker;
 // input.ts calls the methods for the user's actions.
-import type { GreetingInfo } from "../codec/greeting";
-import type { RoleName } from "../codec/people";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { RoleName } from "../../client/codec/people";
 import { GroundRequests } from "../net/ground_request";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
-import type { ConnectionState, LinkStats, PageEventHandlers } from "../net/messages";
+import type { ConnectionState } from "../../client/session/events";
+import type { LinkStats, PageEventHandlers } from "../net/messages";
 import { roomOf, wishOf } from "../net/room_address";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { markTopM } from "../scene/boats/course_marks";
@@ -167,14 +168,14 @@ export class App {
       this.client.call("introduce", name, token);
     });
     this.lightRows = new LightRows(this.display.scene.daylight, lightOf(location.search), (light) => setAddressParameter("light", light));
-    this.looks = new LookControls(this.display, (exact) => this.client.call("setExactParticles", exact));
+    this.looks = new LookControls(this.display, (exactParticles) => this.client.want({ exactParticles }));
     this.qualityRow = new QualityRow(isSoftwareRenderer, (choice) => {
       setAddressParameter("quality", choice === "automatic" ? undefined : choice);
       this.display.chooseQuality(choice);
       this.showQuality();
     });
     this.qualityRow.show(this.display.quality);
-    addDetailRow((detail) => this.client.call("setDetail", detail));
+    addDetailRow((detail) => this.client.want({ detail }));
     this.answerListeners = [this.parameters, this.room, this.boats];
     this.lessons.watch(() => {
       const { game } = this.lessons;
@@ -363,7 +364,7 @@ export class App {
   private showQuality(): void {
     const { quality } = this.display;
     this.qualityRow.show(quality);
-    this.client.call("setFrameRate", kTiers[quality.tier].frameRateMaxHz);
+    this.client.want({ frameRateHz: kTiers[quality.tier].frameRateMaxHz });
   }
 
   private showTags(atS: number): void {

@@ -1,7 +1,7 @@
 // The parameters that an operator has changed, in the page's address: `room`, `scene` and `set` together say how the room is opened anew
 // where it does not exist. A room that exists keeps its own values, so nobody's water changes by a link.
 import { textOfValues } from "../net/room_address";
-import { requestChanges } from "../net/room_requests";
+import { requestChanges } from "../../client/rest/rooms";
 import { setAddressParameter } from "./address";
 import type { App } from "./app";
 

@@ -1,5 +1,5 @@
 // Sends commands and keeps a label for each, for the line that reports its answer.
-import type { CommandAction } from "../net/messages";
+import type { CommandAction } from "../../client/session/events";
 import type { WaterClient } from "../net/water_client";
 import { kTexts } from "../ui/texts";
 

@@ -1,8 +1,8 @@
 // Everything on the canvas: scene, camera, resolution and the loop that draws at display rate.
 import { HalfFloatType, type WebGLRenderer } from "three";
 
-import type { GreetingInfo } from "../codec/greeting";
-import type { FrameLayer } from "../codec/layers";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { FrameLayer } from "../../client/codec/layers";
 import type { Frame } from "../net/messages";
 import { CameraViews, type Followed } from "../scene/camera/camera_views";
 import type { PixelRect } from "../scene/camera/framing";

@@ -2,9 +2,9 @@
 // address, and with a link to the page around it.
 import { clipped, type FrameMessage, type Request } from "../../element/protocol";
 import { ParentLink } from "../embed/parent_link";
-import { Side } from "../gen/spindrift/v1/scene_pb";
+import { Side } from "../../client/gen/spindrift/v1/scene_pb";
 import { askParents } from "../net/frame_policy";
-import type { CommandAction } from "../net/messages";
+import type { CommandAction } from "../../client/session/events";
 import { byId } from "../ui/dom";
 import { describeState } from "../ui/hud";
 import { showNotice } from "../ui/notice";

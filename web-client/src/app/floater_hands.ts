@@ -1,6 +1,7 @@
 // Objects that pointers take hold of: which one is under a pointer, where it is pulled to, how the wheel or a second finger turns it, and
 // what takes it out of the water. pointer.ts decides when a press is a hold.
-import { kRadiusSizes, type FloaterPose } from "../scene/frames/floaters";
+import type { FloaterPose } from "../../client/codec/floaters";
+import { kRadiusSizes } from "../scene/frames/floaters";
 import { pickFloater } from "../scene/frames/pick_floater";
 import { clamp, wrapAngle } from "../scene/maths/interpolate";
 import { byId } from "../ui/dom";

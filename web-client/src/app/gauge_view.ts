@@ -1,8 +1,8 @@
 // What the gauges need of the page; loaded where there is water to measure.
-import type { GreetingInfo } from "../codec/greeting";
-import type { RoleName } from "../codec/people";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { RoleName } from "../../client/codec/people";
 import { GaugeView } from "../gauges/gauge_view";
-import { requestSeries } from "../net/gauge_request";
+import { requestSeries } from "../../client/rest/gauge_series";
 import { byId } from "../ui/dom";
 import { kGaugeTexts } from "../ui/gauge_texts";
 import type { LessonState } from "../ui/lesson_state";

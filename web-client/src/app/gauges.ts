@@ -2,9 +2,9 @@
 // are loaded where there is water to measure.
 import { Matrix4 } from "three";
 
-import type { GreetingInfo } from "../codec/greeting";
-import type { DiagnosticsInfo } from "../codec/parse";
-import type { GaugeInfo } from "../codec/scene_info";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { DiagnosticsInfo } from "../../client/codec/parse";
+import type { GaugeInfo } from "../../client/codec/scene_info";
 import type { GaugeView } from "../gauges/gauge_view";
 import { tagPlace } from "../ui/tag_place";
 import type { Display } from "./display";

@@ -1,5 +1,5 @@
 // What is felt: short vibrations of the phone or the gamepad for what one does oneself, and for what happens to one's own boat.
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import type { BodiesState } from "../scene/frames/bodies";
 import type { WaterScene } from "../scene/water_scene";
 import { BoatWatch } from "../sound/boat_watch";

@@ -63,7 +63,7 @@ function connectWindow(app: App, hands: PointerHands): void {
   app.letGo = leave;
   window.addEventListener("resize", () => app.display.resize());
   document.addEventListener("visibilitychange", () => {
-    app.client.call("setVisible", !document.hidden);
+    app.client.want({ visible: !document.hidden });
     if (document.hidden) leave();
   });
   window.addEventListener("blur", leave);

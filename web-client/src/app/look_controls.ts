@@ -1,6 +1,6 @@
 // The look of the water: the list, the colour bar and the probe, which reads the water under the pointer, under the last touch, or in the
 // middle of the picture while the canvas has the keyboard.
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import { chooseLook, looksOf, needsExactParticles, type LookName } from "../scene/looks/looks";
 import { LookKey } from "../ui/look_key";
 import { LookRow } from "../ui/look_row";

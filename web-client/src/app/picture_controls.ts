@@ -1,5 +1,5 @@
 // Fullscreen, and the picture of the canvas as a file: one as PNG, or a film. What encodes films is loaded when the first one begins.
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import type { ActionButton, PageActions } from "../ui/page_actions";
 import { kTexts } from "../ui/texts";
 import type { Display } from "./display";

@@ -1,7 +1,7 @@
 // The Share button and what its card needs of the page. The card is loaded when it is opened.
 import { askJoinAddresses } from "../net/join_addresses";
-import { openRoomWithTokens, requestChanges } from "../net/room_requests";
-import type { ParameterValue } from "../net/room_address";
+import { openRoomWithTokens, requestChanges } from "../../client/rest/rooms";
+import type { ParameterValue } from "../../client/rest/rooms";
 import type { ShareSource } from "../ui/share_card";
 import { kTexts } from "../ui/texts";
 import type { App } from "./app";

@@ -1,8 +1,8 @@
 // Sound on this page: off until the button, the key M or a gamepad asks for it. Only then the sound's code is loaded and an AudioContext exists.
-import type { GreetingInfo } from "../codec/greeting";
-import type { FrameLayer } from "../codec/layers";
-import type { FingerInfo } from "../codec/strokes";
-import { StrokeTool } from "../gen/spindrift/v1/wire_pb";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { FrameLayer } from "../../client/codec/layers";
+import type { FingerInfo } from "../../client/codec/strokes";
+import { StrokeTool } from "../../client/gen/spindrift/v1/wire_pb";
 import { pickWater } from "../scene/frames/pick";
 import { octaveForDepthM } from "../sound/wave_tone";
 import type { Voices, WaterSound } from "../sound/water_sound";

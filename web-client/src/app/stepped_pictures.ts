@@ -1,6 +1,6 @@
 // Pictures on request instead of at display rate, for the page opened with `?pictures=stepped`: the same frames of the server give the same
 // picture, however slow the machine is. Tests and the gallery use it (docs/contributing.md); the panels work as always.
-import type { FrameLayer } from "../codec/layers";
+import type { FrameLayer } from "../../client/codec/layers";
 import type { Frame } from "../net/messages";
 import type { App } from "./app";
 import { nowS, setNowS } from "./picture_clock";

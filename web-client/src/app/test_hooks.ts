@@ -1,7 +1,7 @@
 // window.spindrift: measured values of the running page, read-only, for tests and the browser's console; and pictures on request.
 import { Vector3 } from "three";
 
-import { kLayerNames, type LayerName } from "../codec/layers";
+import { kLayerNames, type LayerName } from "../../client/codec/layers";
 import { elevationRangeM } from "../scene/frames/height_field";
 import { describeState } from "../ui/hud";
 import type { App } from "./app";

@@ -1,5 +1,5 @@
 // What the projector shows of people and games: who is in, the order of a race, the score, a countdown, the result.
-import type { PersonInfo } from "../codec/people";
+import type { PersonInfo } from "../../client/codec/people";
 import { make, setText } from "../ui/dom";
 import { clockText, countdownText, gameHeadline, GoalNews, kTeamColors, raceRows, type RaceRow } from "../ui/game_texts";
 import type { LessonState } from "../ui/lesson_state";

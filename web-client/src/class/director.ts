@@ -1,6 +1,6 @@
 // Chooses what a projector's camera looks at: the whole water while it is calm, the leaders of a race, the ball, or where most is going on.
 // Pure: the camera's moves follow from time and what is seen.
-import type { GameInfo } from "../codec/game";
+import type { GameInfo } from "../../client/codec/game";
 import { clamp, smoothstep } from "../scene/maths/interpolate";
 
 /** A shot lasts at least so long, unless the game changes. */

@@ -1,11 +1,11 @@
 // The operator's controls of a lesson: who may do what, teams, games, and order in the water.
 import "./class.css";
-import type { GreetingInfo } from "../codec/greeting";
-import { kLessonToolNames, wireLesson, type LessonInfo, type LessonTool } from "../codec/lesson";
-import { wireTeam, type PersonInfo, type TeamName } from "../codec/people";
-import { kLessonRanges, kStartGameRanges } from "../gen/ranges";
-import { GameKind } from "../gen/spindrift/v1/wire_pb";
-import type { CommandAction } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import { kLessonToolNames, wireLesson, type LessonInfo, type LessonTool } from "../../client/codec/lesson";
+import { wireTeam, type PersonInfo, type TeamName } from "../../client/codec/people";
+import { kLessonRanges, kStartGameRanges } from "../../client/gen/ranges";
+import { GameKind } from "../../client/gen/spindrift/v1/wire_pb";
+import type { CommandAction } from "../../client/session/events";
 import { make, setText } from "../ui/dom";
 import { fieldRange } from "../ui/effect_limits";
 import { kTeamColors } from "../ui/game_texts";

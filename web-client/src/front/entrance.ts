@@ -1,8 +1,8 @@
 // Whether the page's address leads to the water of a room or to the front page with all rooms.
 import { isEmbeddedAddress, isKioskAddress, isProjectorAddress } from "../app/address";
-import { findMissingRoom, type Fetch } from "../net/missing_room";
+import { findMissingRoom, type Fetch } from "../../client/session/missing_room";
 import { roomOf, wishOf } from "../net/room_address";
-import type { RoomSummary } from "../net/room_requests";
+import type { RoomSummary } from "../../client/rest/rooms";
 
 export interface EntranceWorld {
   requestRooms(token: string): Promise<readonly RoomSummary[]>;

@@ -1,5 +1,5 @@
 // What the front page shows of the rooms, and which of them are live. Pure.
-import type { RoomSummary } from "../net/room_requests";
+import type { RoomSummary } from "../../client/rest/rooms";
 
 /** So many pictures are live at once. Each is a connection, and a room that somebody is connected to does not sleep. */
 const kLiveMaxCount = 12;

@@ -2,11 +2,11 @@
 import "./front.css";
 import { takeLinkToken } from "../app/address";
 import { takeRefusal } from "../app/to_front";
-import type { RoleName } from "../codec/people";
+import type { RoleName } from "../../client/codec/people";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
 import { kNetTexts } from "../net/net_texts";
 import { roomOf } from "../net/room_address";
-import { requestRooms, type RoomSummary } from "../net/room_requests";
+import { requestRooms, type RoomSummary } from "../../client/rest/rooms";
 import { socketUrl } from "../net/water_client";
 import { make, setText } from "../ui/dom";
 import { kFrontTexts } from "../ui/front_texts";

@@ -1,7 +1,7 @@
 // A small live picture of a room: its water from above, as the pad draws it. It asks for coarse frames at a low rate, and as an onlooker:
 // whoever sees the picture is not in the room.
-import type { RoleName } from "../codec/people";
-import type { GreetingInfo } from "../codec/greeting";
+import type { RoleName } from "../../client/codec/people";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import type { PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { LessonState } from "../ui/lesson_state";
@@ -27,9 +27,7 @@ export class LivePicture {
   ) {
     this.map = new PadMap(canvas);
     this.client.start(`${socketUrl(page)}?onlooker`, { name: "", token, resumeKey: "" });
-    this.client.call("setLayers", ["surface", "bodies", "floaters"]);
-    this.client.call("setDetail", "coarse");
-    this.client.call("setFrameRate", kFrameRateHz);
+    this.client.want({ layers: ["surface", "bodies", "floaters"], detail: "coarse", frameRateHz: kFrameRateHz });
   }
 
   /** Newest time of the simulation; 0 before the first frame. */

@@ -1,6 +1,6 @@
 // The card of the front page that opens a room of a chosen scene, by the link that the water's page reads (net/room_address.ts).
 import { posterOf } from "../app/poster";
-import { requestScenes } from "../net/room_requests";
+import { requestScenes } from "../../client/rest/rooms";
 import { make, setText } from "../ui/dom";
 import { sceneLabel } from "../ui/room_panel";
 import { linkWith } from "../ui/share_link";

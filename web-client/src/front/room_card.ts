@@ -1,7 +1,7 @@
 // The card of a room on the front page: a link with its picture, title, scene, people and state.
 import { posterOf } from "../app/poster";
-import type { RoleName } from "../codec/people";
-import type { RoomSummary } from "../net/room_requests";
+import type { RoleName } from "../../client/codec/people";
+import type { RoomSummary } from "../../client/rest/rooms";
 import { make, setText } from "../ui/dom";
 import { addressOfRoom } from "../ui/room_links";
 import { kFrontTexts } from "../ui/front_texts";

@@ -1,7 +1,7 @@
 // The panel with the chart of the gauges: which gauges, which quantity and how much time; values under the cursor; pause; files; and gauges of
 // one's own, to place and to remove. On wide windows it lies over the water, on narrow ones it is the first part of the sheet.
-import type { GaugeInfo } from "../codec/scene_info";
-import type { GaugeSeries } from "../net/gauge_request";
+import type { GaugeInfo } from "../../client/codec/scene_info";
+import type { GaugeSeries } from "../../client/rest/gauge_series";
 import { formatBy, make, setText } from "../ui/dom";
 import { kGaugeTexts } from "../ui/gauge_texts";
 import { SelectRow } from "../ui/select_row";

@@ -1,6 +1,6 @@
 // What the page knows of the readings of gauges: one list of times, and for each gauge a column per quantity with gaps where it has no
 // reading. The history of a gauge comes from the server with every tick, the newest readings come about ten times per second. Pure.
-import type { GaugeSeries } from "../net/gauge_request";
+import type { GaugeSeries } from "../../client/rest/gauge_series";
 
 export const kQuantities = ["elevation", "velocityX", "velocityZ"] as const;
 export type Quantity = (typeof kQuantities)[number];

@@ -1,5 +1,5 @@
 // Names over the gauges in the picture. Hidden from screen readers, as the boats' names are: the panel lists them.
-import type { GaugeInfo } from "../codec/scene_info";
+import type { GaugeInfo } from "../../client/codec/scene_info";
 import { make } from "../ui/dom";
 import type { TagPlace } from "../ui/tag_place";
 

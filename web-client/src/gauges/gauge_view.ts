@@ -1,6 +1,6 @@
 // What the page shows of gauges: their names in the picture, and a button for the panel with the chart, which is loaded when it is first
 // opened. The button shows where there are gauges, or where this visitor may place one.
-import type { GaugeInfo } from "../codec/scene_info";
+import type { GaugeInfo } from "../../client/codec/scene_info";
 import { byId, make } from "../ui/dom";
 import { kGaugeTexts } from "../ui/gauge_texts";
 import type { GaugePanel, GaugeWorld } from "./gauge_panel";

@@ -1,6 +1,6 @@
 // What visitors of a kiosk may send, whatever their role: a few kinds of commands, at limited rates. The server's limits come on top. Gauges
 // are not among them: without the panel nobody could read or remove them. Pure.
-import type { CommandAction } from "../net/messages";
+import type { CommandAction } from "../../client/session/events";
 
 /** Commands per second, and how many may come at once. */
 const kRates = {

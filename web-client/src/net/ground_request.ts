@@ -1,16 +1,5 @@
-// The ground of a room: the worker asks the server for it and reads it, the page asks again when it changes.
-import { readGround, type GroundGrid } from "../codec/ground";
-import { isMalformed } from "../codec/malformed";
-import { kNetTexts } from "./net_texts";
-
-/** Throws an Error with a line for people if the room has no ground or it cannot be read. `address`: of the ground on the server. */
-export async function requestGround(address: string, room: string, token: string): Promise<GroundGrid> {
-  const answer = await fetch(address, token ? { headers: { Authorization: `Bearer ${token}` } } : {});
-  if (!answer.ok) throw new Error(kNetTexts.noGround(room, `${answer.status} ${answer.statusText}`));
-  const read = readGround(new Uint8Array(await answer.arrayBuffer()));
-  if (isMalformed(read)) throw new Error(read.reason);
-  return read.ground;
-}
+// The page asks for the ground of its room again whenever it changes.
+import type { GroundGrid } from "../../client/codec/ground";
 
 /** Asks for the ground of one room at a time. */
 export class GroundRequests {

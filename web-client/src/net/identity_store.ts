@@ -1,7 +1,7 @@
 // Keeps name, token and resume key for the life of the tab, so that a reload within the server's grace time gets its boat back.
 // They are never in the address, which ends up in histories and logs; the token of a link is removed from it. The resume key is stored only while no page uses it: a browser
 // that duplicates a tab copies the store, and two pages with the same key would disconnect each other.
-import type { Identity } from "./messages";
+import type { Identity } from "../../client/session/events";
 
 /** The part of Storage that is used. */
 export interface StorageLike {

@@ -1,6 +1,6 @@
 // Chooses the level of detail that this device can unpack in time, by the share of time that the worker spends on messages. The
 // server adapts to the link, from the frames that wait in its outbox.
-import { coarserLevel, kFinestLevel, kLevels, type LevelName } from "../codec/layers";
+import { coarserLevel, kFinestLevel, kLevels, type LevelName } from "../../client/codec/layers";
 import type { DetailChoice, LinkStats } from "./messages";
 
 const kTooBusy = 0.6;

@@ -8,7 +8,7 @@ export const kGermanNetTexts: NetTexts = {
   noAnswer: (forS) => `keine Antwort seit ${forS} s`,
   silent: (forS) => `keine Nachricht vom Server seit ${forS} s`,
   closed: (code) => `vom Server oder vom Netz geschlossen (Code ${code})`,
-  pageCloses: "die Seite hat die Verbindung geschlossen",
+  closedHere: "die Seite hat die Verbindung geschlossen",
   renamed: "die Seite verbindet sich unter einem anderen Namen",
   moves: "die Seite wechselt zu einem anderen Server",
   otherVersion: (server, page) => `der Server spricht Version ${server} des Protokolls, diese Seite ${page}; bitte neu laden`,

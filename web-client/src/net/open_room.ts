@@ -1,6 +1,6 @@
 // Opens the room of a link by REST. Who may not open rooms gets the reason.
-import type { Fetch } from "./missing_room";
-import type { RoomWish } from "./room_address";
+import type { Fetch } from "../../client/session/missing_room";
+import type { RoomWish } from "../../client/rest/rooms";
 import { kNetTexts } from "./net_texts";
 
 const kForbidden = 403;

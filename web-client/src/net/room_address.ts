@@ -4,17 +4,7 @@
 //   ?room=NAME&scene=SCENE   the room NAME, which is opened with that scene if it does not exist
 //   &set=PATH:VALUE,…        values of the scene's parameters in a room that is opened; without effect on a room that exists
 // Everybody who opens the same link comes into the same room, so its name follows from scene and values alone.
-
-/** What a room is opened with. */
-export interface RoomWish {
-  scene: string;
-  parameters: ParameterValue[];
-}
-
-export interface ParameterValue {
-  path: string;
-  value: number;
-}
+import type { ParameterValue, RoomWish } from "../../client/rest/rooms";
 
 /** As in the server: letters, digits, "_" and "-". */
 const kRoomNameMaxLength = 32;

@@ -1,7 +1,9 @@
 // The page's end of the worker: typed events in, calls and commands out. Gives out the command ids.
-import type { GroundGrid } from "../codec/ground";
-import type { CommandAction, ConnectionCalls, Frame, GroundAnswer, Identity, PageEvent, PageEventHandlers, WorkerRequest } from "./messages";
-import { roomOf, type RoomWish } from "./room_address";
+import type { GroundGrid } from "../../client/codec/ground";
+import type { CommandAction, Identity } from "../../client/session/events";
+import type { Frame, GroundAnswer, PageEvent, PageEventHandlers, PageWishes, SessionCalls, WorkerRequest } from "./messages";
+import type { RoomWish } from "../../client/rest/rooms";
+import { roomOf } from "./room_address";
 
 /** Starts the worker; the page calls it once. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
@@ -29,8 +31,13 @@ export class WaterClient {
     this.post({ kind: "start", url, identity, wish, language: document.documentElement.lang });
   }
 
-  /** Calls a method of the connection. */
-  call<K extends keyof ConnectionCalls>(name: K, ...args: Parameters<ConnectionCalls[K]>): void {
+  /** Changes what the page wants; what is left out stays. */
+  want(wishes: Partial<PageWishes>): void {
+    this.post({ kind: "want", wishes });
+  }
+
+  /** Calls a method of the session. */
+  call<K extends keyof SessionCalls>(name: K, ...args: Parameters<SessionCalls[K]>): void {
     this.post({ kind: "call", name, args } as WorkerRequest);
   }
 

@@ -1,16 +1,17 @@
-// The worker's root: passes calls on to the Connection, and events and frames back to the page. A payload is copied once, out of the
+// The worker's root: passes calls on to the connection, and events and frames back to the page. A payload is copied once, out of the
 // message into an aligned buffer, which travels to the page and back by transfer.
-import { readerFault } from "../codec/frame_reader";
-import type { FrameLayer } from "../codec/layers";
-import { Connection } from "./connection";
-import type { ConnectionWorld, SocketLike } from "./connection_world";
-import { requestGround } from "./ground_request";
+import { readerFault } from "../../client/codec/frame_reader";
+import type { FrameLayer } from "../../client/codec/layers";
+import { requestGround } from "../../client/rest/ground";
+import type { RoomWish } from "../../client/rest/rooms";
+import type { Identity } from "../../client/session/events";
+import { findMissingRoom } from "../../client/session/missing_room";
+import type { ConnectionWorld, SocketLike } from "../../client/session/world";
 import { FrameHandover } from "./handover";
-import type { ConnectionEvent, Frame, GroundAnswer, Identity, PageEvent, WorkerRequest } from "./messages";
-import { findMissingRoom } from "./missing_room";
-import { openRoom } from "./open_room";
-import type { RoomWish } from "./room_address";
+import type { Frame, GroundAnswer, PageConnectionEvent, PageEvent, WorkerRequest } from "./messages";
 import { kNetTexts } from "./net_texts";
+import { openRoom } from "./open_room";
+import { PageConnection } from "./page_connection";
 
 /** The page's ring holds five; one more may be on its way. */
 const kMaxFramesUnderWay = 6;
@@ -39,18 +40,18 @@ const world: ConnectionWorld = {
   nowMs: () => performance.timeOrigin + performance.now(),
   random: () => Math.random(),
   setTimer: (callback, ms) => self.setTimeout(callback, ms),
-  clearTimer: (timer) => self.clearTimeout(timer),
+  clearTimer: (timer) => self.clearTimeout(timer as number),
 };
 
-let connection: Connection | undefined;
+let connection: PageConnection | undefined;
 
 function start(url: string, identity: Identity, wish: RoomWish | undefined): void {
-  connection?.stop();
+  connection?.session.stop();
   const fault = readerFault();
   if (fault) return post({ kind: "state", state: { name: "refused", reason: fault, rooms: [] } });
   const wait = (ms: number): Promise<void> => new Promise((done) => self.setTimeout(done, ms));
   const withWish: ConnectionWorld = wish ? { ...world, openRoom: (socketUrl, token) => openRoom(socketUrl, token, wish, (address, init) => self.fetch(address, init), wait) } : world;
-  connection = new Connection(url, withWish, {
+  connection = new PageConnection(url, withWish, {
     event: passOn,
     frame: ({ kind, header, payload }) => {
       const buffer = handovers[kind].takeBuffer(payload.length);
@@ -58,10 +59,10 @@ function start(url: string, identity: Identity, wish: RoomWish | undefined): voi
       handovers[kind].offer({ layer: kind, ...header, buffer } as Frame);
     },
   }, identity);
-  connection.start();
+  connection.session.start();
 }
 
-function passOn(event: ConnectionEvent): void {
+function passOn(event: PageConnectionEvent): void {
   if (event.kind === "stats") {
     const supersededCount = Object.values(handovers).reduce((sum, handover) => sum + handover.supersededCount, 0);
     return post({ ...event, supersededCount });
@@ -88,7 +89,9 @@ self.addEventListener("message", ({ data: request }: MessageEvent<WorkerRequest>
       return void answerGround(request);
     case "release":
       return handovers[request.layer].release(request.buffer);
+    case "want":
+      return connection?.want(request.wishes);
     case "call":
-      return (connection?.[request.name] as ((...args: unknown[]) => void) | undefined)?.apply(connection, request.args);
+      return (connection?.session[request.name] as ((...args: unknown[]) => void) | undefined)?.apply(connection?.session, request.args);
   }
 });

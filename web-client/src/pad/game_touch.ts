@@ -1,5 +1,5 @@
 // What a phone says to the hand that holds it: marks, laps, the finish, a goal. Pure.
-import type { GameInfo } from "../codec/game";
+import type { GameInfo } from "../../client/codec/game";
 
 /** Durations of vibration and pause in turn, ms. */
 export const kPatterns = { mark: [20], lap: [60, 60, 60], finish: [120, 80, 120, 80, 250], goal: [200, 100, 200], start: [150] } as const;

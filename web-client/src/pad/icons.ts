@@ -1,5 +1,5 @@
 // Pictures on the pad's buttons, one stroke each, in a square of 24.
-import type { LessonTool } from "../codec/lesson";
+import type { LessonTool } from "../../client/codec/lesson";
 
 const kSvg = "http://www.w3.org/2000/svg";
 const kPaths: Record<LessonTool, string> = {

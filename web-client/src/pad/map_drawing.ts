@@ -1,10 +1,10 @@
 // Draws the pad's map on a canvas: water, land, course, objects, boats and fingers, from above.
-import type { GameInfo } from "../codec/game";
-import type { BoatDetail, GreetingInfo } from "../codec/greeting";
-import type { PersonInfo } from "../codec/people";
-import type { FingerInfo } from "../codec/strokes";
-import type { BodyPose } from "../scene/frames/bodies";
-import type { FloaterKindName, FloaterPose } from "../scene/frames/floaters";
+import type { GameInfo } from "../../client/codec/game";
+import type { BoatDetail, GreetingInfo } from "../../client/codec/greeting";
+import type { PersonInfo } from "../../client/codec/people";
+import type { FingerInfo } from "../../client/codec/strokes";
+import type { BodyPose } from "../../client/codec/bodies";
+import type { FloaterKindName, FloaterPose } from "../../client/codec/floaters";
 import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, groundHeightM } from "../scene/landscape/terrain";
 import { kTeamColors } from "../ui/game_texts";

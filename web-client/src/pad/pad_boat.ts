@@ -1,6 +1,6 @@
 // One's boat on the pad: launches it, steers it with the stick or keys, takes it off the water.
-import type { GreetingInfo } from "../codec/greeting";
-import type { CommandAction } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { CommandAction } from "../../client/session/events";
 import { boatLimits, boatOfLength } from "../ui/effect_limits";
 import { Helm, helmKey } from "../ui/helm";
 import { LatestSender, type SenderWorld } from "../ui/latest_sender";

@@ -1,8 +1,9 @@
 // Fingers on the pad's map: each uses the tool that is chosen, and what they do is shown until the water shows it.
-import type { GreetingInfo } from "../codec/greeting";
-import type { LessonTool } from "../codec/lesson";
-import type { CommandAction } from "../net/messages";
-import { kRadiusSizes, type FloaterKindName, type FloaterPose } from "../scene/frames/floaters";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { LessonTool } from "../../client/codec/lesson";
+import type { CommandAction } from "../../client/session/events";
+import type { FloaterKindName, FloaterPose } from "../../client/codec/floaters";
+import { kRadiusSizes } from "../scene/frames/floaters";
 import { effectLimits } from "../ui/effect_limits";
 import { dropOf, flickOf, floaterSizeM, throwOf, tossTo } from "../ui/floater_tools";
 import { HoldSender, kHoldLabel } from "../ui/hold_sender";

@@ -1,5 +1,5 @@
 // The pad's elements: a bar with one's name, the map with its messages, the helm, and the tools.
-import { kLessonToolNames, type LessonTool } from "../codec/lesson";
+import { kLessonToolNames, type LessonTool } from "../../client/codec/lesson";
 import { make } from "../ui/dom";
 import { toolIcon } from "./icons";
 import { kPadTexts } from "../ui/pad_texts";

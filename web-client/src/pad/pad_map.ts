@@ -1,11 +1,13 @@
 // The pad's map over time: frames of the server, the view of the moment, and one picture of both.
 import type { Haptics } from "../app/haptics";
-import type { GreetingInfo } from "../codec/greeting";
-import type { GroundGrid } from "../codec/ground";
-import type { FingerInfo } from "../codec/strokes";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { GroundGrid } from "../../client/codec/ground";
+import type { FingerInfo } from "../../client/codec/strokes";
 import type { Frame } from "../net/messages";
-import { mixBodies, type BodyPose } from "../scene/frames/bodies";
-import { mixFloaters, type FloaterPose } from "../scene/frames/floaters";
+import type { BodyPose } from "../../client/codec/bodies";
+import { mixBodies } from "../scene/frames/bodies";
+import type { FloaterPose } from "../../client/codec/floaters";
+import { mixFloaters } from "../scene/frames/floaters";
 import { elevationAtM } from "../scene/frames/height_field";
 import { StreamedFrames } from "../scene/frames/streamed_frames";
 import { mixAngle } from "../scene/maths/interpolate";

@@ -6,11 +6,12 @@ import { CommandSender } from "../app/command_sender";
 import { Haptics } from "../app/haptics";
 import { connectKeyboardTools } from "../app/keyboard_tools";
 import { GamepadTools } from "../app/virtual_pointer";
-import type { GreetingInfo } from "../codec/greeting";
-import type { LessonTool } from "../codec/lesson";
-import type { FingerInfo } from "../codec/strokes";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { LessonTool } from "../../client/codec/lesson";
+import type { FingerInfo } from "../../client/codec/strokes";
 import { IdentityStore, sessionStorageIfAny } from "../net/identity_store";
-import type { CommandAction, ConnectionState, PageEventHandlers } from "../net/messages";
+import type { CommandAction, ConnectionState } from "../../client/session/events";
+import type { PageEventHandlers } from "../net/messages";
 import { openWaterClient, socketUrl } from "../net/water_client";
 import { setText } from "../ui/dom";
 import { kTeamColors } from "../ui/game_texts";
@@ -97,8 +98,7 @@ class PadPage {
     this.connectMap();
     connectKeyboardTools({ canvas: this.elements.canvas, isHelm: () => this.mode === "boat", isPaddle: () => this.mode === "wave" });
     this.client.start(url, this.identity);
-    this.client.call("setLayers", ["surface", "bodies", "floaters"]);
-    this.client.call("setDetail", "coarse");
+    this.client.want({ layers: ["surface", "bodies", "floaters"], detail: "coarse" });
     this.choose((keptChoice(kModeKey) as LessonTool | undefined) ?? "finger");
     const frame = (): void => {
       requestAnimationFrame(frame);
@@ -198,7 +198,7 @@ class PadPage {
     }
     this.mode = mode;
     keepChoice(kModeKey, mode);
-    this.client.call("setFrameRate", mode === "boat" ? kRatesHz.boat : kRatesHz.other);
+    this.client.want({ frameRateHz: mode === "boat" ? kRatesHz.boat : kRatesHz.other });
     this.refresh();
   }
 
@@ -265,7 +265,7 @@ class PadPage {
       this.boat.rest();
     };
     document.addEventListener("visibilitychange", () => {
-      this.client.call("setVisible", !document.hidden);
+      this.client.want({ visible: !document.hidden });
       if (document.hidden) leave();
     });
     window.addEventListener("blur", leave);

@@ -1,5 +1,5 @@
 // The pad's lines: connection, place in a race, score, countdown, result, and why nothing can be done.
-import type { ConnectionState } from "../net/messages";
+import type { ConnectionState } from "../../client/session/events";
 import { setText } from "../ui/dom";
 import { countdownText, gameHeadline, GoalNews, standingText, taskText } from "../ui/game_texts";
 import { describeState } from "../ui/hud";

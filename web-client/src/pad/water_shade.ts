@@ -1,5 +1,5 @@
 // The water of the map: elevations shaded as hills in light from the upper left, and land. Pure.
-import type { PlaneExtents } from "../codec/frame_types";
+import type { PlaneExtents } from "../../client/codec/frame_types";
 import { clamp } from "../scene/maths/interpolate";
 
 type Rgb = readonly [number, number, number];

@@ -21,7 +21,7 @@
 // Other looks than the natural one draw the water with passes of their own (looks/look_room.ts).
 import type { DataTexture } from "three";
 
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import type { Pass } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
 import { makeFluidPasses } from "./fluid/fluid";

@@ -1,11 +1,11 @@
 // Everything of one room as one picture: draws the passes that room_passes.ts lists, and what the page asks of them.
 import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
 
-import type { GameInfo } from "../codec/game";
-import type { BoatDetail, GreetingInfo } from "../codec/greeting";
-import type { GroundGrid } from "../codec/ground";
-import type { PersonInfo } from "../codec/people";
-import type { GaugeInfo } from "../codec/scene_info";
+import type { GameInfo } from "../../client/codec/game";
+import type { BoatDetail, GreetingInfo } from "../../client/codec/greeting";
+import type { GroundGrid } from "../../client/codec/ground";
+import type { PersonInfo } from "../../client/codec/people";
+import type { GaugeInfo } from "../../client/codec/scene_info";
 import type { Frame, SurfaceFrame } from "../net/messages";
 import { diveWater, type DiveWater } from "./camera/dive";
 import type { ViewedBox } from "./camera/framing";
@@ -13,8 +13,8 @@ import type { BoatColors } from "./boats/livery";
 import { makeNoiseTexture } from "./drawing/noise_texture";
 import type { Pass, Picture } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
-import type { BodyPose } from "./frames/bodies";
-import type { FloaterPose } from "./frames/floaters";
+import type { BodyPose } from "../../client/codec/bodies";
+import type { FloaterPose } from "../../client/codec/floaters";
 import { elevationAtM, elevationRangeM } from "./frames/height_field";
 import type { Ray, WaterShape } from "./frames/pick";
 import { StreamedFrames } from "./frames/streamed_frames";

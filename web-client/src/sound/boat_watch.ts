@@ -1,6 +1,7 @@
 // What boats do to the water: the bow slaps on it, the bow wave washes, hulls knock. Pure.
-import type { BoatDetail } from "../codec/greeting";
-import type { BodiesState, BodyPose } from "../scene/frames/bodies";
+import type { BoatDetail } from "../../client/codec/greeting";
+import type { BodyPose } from "../../client/codec/bodies";
+import type { BodiesState } from "../scene/frames/bodies";
 import { ramp } from "../scene/maths/interpolate";
 import type { SoundEvents } from "./sound_events";
 

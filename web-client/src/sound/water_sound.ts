@@ -1,8 +1,8 @@
 // The sound of a room's water: looks at each frame as it comes, and gives what it says to the voices. Loaded when sound is asked for.
 import type { PerspectiveCamera } from "three";
 
-import type { GreetingInfo } from "../codec/greeting";
-import type { FrameLayer } from "../codec/layers";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { FrameLayer } from "../../client/codec/layers";
 import type { FoamFrame } from "../net/messages";
 import type { StreamedFrames } from "../scene/frames/streamed_frames";
 import { clearanceM } from "../scene/landscape/clearance";

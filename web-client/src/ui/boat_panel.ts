@@ -1,8 +1,8 @@
 // Boats: launch one, choose one to steer, steer it with sliders or keys, remove it.
-import type { BoatDetail, GreetingInfo } from "../codec/greeting";
-import type { PersonInfo } from "../codec/people";
-import type { CommandAction } from "../net/messages";
-import type { BodyPose } from "../scene/frames/bodies";
+import type { BoatDetail, GreetingInfo } from "../../client/codec/greeting";
+import type { PersonInfo } from "../../client/codec/people";
+import type { CommandAction } from "../../client/session/events";
+import type { BodyPose } from "../../client/codec/bodies";
 import type { Followed } from "../scene/camera/camera_views";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";

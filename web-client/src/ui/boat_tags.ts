@@ -2,10 +2,10 @@
 // readers: the list of people says the same.
 import { Matrix4, type PerspectiveCamera } from "three";
 
-import type { GameInfo } from "../codec/game";
-import type { BoatDetail } from "../codec/greeting";
-import type { PersonInfo } from "../codec/people";
-import type { BodyPose } from "../scene/frames/bodies";
+import type { GameInfo } from "../../client/codec/game";
+import type { BoatDetail } from "../../client/codec/greeting";
+import type { PersonInfo } from "../../client/codec/people";
+import type { BodyPose } from "../../client/codec/bodies";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
 import { tagPlace, type TagPlace } from "./tag_place";

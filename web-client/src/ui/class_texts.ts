@@ -1,5 +1,5 @@
 // Texts of a class: the operator's controls of a lesson, and the projector: English. texts_de.ts has the German ones.
-import type { TeamName } from "../codec/people";
+import type { TeamName } from "../../client/codec/people";
 import { translation } from "../net/translation";
 import type { Row } from "./texts";
 

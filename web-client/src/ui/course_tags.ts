@@ -2,8 +2,8 @@
 // that it needs. Hidden from screen readers, as the boats' names are.
 import { Matrix4, type PerspectiveCamera } from "three";
 
-import type { CourseInfo, CourseMark } from "../codec/course";
-import type { GameInfo } from "../codec/game";
+import type { CourseInfo, CourseMark } from "../../client/codec/course";
+import type { GameInfo } from "../../client/codec/game";
 import type { PixelRect } from "../scene/camera/framing";
 import { make } from "./dom";
 import { kTeamColors } from "./game_texts";

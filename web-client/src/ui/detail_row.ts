@@ -1,5 +1,5 @@
 // Chooses the level of detail.
-import { kLevels } from "../codec/layers";
+import { kLevels } from "../../client/codec/layers";
 import type { DetailChoice } from "../net/messages";
 import { byId } from "./dom";
 import { SelectRow } from "./select_row";

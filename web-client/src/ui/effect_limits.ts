@@ -1,6 +1,6 @@
 // Ranges of the effect sliders: the options in scene.proto, narrowed to the limits of this room's water.
-import type { GreetingInfo } from "../codec/greeting";
-import { kBoatRanges, kBreakingWaveRanges, kControlBoatRanges, kSetSpeedRanges, kSplashRanges } from "../gen/ranges";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import { kBoatRanges, kBreakingWaveRanges, kControlBoatRanges, kSetSpeedRanges, kSplashRanges } from "../../client/gen/ranges";
 import type { SliderRange } from "./slider_row";
 
 interface EffectRange extends SliderRange {

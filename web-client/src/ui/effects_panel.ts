@@ -1,8 +1,8 @@
 // The effect sliders, the buttons for a splash and a wave, and the commands that they send.
-import type { GreetingInfo } from "../codec/greeting";
-import type { SideName } from "../codec/scene_info";
-import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
-import type { CommandAction } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { SideName } from "../../client/codec/scene_info";
+import { Side, WaveShape } from "../../client/gen/spindrift/v1/scene_pb";
+import type { CommandAction } from "../../client/session/events";
 import { byId } from "./dom";
 import { effectLimits, keptValue, type EffectLimits } from "./effect_limits";
 import { SelectRow, type Choice } from "./select_row";

@@ -1,8 +1,8 @@
 // The room's fidelity: the level, what each costs and how far off it is, and a note where the machine cannot keep up.
-import { type FidelityLevelInfo, type FidelityName, kFidelities, wireFidelity } from "../codec/fidelity";
-import type { GreetingInfo } from "../codec/greeting";
-import type { DiagnosticsInfo } from "../codec/parse";
-import type { CommandAction } from "../net/messages";
+import { type FidelityLevelInfo, type FidelityName, kFidelities, wireFidelity } from "../../client/codec/fidelity";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { DiagnosticsInfo } from "../../client/codec/parse";
+import type { CommandAction } from "../../client/session/events";
 import { make, setText } from "./dom";
 import { describeLevel, levelTable } from "./fidelity_texts";
 import { PaceWatch } from "./pace_watch";

@@ -1,5 +1,5 @@
 // What each fidelity level costs and how far off it is, in words.
-import type { FidelityLevelInfo } from "../codec/fidelity";
+import type { FidelityLevelInfo } from "../../client/codec/fidelity";
 import { plain } from "./numbers";
 import { kTexts } from "./texts";
 

@@ -3,9 +3,9 @@
 // screen readers: they move too fast to be read out.
 import { Matrix4, type PerspectiveCamera } from "three";
 
-import type { PersonInfo } from "../codec/people";
-import type { FingerInfo } from "../codec/strokes";
-import { StrokeTool } from "../gen/spindrift/v1/wire_pb";
+import type { PersonInfo } from "../../client/codec/people";
+import type { FingerInfo } from "../../client/codec/strokes";
+import { StrokeTool } from "../../client/gen/spindrift/v1/wire_pb";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
 import { tagPlace } from "./tag_place";

@@ -1,6 +1,6 @@
 // The kinds of objects that the tool Float drops, beside the tools; in the panel, folded, their density and what removes all of them.
-import type { CommandAction } from "../net/messages";
-import { kFloaterKinds, type FloaterKindName } from "../scene/frames/floaters";
+import type { CommandAction } from "../../client/session/events";
+import { kFloaterKinds, type FloaterKindName } from "../../client/codec/floaters";
 import { make } from "./dom";
 import { densityName } from "./floater_tools";
 import { keepChoice, keptChoice } from "./kept";

@@ -1,9 +1,9 @@
 // What the tools Float and Throw send: an object that is dropped, a stone that flies. Pure.
-import type { GreetingInfo } from "../codec/greeting";
-import { kFloaterRanges } from "../gen/ranges";
-import { FloaterKind } from "../gen/spindrift/v1/scene_pb";
-import type { CommandAction } from "../net/messages";
-import { kFloaterKinds, type FloaterKindName } from "../scene/frames/floaters";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import { kFloaterRanges } from "../../client/gen/ranges";
+import { FloaterKind } from "../../client/gen/spindrift/v1/scene_pb";
+import type { CommandAction } from "../../client/session/events";
+import { kFloaterKinds, type FloaterKindName } from "../../client/codec/floaters";
 import { clamp } from "../scene/maths/interpolate";
 import { clampTo } from "./effect_limits";
 import type { ToolName, ToolScale, WaterPlace } from "./tools";

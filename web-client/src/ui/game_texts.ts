@@ -1,6 +1,6 @@
 // A game in words: countdown, order of a race, score, result. Pure.
-import type { GameInfo, RacerInfo } from "../codec/game";
-import type { PersonInfo, TeamName } from "../codec/people";
+import type { GameInfo, RacerInfo } from "../../client/codec/game";
+import type { PersonInfo, TeamName } from "../../client/codec/people";
 import { fixed } from "./numbers";
 import { kTexts } from "./texts";
 

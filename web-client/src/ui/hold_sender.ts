@@ -1,7 +1,7 @@
 // Objects that are held → messages that pull them: one per interval and object, with the newest position. Clock and timers are injected.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
-import type { HoldFloaterSchema } from "../gen/spindrift/v1/wire_pb";
+import type { HoldFloaterSchema } from "../../client/gen/spindrift/v1/wire_pb";
 import { clamp } from "../scene/maths/interpolate";
 import type { SenderWorld } from "./latest_sender";
 import type { WaterPlace } from "./tools";

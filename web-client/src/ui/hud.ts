@@ -1,7 +1,8 @@
 // Shows the values measured by the server and the page. Each value is written when it arrives.
-import type { GreetingInfo } from "../codec/greeting";
-import type { DiagnosticsInfo } from "../codec/parse";
-import type { ConnectionState, LinkStats } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { DiagnosticsInfo } from "../../client/codec/parse";
+import type { ConnectionState } from "../../client/session/events";
+import type { LinkStats } from "../net/messages";
 import { byId, make, setText } from "./dom";
 import { showRooms } from "./room_links";
 import { kTexts } from "./texts";

@@ -1,7 +1,7 @@
 // What the server has said of lesson, game and people, and what follows for this visitor. Page, projector and pad share it.
-import type { GameInfo } from "../codec/game";
-import { kFreeLesson, type LessonInfo, type LessonTool } from "../codec/lesson";
-import type { PersonInfo, RoleName } from "../codec/people";
+import type { GameInfo } from "../../client/codec/game";
+import { kFreeLesson, type LessonInfo, type LessonTool } from "../../client/codec/lesson";
+import type { PersonInfo, RoleName } from "../../client/codec/people";
 import type { ToolName } from "./tools";
 import { kTexts } from "./texts";
 

@@ -1,5 +1,5 @@
 // Texts of pads: English. texts_de.ts has the German ones.
-import type { LessonTool } from "../codec/lesson";
+import type { LessonTool } from "../../client/codec/lesson";
 import { translation } from "../net/translation";
 
 const kEnglish = {

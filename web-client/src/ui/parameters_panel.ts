@@ -1,6 +1,6 @@
 // The scene's parameters as sliders, built from the greeting.
-import type { ParameterInfo } from "../codec/greeting";
-import type { CommandAction } from "../net/messages";
+import type { ParameterInfo } from "../../client/codec/greeting";
+import type { CommandAction } from "../../client/session/events";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
 

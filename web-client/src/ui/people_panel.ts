@@ -1,6 +1,6 @@
 // The people in the room with colour, role and boats, and the user's own name and token.
-import type { PersonInfo, WelcomeInfo } from "../codec/people";
-import type { Identity } from "../net/messages";
+import type { PersonInfo, WelcomeInfo } from "../../client/codec/people";
+import type { Identity } from "../../client/session/events";
 import { byId, make } from "./dom";
 import { kTexts } from "./texts";
 

@@ -1,5 +1,5 @@
 // Says what others did to the water, and what the server did by itself. What this page asked for is seen in the water and in its controls.
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import type { PageEvent } from "../net/messages";
 import { kTexts } from "./texts";
 

@@ -1,7 +1,7 @@
 // Controls that affect everybody in the room: pause, single steps, reset, speed, scene, fidelity.
-import type { GreetingInfo } from "../codec/greeting";
-import type { DiagnosticsInfo } from "../codec/parse";
-import type { CommandAction } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import type { DiagnosticsInfo } from "../../client/codec/parse";
+import type { CommandAction } from "../../client/session/events";
 import { byId, make, setText } from "./dom";
 import { speedRange } from "./effect_limits";
 import { FidelityRow } from "./fidelity_row";

@@ -1,9 +1,10 @@
 // The card that shares a view of the water: a link to copy, for another program (Web Share), and as a QR code. The link leads to this room;
 // to a room of its own with the same scene and values; or, from an operator, to a new room in the role of presenter, player or watcher, or as
 // a kiosk. Or it gives the code that shows the view in another page.
-import type { RoleName } from "../codec/people";
-import { textOfValues, type ParameterValue } from "../net/room_address";
-import type { RoomWithTokens } from "../net/room_requests";
+import type { RoleName } from "../../client/codec/people";
+import type { ParameterValue } from "../../client/rest/rooms";
+import { textOfValues } from "../net/room_address";
+import type { RoomWithTokens } from "../../client/rest/rooms";
 import { makeCard } from "./card";
 import { make, setText } from "./dom";
 import { embedCode } from "./embed_code";

@@ -1,5 +1,5 @@
 // Texts of the card of "Share": English. texts_de.ts has the German ones.
-import type { RoleName } from "../codec/people";
+import type { RoleName } from "../../client/codec/people";
 import { translation } from "../net/translation";
 import type { Row } from "./texts";
 

@@ -1,6 +1,6 @@
 // What is at each side of the water, so that a list names a side by what one sees there.
-import type { GreetingInfo } from "../codec/greeting";
-import { hasRockyShores, kSideNames, type SideName } from "../codec/scene_info";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import { hasRockyShores, kSideNames, type SideName } from "../../client/codec/scene_info";
 
 export type SideWhat = "beach" | "sea" | "rocks" | "quay" | "wall" | "end";
 /** As seen from the first view. */

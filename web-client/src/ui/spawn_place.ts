@@ -1,5 +1,5 @@
 // Finds a position for a new boat: deep enough, and clear of obstacles and other boats. Pure.
-import type { GreetingInfo } from "../codec/greeting";
+import type { GreetingInfo } from "../../client/codec/greeting";
 import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, depthAtM, type Bed } from "../scene/landscape/terrain";
 

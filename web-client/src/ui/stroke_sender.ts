@@ -1,7 +1,7 @@
 // Fingers in the water → messages of strokes: the points of each finger, together once per interval. Clock and timers are injected.
 import type { MessageInitShape } from "@bufbuild/protobuf";
 
-import type { StrokeSchema } from "../gen/spindrift/v1/wire_pb";
+import type { StrokeSchema } from "../../client/gen/spindrift/v1/wire_pb";
 import type { SenderWorld } from "./latest_sender";
 import type { StrokeSize } from "./tools";
 import { kTexts } from "./texts";

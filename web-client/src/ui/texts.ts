@@ -1,12 +1,12 @@
 // Texts of the page for people: the English ones of what is loaded at first. texts_de.ts has the German ones, which have to have the same
 // keys. Parts that are loaded later have tables of their own, *_texts.ts; messages of the connection are in net/net_texts.ts. What the
 // server says by itself (parameters, refusals) is English.
-import type { LevelName } from "../codec/layers";
-import type { FidelityName } from "../codec/fidelity";
-import type { LessonTool } from "../codec/lesson";
-import type { RoleName, TeamName } from "../codec/people";
+import type { LevelName } from "../../client/codec/layers";
+import type { FidelityName } from "../../client/codec/fidelity";
+import type { LessonTool } from "../../client/codec/lesson";
+import type { RoleName, TeamName } from "../../client/codec/people";
 import type { TierName } from "../scene/drawing/quality";
-import type { FloaterKindName } from "../scene/frames/floaters";
+import type { FloaterKindName } from "../../client/codec/floaters";
 import type { PresetName } from "../scene/light/daylight";
 import type { LookName } from "../scene/looks/looks";
 import { translation } from "../net/translation";

@@ -1,5 +1,5 @@
 // The German texts of the page. Pads say "du" to children; the page addresses nobody where that reads well. Loaded where German is chosen.
-import type { TeamName } from "../codec/people";
+import type { TeamName } from "../../client/codec/people";
 import { kGermanNetTexts } from "../net/net_texts_de";
 import type { translation } from "../net/translation";
 import type { ClassTexts } from "./class_texts";

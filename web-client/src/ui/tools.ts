@@ -1,9 +1,9 @@
 // The tools: what a tap, a drag or a long press on the water does with each, and the commands that it sends. Sizes follow from the water.
-import type { GreetingInfo } from "../codec/greeting";
-import { kBreakingWaveRanges, kStrokeRanges } from "../gen/ranges";
-import { Side, WaveShape } from "../gen/spindrift/v1/scene_pb";
-import { StrokeTool } from "../gen/spindrift/v1/wire_pb";
-import type { CommandAction } from "../net/messages";
+import type { GreetingInfo } from "../../client/codec/greeting";
+import { kBreakingWaveRanges, kStrokeRanges } from "../../client/gen/ranges";
+import { Side, WaveShape } from "../../client/gen/spindrift/v1/scene_pb";
+import { StrokeTool } from "../../client/gen/spindrift/v1/wire_pb";
+import type { CommandAction } from "../../client/session/events";
 import { clampTo, type EffectLimits } from "./effect_limits";
 
 export type ToolName = "finger" | "splash" | "paddle" | "rain" | "calm" | "float" | "throw";

@@ -1,7 +1,7 @@
 // A boat as triangles: its hull with all that it carries, and its lid, a surface over everything inside the gunwale.
 import type { BufferGeometry } from "three";
 
-import type { BoatDetail } from "../../codec/greeting";
+import type { BoatDetail } from "../../../client/codec/greeting";
 import { MeshBuilder, type Point } from "../meshes/mesh_builder";
 import { addFittings, launchSoleM, type BoatLamp, type Detail } from "./fittings";
 import { HullLines, kLowestAt } from "./lines";

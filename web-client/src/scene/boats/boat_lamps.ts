@@ -1,7 +1,7 @@
 // Navigation lights: which of them are seen from where (International Regulations for Preventing Collisions at Sea, rules 21 and 23).
 import { Vector3, type Object3D } from "three";
 
-import type { BoatDetail } from "../../codec/greeting";
+import type { BoatDetail } from "../../../client/codec/greeting";
 import { kLampColors, type LampColor, type Lamps } from "../light/lamps";
 import { clamp } from "../maths/interpolate";
 import type { BoatLamp } from "./fittings";

@@ -3,8 +3,9 @@
 // behind it, is not drawn.
 import { Group, Mesh, Scene, type BufferGeometry, type RawShaderMaterial, type Vector3 } from "three";
 
-import type { BoatDetail } from "../../codec/greeting";
-import { mixBodies, type BodiesState, type BodyPose } from "../frames/bodies";
+import type { BoatDetail } from "../../../client/codec/greeting";
+import type { BodyPose } from "../../../client/codec/bodies";
+import { mixBodies, type BodiesState } from "../frames/bodies";
 import type { Lamps } from "../light/lamps";
 import { castsShadow } from "../meshes/casters";
 import { makeBoatParts } from "./boat_geometry";

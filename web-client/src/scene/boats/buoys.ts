@@ -2,8 +2,8 @@
 // aside. Their positions follow from the scene alone; the vertex shader moves them with the drawn water (shaders/solid.vert, FLOATS).
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
-import { kSideNames, type BreakwaterInfo } from "../../codec/scene_info";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import { kSideNames, type BreakwaterInfo } from "../../../client/codec/scene_info";
 import { clearanceM } from "../landscape/clearance";
 import { bedOf, depthAtM, insideM } from "../landscape/terrain";
 import { kLampColors, type Lamps } from "../light/lamps";

@@ -2,8 +2,8 @@
 // The server does not know their meshes: boats pass through. The vertex shader moves them with the drawn water (FLOATS in solid.vert).
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
-import type { CourseGoal, CourseInfo, CourseMark } from "../../codec/course";
-import type { GameInfo } from "../../codec/game";
+import type { CourseGoal, CourseInfo, CourseMark } from "../../../client/codec/course";
+import type { GameInfo } from "../../../client/codec/game";
 import { clamp } from "../maths/interpolate";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";

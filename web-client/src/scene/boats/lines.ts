@@ -1,7 +1,7 @@
 // The lines plan of a boat: keel, sheer, half breadths and profile as functions of the position along the hull, all from the hull's length,
 // beam, height and draught. The keel touches half the height below the origin, the deck's lowest point half the height above it; the
 // widest section has the beam, and the hull reaches from transom to stem over the length. Bow along +x, starboard +z. Pure.
-import type { BoatDetail } from "../../codec/greeting";
+import type { BoatDetail } from "../../../client/codec/greeting";
 import { clamp, smooth } from "../maths/interpolate";
 import type { Point } from "../meshes/mesh_builder";
 

@@ -1,8 +1,8 @@
 // Where a camera may be: above the water everywhere, and in the water of the square where it is deep enough. Pure.
 import type { Vector3 } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
-import type { ObstacleInfo } from "../../codec/scene_info";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import { clearanceM } from "../landscape/clearance";
 import { coastHeightM } from "../landscape/coast";
 import { bedOf, groundHeightM } from "../landscape/terrain";

@@ -1,7 +1,7 @@
 // Places a camera so that a whole box is seen inside a part of the canvas. Pure: no DOM, no renderer.
 import { Vector3 } from "three";
 
-import type { FirstViewInfo, SideName } from "../../codec/scene_info";
+import type { FirstViewInfo, SideName } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 
 /** A part of the canvas in CSS pixels from its top left corner. */

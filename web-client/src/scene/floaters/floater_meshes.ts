@@ -1,7 +1,7 @@
 // Objects in the water as triangles, of size 1 about their middle: x along, y up, z across, in the shapes of FloaterKind in scene.proto.
 import type { BufferAttribute, BufferGeometry } from "three";
 
-import type { FloaterKindName } from "../frames/floaters";
+import type { FloaterKindName } from "../../../client/codec/floaters";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addPlate, addRod, addTurned, addWindow, type Turn } from "../meshes/shapes";

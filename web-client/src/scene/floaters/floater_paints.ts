@@ -1,5 +1,5 @@
 // Own paints of objects by their ids, so that every page shows the same one in the same colour.
-import type { FloaterKindName } from "../frames/floaters";
+import type { FloaterKindName } from "../../../client/codec/floaters";
 import { hash } from "../maths/random";
 
 type Rgb = readonly [red: number, green: number, blue: number];

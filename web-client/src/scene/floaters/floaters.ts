@@ -1,8 +1,9 @@
 // The objects in the water: one mesh per kind, made when its first object comes, drawn once with an instance per object.
 import { DynamicDrawUsage, InstancedBufferGeometry, InstancedInterleavedBuffer, InterleavedBufferAttribute, Mesh, type RawShaderMaterial, type Scene } from "three";
 
-import { kMaxFloaterCount } from "../../codec/frame_types";
-import { kFloaterKinds, mixFloaters, type FloaterKindName, type FloaterPose, type FloatersState } from "../frames/floaters";
+import { kMaxFloaterCount } from "../../../client/codec/frame_types";
+import { kFloaterKinds, type FloaterKindName, type FloaterPose } from "../../../client/codec/floaters";
+import { mixFloaters, type FloatersState } from "../frames/floaters";
 import { castsShadow } from "../meshes/casters";
 import { makeFloaterGeometry } from "./floater_meshes";
 import { writePaint } from "./floater_paints";

@@ -1,23 +1,7 @@
 // Bodies frames: unpacking, and interpolation between two of them. Pure.
-import { kBodyBytes } from "../../codec/frame_types";
+import { readBodies, type BodyPose } from "../../../client/codec/bodies";
 import type { BodiesFrame } from "../../net/messages";
 import { mixAngle } from "../maths/interpolate";
-
-export interface BodyPose {
-  boatId: number;
-  xM: number;
-  yM: number;
-  zM: number;
-  /** From +x toward +z. */
-  headingRad: number;
-  /** Positive lifts the bow. */
-  pitchRad: number;
-  /** Positive lowers starboard. */
-  rollRad: number;
-  speedMps: number;
-  throttle: number;
-  rudder: number;
-}
 
 /** One unpacked frame. */
 export interface BodiesState {
@@ -31,23 +15,7 @@ export function makePose(): BodyPose {
 }
 
 export function unpackBodies(frame: BodiesFrame): BodiesState {
-  const view = new DataView(frame.buffer);
-  const angle = (at: number): number => (view.getInt16(at, true) / 32767) * Math.PI;
-  const bodies: BodyPose[] = [];
-  for (let at = 0; at < frame.count * kBodyBytes; at += kBodyBytes)
-    bodies.push({
-      boatId: view.getUint32(at, true),
-      xM: view.getInt32(at + 4, true) / 1000,
-      yM: view.getInt32(at + 8, true) / 1000,
-      zM: view.getInt32(at + 12, true) / 1000,
-      headingRad: angle(at + 16),
-      pitchRad: angle(at + 18),
-      rollRad: angle(at + 20),
-      speedMps: view.getInt16(at + 22, true) / 100,
-      throttle: view.getInt8(at + 24) / 127,
-      rudder: view.getInt8(at + 25) / 127,
-    });
-  return { timeS: frame.timeS, stateId: frame.stateId, bodies };
+  return { timeS: frame.timeS, stateId: frame.stateId, bodies: readBodies(new DataView(frame.buffer), frame.count) };
 }
 
 /** A longer distance in one frame is a jump: the boat left one periodic side and came in at the other. */

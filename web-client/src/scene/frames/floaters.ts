@@ -1,28 +1,10 @@
 // Frames of objects in the water: unpacking, and interpolation between two of them. Pure.
-import { kFloaterBytes } from "../../codec/frame_types";
+import { normalize, readFloaters, type FloaterKindName, type FloaterPose } from "../../../client/codec/floaters";
 import type { FloatersFrame } from "../../net/messages";
 import { clamp } from "../maths/interpolate";
 
-/** In the order of FloaterKind in scene.proto, from 1 on. */
-export const kFloaterKinds = ["crate", "ball", "barrel", "plank", "duck", "buoy", "raft", "stone"] as const;
-export type FloaterKindName = (typeof kFloaterKinds)[number];
-
 /** Radius of the sphere round the whole object, in sizes. */
 export const kRadiusSizes: Record<FloaterKindName, number> = { crate: 0.87, ball: 0.5, barrel: 0.6, plank: 0.52, duck: 0.52, buoy: 0.58, raft: 0.61, stone: 0.5 };
-
-export interface FloaterPose {
-  floaterId: number;
-  kind: FloaterKindName;
-  /** Middle. */
-  xM: number;
-  yM: number;
-  zM: number;
-  /** Rotation from the object's own axes to the water's: a unit quaternion x, y, z, w. */
-  turn: [number, number, number, number];
-  /** Longest extent. */
-  sizeM: number;
-  isHeld: boolean;
-}
 
 /** One unpacked frame. */
 export interface FloatersState {
@@ -31,37 +13,12 @@ export interface FloatersState {
   floaters: FloaterPose[];
 }
 
-const kHeldFlag = 1;
-
 function makePose(): FloaterPose {
   return { floaterId: 0, kind: "crate", xM: 0, yM: 0, zM: 0, turn: [0, 0, 0, 1], sizeM: 0, isHeld: false };
 }
 
-/** Makes the quaternion a unit one; no rotation if it has no length. */
-function normalize(turn: FloaterPose["turn"]): FloaterPose["turn"] {
-  const length = Math.hypot(...turn);
-  if (length < 1e-6) turn.fill(0, 0, 3).fill(1, 3);
-  else for (let k = 0; k < 4; ++k) turn[k]! /= length;
-  return turn;
-}
-
 export function unpackFloaters(frame: FloatersFrame): FloatersState {
-  const view = new DataView(frame.buffer);
-  const { quantumM } = frame;
-  const floaters: FloaterPose[] = [];
-  for (let at = 0; at < frame.count * kFloaterBytes; at += kFloaterBytes)
-    floaters.push({
-      floaterId: view.getUint32(at, true),
-      xM: view.getInt32(at + 4, true) * quantumM,
-      yM: view.getInt32(at + 8, true) * quantumM,
-      zM: view.getInt32(at + 12, true) * quantumM,
-      turn: normalize([view.getInt16(at + 16, true), view.getInt16(at + 18, true), view.getInt16(at + 20, true), view.getInt16(at + 22, true)]),
-      sizeM: view.getUint16(at + 24, true) / 100,
-      // A kind that only a newer server knows looks like a crate.
-      kind: kFloaterKinds[view.getUint8(at + 26) - 1] ?? "crate",
-      isHeld: (view.getUint8(at + 27) & kHeldFlag) !== 0,
-    });
-  return { timeS: frame.timeS, stateId: frame.stateId, floaters };
+  return { timeS: frame.timeS, stateId: frame.stateId, floaters: readFloaters(new DataView(frame.buffer), frame.count, frame.quantumM) };
 }
 
 /**

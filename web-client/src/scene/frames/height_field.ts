@@ -1,6 +1,6 @@
 // Elevations on the CPU, from a frame's int16 samples: for clicks and for minimum and maximum, not for drawing.
 import type { SurfaceFrame } from "../../net/messages";
-import { bilinear } from "../maths/interpolate";
+import { bilinear } from "../../../client/codec/bilinear";
 
 /** Returns the bilinear elevation in metres at (x, z), clamped to the water's edge. */
 export function elevationAtM(frame: SurfaceFrame, xM: number, zM: number): number {

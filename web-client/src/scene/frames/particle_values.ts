@@ -1,5 +1,5 @@
 // Values of single particles, from the 12 bytes that the server streams, and the particle under a ray. Pure.
-import { kParticleBytes } from "../../codec/frame_types";
+import { kParticleBytes } from "../../../client/codec/frame_types";
 import type { ParticleFrame } from "../../net/messages";
 import type { Ray } from "./pick";
 

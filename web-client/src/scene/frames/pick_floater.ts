@@ -1,5 +1,6 @@
 // Finds the object under a pointer: a ray against bounding spheres. Pure.
-import { kRadiusSizes, type FloaterPose } from "./floaters";
+import type { FloaterPose } from "../../../client/codec/floaters";
+import { kRadiusSizes } from "./floaters";
 import type { Ray } from "./pick";
 
 /**

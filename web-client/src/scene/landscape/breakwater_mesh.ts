@@ -2,7 +2,7 @@
 // middle is the origin, its length lies along x. The wall's outline is that of the scene; the stones stand out under water.
 import type { BufferGeometry } from "three";
 
-import type { BreakwaterInfo } from "../../codec/scene_info";
+import type { BreakwaterInfo } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";

@@ -1,5 +1,5 @@
 // Distances to obstacles. Pure.
-import type { ObstacleInfo } from "../../codec/scene_info";
+import type { ObstacleInfo } from "../../../client/codec/scene_info";
 
 /** Returns the distance from a point to the outline of an obstacle; negative inside. */
 export function clearanceM(obstacle: ObstacleInfo, xM: number, zM: number): number {

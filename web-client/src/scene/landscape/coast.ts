@@ -2,7 +2,7 @@
 // at closed sides without a beach quays, or rocky shores where the scene has a beach elsewhere. Pure.
 import type { BufferGeometry } from "three";
 
-import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../codec/scene_info";
+import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../../client/codec/scene_info";
 import { clamp, smoothstep } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { bedPaint, mixPaint } from "./paints";

@@ -1,7 +1,7 @@
 // The bed with its beaches, the rocks and the breakwaters. Built once per scene.
 import { Group, Mesh, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
-import type { ObstacleInfo } from "../../codec/scene_info";
+import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import { kLampColors, type Lamps } from "../light/lamps";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";

@@ -1,7 +1,7 @@
 // Rocks as triangles, standing on the bed. Their outline at the level of the still water is that of the scene.
 import type { BufferGeometry } from "three";
 
-import type { RockInfo } from "../../codec/scene_info";
+import type { RockInfo } from "../../../client/codec/scene_info";
 import { clamp, mix, smooth, smoothstep } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";

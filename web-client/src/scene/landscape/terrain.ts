@@ -1,9 +1,10 @@
 // The bed: level at the scene's depth, rising toward sides with a beach, with dry land behind a shore; or the ground that the server
 // sends for a scene with a bed. Pure.
-import type { GreetingInfo } from "../../codec/greeting";
-import type { GroundGrid } from "../../codec/ground";
-import { kSideNames, type BeachInfo, type SideName } from "../../codec/scene_info";
-import { bilinear, clamp } from "../maths/interpolate";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { GroundGrid } from "../../../client/codec/ground";
+import { kSideNames, type BeachInfo, type SideName } from "../../../client/codec/scene_info";
+import { bilinear } from "../../../client/codec/bilinear";
+import { clamp } from "../maths/interpolate";
 
 /** Width of the land behind a shore: kLandBeaches of the beach's width, at most kLandSides of the water's longer side. */
 const kLandBeaches = 0.45;

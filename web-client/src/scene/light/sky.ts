@@ -17,7 +17,7 @@ import {
   type WebGLRenderer,
 } from "three";
 
-import type { WaterTypeName } from "../../codec/scene_info";
+import type { WaterTypeName } from "../../../client/codec/scene_info";
 import { makeFullscreenGeometry } from "../drawing/fullscreen";
 import type { Quality } from "../drawing/quality";
 import { makeMaterial, type Uniforms } from "../shaders/materials";

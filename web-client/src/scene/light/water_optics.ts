@@ -1,5 +1,5 @@
 // Optical types of water: what it absorbs and scatters, and the colours that follow for the shaders (shaders/water_optics.glsl). Pure.
-import type { WaterTypeName } from "../../codec/scene_info";
+import type { WaterTypeName } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 import { mapRgb, type Rgb } from "./light";
 

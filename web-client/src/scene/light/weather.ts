@@ -1,5 +1,5 @@
 // How hard it rains in a picture, and how hazy the air is. Pure.
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import { ramp } from "../maths/interpolate";
 
 /** Haze of the open air takes half of the light at this many sides of the square. */

@@ -5,7 +5,7 @@
 //   spheres    particles, solids -> canvas
 //   present    solids -> canvas where there is no water
 // There is no liquid, refraction or glass: they would change the colours.
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import { FluidParticles } from "../fluid/fluid_particles";

@@ -2,7 +2,7 @@
 // field, the look's value or the foam, the sea around, and the depth of the solids. Writes the canvas and its depth.
 import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture, Resource } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import { makeGroundTexture } from "../landscape/ground_texture";

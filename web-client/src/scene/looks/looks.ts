@@ -1,6 +1,6 @@
 // The looks of the water: its natural one, data in colours, and the plain one of the thesis. Which quantities they show, and which
 // of them a room has data for. Pure.
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import { kDensityRatios } from "../frames/particle_values";
 import type { ColourMapName } from "./colour_map";
 

@@ -5,7 +5,7 @@ import type { Between } from "../frames/frame_ring";
 import type { PlaneCounts } from "../frames/frame_textures";
 import { elevationRangeM } from "../frames/height_field";
 import { depthAtM, type Bed } from "../landscape/terrain";
-import { bilinear } from "../maths/interpolate";
+import { bilinear } from "../../../client/codec/bilinear";
 import type { ShownSurfaces } from "../water/field_pass";
 
 /** A rectangle of samples, and what is beyond its edges: the opposite edge, or the edge's own samples again. */

@@ -1,5 +1,5 @@
 // How far the surface is from rest, over the water alone: the values that a range follows. Pure.
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import { isCovered } from "../landscape/clearance";
 import { bedOf, depthAtM } from "../landscape/terrain";
 import { kLeastDepths, type ShownSurface } from "./surface_values";

@@ -2,7 +2,7 @@
 // time. Reads nothing but the time. Writes the rain.
 import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
 import { rainShare } from "../light/weather";
 import { makeFastRandom } from "../maths/random";

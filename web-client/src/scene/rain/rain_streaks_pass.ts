@@ -2,7 +2,7 @@
 // the canvas. Writes the canvas.
 import { BufferAttribute, BufferGeometry, LineSegments, NormalBlending, Scene, Vector2, Vector3, type RawShaderMaterial } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
 import { rainShare } from "../light/weather";

@@ -3,7 +3,7 @@
 // the simulated water by it (docs/wind_sea.md). The shorter one is ripples.
 import { Vector2, Vector4 } from "three";
 
-import { kSideNames, type SideName, type WaveInfo, type WindInfo } from "../../codec/scene_info";
+import { kSideNames, type SideName, type WaveInfo, type WindInfo } from "../../../client/codec/scene_info";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { Uniforms } from "../shaders/materials";

@@ -1,6 +1,6 @@
 // Ripples: waves too short for the simulation's grid, as the second cascade of the open sea. They change the normals only, inside and
 // outside the simulated square alike. Pure.
-import type { WindInfo } from "../../codec/scene_info";
+import type { WindInfo } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 import { makeRandom, type PlaneWave } from "./sea_state";
 

@@ -1,6 +1,6 @@
 // The sea that wind raises, as a sum of plane waves: the same 32 waves that the server lets in through the open sides, so that the sea
 // drawn outside has the heights that the simulated water has at its edge. Formulas and sources: docs/wind_sea.md. Pure.
-import type { WaveInfo, WindInfo } from "../../codec/scene_info";
+import type { WaveInfo, WindInfo } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 
 /** amplitude cos(kx x + kz z - omega t + phase), x and z from the centre of the water. */

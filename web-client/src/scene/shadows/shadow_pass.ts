@@ -2,7 +2,7 @@
 // shade (shadow.glsl). Reads the frames and the field, which move boats and buoys. Writes the shadow.
 import { Camera, DepthTexture, DoubleSide, LessEqualCompare, LinearFilter, Matrix4, RedFormat, UnsignedIntType, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Scene, type Texture, type Vector3 } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
 import { bedOf } from "../landscape/terrain";
 import type { Sky } from "../light/sky";

@@ -1,6 +1,6 @@
 // The ground under the cells of a nonlinear wave, from which real depths follow. Pure.
-import type { GreetingInfo } from "../../codec/greeting";
-import type { ObstacleInfo, WaveInfo } from "../../codec/scene_info";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { ObstacleInfo, WaveInfo } from "../../../client/codec/scene_info";
 import type { PlaneCounts } from "../frames/frame_textures";
 import { bedOf, depthAtM, type Bed } from "../landscape/terrain";
 

@@ -1,8 +1,8 @@
 // Gauges as slender poles, graduated from the bed to above the water; one mesh for all.
 import { Mesh, type BufferGeometry, type Material } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
-import type { GaugeInfo } from "../../codec/scene_info";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { GaugeInfo } from "../../../client/codec/scene_info";
 import { bedOf, depthAtM } from "../landscape/terrain";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";

@@ -1,7 +1,7 @@
 // A swimming pool: tiled floor and walls, a rim of stone, a deck of slabs, and a lawn with a hedge.
 import { Group, Mesh, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { makeMaterial, type Uniforms } from "../shaders/materials";

@@ -3,9 +3,9 @@
 // Writes the solids' colour (linear light) and depth.
 import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
-import type { GameInfo } from "../../codec/game";
-import type { BoatDetail, GreetingInfo } from "../../codec/greeting";
-import type { GaugeInfo } from "../../codec/scene_info";
+import type { GameInfo } from "../../../client/codec/game";
+import type { BoatDetail, GreetingInfo } from "../../../client/codec/greeting";
+import type { GaugeInfo } from "../../../client/codec/scene_info";
 import { Boats } from "../boats/boats";
 import { buoyPlaces, Buoys } from "../boats/buoys";
 import { CourseMarks } from "../boats/course_marks";
@@ -13,8 +13,8 @@ import type { BoatColors } from "../boats/livery";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import { Floaters } from "../floaters/floaters";
-import type { BodyPose } from "../frames/bodies";
-import type { FloaterPose } from "../frames/floaters";
+import type { BodyPose } from "../../../client/codec/bodies";
+import type { FloaterPose } from "../../../client/codec/floaters";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import { bedOf } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";

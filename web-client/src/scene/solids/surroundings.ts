@@ -1,8 +1,8 @@
 // What is around the water: chooses and owns the parts of the scene's setting.
 import type { Object3D, Vector3 } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
-import type { SettingName, SideName } from "../../codec/scene_info";
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { SettingName, SideName } from "../../../client/codec/scene_info";
 import type { ViewedBox } from "../camera/framing";
 import { makeCoastGeometry } from "../landscape/coast";
 import { Landscape, makeGroundGeometry } from "../landscape/landscape";

@@ -1,7 +1,7 @@
 // What the parts of a setting are built with, and what they tell the water.
 import type { IUniform, RawShaderMaterial, Texture } from "three";
 
-import type { SideKind, SideName } from "../../codec/scene_info";
+import type { SideKind, SideName } from "../../../client/codec/scene_info";
 import type { Quality } from "../drawing/quality";
 import type { Sky } from "../light/sky";
 import type { OpenSea } from "../sea/open_sea";

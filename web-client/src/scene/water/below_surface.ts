@@ -2,7 +2,7 @@
 // decides by itself whether its way begins in the water, so that the surface divides the picture where the camera is half below it.
 import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMaterial } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
 import { elevationAtM } from "../frames/height_field";
 import { makeMaterial, type Uniforms } from "../shaders/materials";

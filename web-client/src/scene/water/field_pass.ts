@@ -3,8 +3,8 @@
 // Reads the surface frames around that time. Writes the field.
 import { ClampToEdgeWrapping, DataTexture, IntType, NearestFilter, RedIntegerFormat, RepeatWrapping, ShortType, Vector2, Vector3, Vector4, WebGLRenderTarget, type IUniform, type Texture, type WebGLRenderer } from "three";
 
-import { kMaxResolutionCount } from "../../codec/frame_types";
-import type { WaveInfo } from "../../codec/scene_info";
+import { kMaxResolutionCount } from "../../../client/codec/frame_types";
+import type { WaveInfo } from "../../../client/codec/scene_info";
 import type { SurfaceFrame } from "../../net/messages";
 import { FullscreenPass } from "../drawing/fullscreen";
 import type { Pass, Picture } from "../drawing/pass";

@@ -1,7 +1,7 @@
 // The meshes of the water: a grid over the square, which in an open sea continues to the horizon, and the sides of a block of water.
 import { BufferAttribute, BufferGeometry } from "three";
 
-import type { SideName } from "../../codec/scene_info";
+import type { SideName } from "../../../client/codec/scene_info";
 import type { WaterEdge } from "../solids/surroundings_context";
 
 /** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */

@@ -4,7 +4,7 @@
 // A camera close to the surface sees it from below as well (below_surface.ts).
 import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
 
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";

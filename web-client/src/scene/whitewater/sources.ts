@@ -1,10 +1,10 @@
 // Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, where the surface rises against rocks
 // and breakwaters, and among fast white particles. Every source adds a mean number per second and area, length or particle, so that the
 // picture does not depend on the rates of frames and pictures. Pure: no renderer.
-import type { BoatDetail } from "../../codec/greeting";
-import type { ObstacleInfo } from "../../codec/scene_info";
+import type { BoatDetail } from "../../../client/codec/greeting";
+import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import type { FoamFrame, ParticleFrame } from "../../net/messages";
-import type { BodyPose } from "../frames/bodies";
+import type { BodyPose } from "../../../client/codec/bodies";
 import { kWordsPerParticle, placeM, velocityMps, whiteOf } from "../frames/particle_values";
 import { clamp, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";

@@ -3,7 +3,7 @@
 //   froth       foam -> texture over the square, which the water shows
 //   bubbles     bubbles -> solids, before the water
 //   spray       drops -> canvas, after the water
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";

@@ -1,6 +1,6 @@
 // Drops, foam and bubbles of the time shown: lets them begin (sources.ts), moves them (diffuse_particles.ts) and uploads them.
 // Reads the frames and the boats as drawn. Writes the white water: points for the passes of white_points.ts.
-import type { GreetingInfo } from "../../codec/greeting";
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { FoamFrame, ParticleFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";

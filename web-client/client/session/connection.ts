@@ -1,39 +1,33 @@
-// One room over one WebSocket at a time: hello, subscriptions, commands and their answers, pings, and reconnecting after a loss.
-// Socket, clock and timers are injected, so tests need no network. Runs in the worker.
+// One room over one WebSocket at a time: hello, subscriptions, commands and their answers, pings, and connecting again after a loss.
+// Socket, clock and timers are injected, so tests need no network.
 import { create, toBinary, type MessageInitShape } from "@bufbuild/protobuf";
 
 import type { PlainFrame } from "../codec/frame_types";
 import { FrameUnpacker } from "../codec/frame_unpacker";
 import { kWireMajor, kWireMinor, type GreetingInfo } from "../codec/greeting";
-import { kFinestLevel, kLayerNames, kLayers, wireLevel, type LayerName } from "../codec/layers";
+import { kFinestLevel, kLayers, wireLevel, type LayerName } from "../codec/layers";
 import { parse, type DrainingInfo } from "../codec/parse";
 import { ClientMessageSchema, Packing } from "../gen/spindrift/v1/wire_pb";
 import { backoffS } from "./backoff";
-import type { ConnectionSink, ConnectionWorld, SocketLike } from "./connection_world";
+import type { CommandAction, ConnectionState, Identity, LocalReason, Subscription } from "./events";
 import { LinkMeter } from "./link_meter";
-import { LoadGovernor, shownLevel } from "./load_governor";
-import type { CommandAction, ConnectionCalls, ConnectionState, DetailChoice, Identity } from "./messages";
 import type { MissingRoom } from "./missing_room";
 import { planMove, type MovePlan } from "./move_plan";
 import { kMaxPendingCount, PendingCommands } from "./pending_commands";
 import { ServerClock } from "./server_clock";
-import { kNetTexts } from "./net_texts";
+import { kSessionTexts } from "./texts";
+import type { ConnectionSink, ConnectionWorld, SocketLike, Timer } from "./world";
 
 const kSubprotocol = "spindrift.v1";
-/** Version of the program; vite.config.ts defines it. */
-declare const __PROGRAM_VERSION__: string;
-const kClientName = `spindrift-web ${__PROGRAM_VERSION__}`;
 const kPingEveryMs = 2000;
 /** The first pings go with every housekeeping tick: until they are answered, the server's clock is only estimated. */
 const kFirstPings = 5;
 const kHousekeepingEveryMs = 500;
 /** Without a greeting, or without any message, for this long the connection counts as lost. */
 const kSilenceMs = 10_000;
-const kAnswerTimeoutMs = 10_000;
 /** The server builds water for these, as long as that takes; meanwhile everything else continues, and a lost connection ends the wait. */
 const kSlowActions: readonly CommandAction["case"][] = ["changeScene", "setParameter"];
 const kMaxUnsentBytes = 256 * 1024;
-const kDiagnosticsRateHz = 10;
 /** Shortest interval between two requests for a keyframe. */
 const kKeyframeEveryMs = 1000;
 /** After this long in state "live" the next loss starts with the shortest backoff again. */
@@ -41,7 +35,18 @@ const kSettledMs = 5000;
 
 type ClientBody = Exclude<NonNullable<MessageInitShape<typeof ClientMessageSchema>["message"]>, { case: undefined }>;
 
-export class Connection implements ConnectionCalls {
+export interface ConnectionOptions {
+  url: string;
+  /** Name and version of the program, for the server's log. */
+  client: string;
+  identity: Identity;
+  /** Commands but those that build water are answered within this time, or count as unanswered. */
+  answerWithinS: number;
+  /** The subscriptions that are wanted in the room of this greeting. */
+  subscriptions(greeting: GreetingInfo): Iterable<Subscription>;
+}
+
+export class Connection {
   private socket: SocketLike | undefined;
   private state: ConnectionState = { name: "connecting" };
   private failedCount = 0;
@@ -49,34 +54,37 @@ export class Connection implements ConnectionCalls {
   private lastHeardMs = 0;
   private lastPingMs = 0;
   private pingCount = 0;
-  private retryTimer: number | undefined;
+  private retryTimer: Timer | undefined;
   /** Set while the server is about to end: when and where to connect anew. */
   private move: MovePlan | undefined;
-  private tickTimer: number | undefined;
+  private tickTimer: Timer | undefined;
   private greeting: GreetingInfo | undefined;
-  private visible = true;
-  private frameRateMaxHz = 60;
-  private layers: readonly LayerName[] = kLayerNames;
-  private exactParticles = false;
   private readonly pending = new PendingCommands();
   private readonly meter: LinkMeter;
   private readonly unpacker = new FrameUnpacker();
   private readonly clock = new ServerClock();
-  private readonly governor = new LoadGovernor();
-  private detail: DetailChoice = "auto";
   /** The finest level that the server sends to adapting subscriptions. */
   private linkLevel = kFinestLevel;
   private lastKeyframeRequestMs = -Infinity;
+  private identity: Identity;
+  private socketUrl: string;
 
   constructor(
-    private url: string,
+    private readonly options: ConnectionOptions,
     private readonly world: ConnectionWorld,
     private readonly sink: ConnectionSink,
-    private identity: Identity = { name: "", token: "", resumeKey: "" },
   ) {
     this.meter = new LinkMeter(world.nowMs());
+    this.identity = options.identity;
+    this.socketUrl = options.url;
   }
 
+  /** Address of the socket; that of another server after a move. */
+  get url(): string {
+    return this.socketUrl;
+  }
+
+  /** Connects, and again after each loss, until stop(). */
   start(): void {
     if (this.tickTimer === undefined) this.scheduleTick();
     this.connect();
@@ -89,72 +97,48 @@ export class Connection implements ConnectionCalls {
     this.tickTimer = this.retryTimer = undefined;
     this.state = { name: "connecting" };
     this.dropSocket();
-    this.failPending(kNetTexts.pageCloses);
+    this.failPending(kSessionTexts.closedHere);
   }
 
+  /** Connects now: after a refusal, or instead of waiting. */
   retryNow(): void {
     if (this.state.name !== "retrying" && this.state.name !== "refused") return;
     this.failedCount = 0;
     this.connect();
   }
 
+  /** Connects anew with another name or token; the server resumes the same person if it still can. */
   introduce(name: string, token: string): void {
     this.identity = { ...this.identity, name, token };
     this.failedCount = 0;
-    this.failPending(kNetTexts.renamed);
+    this.failPending(kSessionTexts.renamed);
     this.connect();
   }
 
-  setDetail(detail: DetailChoice): void {
-    if (detail === this.detail) return;
-    this.detail = detail;
-    if (this.state.name === "live") this.subscribe();
-  }
-
-  setExactParticles(exact: boolean): void {
-    if (exact === this.exactParticles) return;
-    this.exactParticles = exact;
-    if (this.state.name === "live") this.subscribe();
-  }
-
-  setLayers(layers: readonly LayerName[]): void {
-    this.layers = layers;
-    if (this.state.name === "live") this.subscribe();
-  }
-
-  setFrameRate(maxHz: number): void {
-    if (maxHz === this.frameRateMaxHz) return;
-    this.frameRateMaxHz = maxHz;
-    if (this.state.name === "live") this.subscribe();
-  }
-
-  setVisible(visible: boolean): void {
-    if (visible === this.visible) return;
-    this.visible = visible;
-    if (this.state.name === "live") this.subscribe();
-  }
-
+  /** Exactly one ack or reject follows: the server's, or a local one if nothing was sent or no answer came. */
   command(commandId: number, action: CommandAction): void {
-    if (this.state.name !== "live") return this.rejectHere(commandId, kNetTexts.notConnected);
+    if (this.state.name !== "live") return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.notConnected);
     if (this.pending.isFull)
-      return this.rejectHere(commandId, kNetTexts.tooManyWait(kMaxPendingCount));
+      return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.tooManyWait(kMaxPendingCount));
     if (this.socket!.bufferedAmount > kMaxUnsentBytes)
-      return this.rejectHere(commandId, kNetTexts.congested);
-    this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + kAnswerTimeoutMs);
-    this.send({ case: "command", value: { commandId: BigInt(commandId), action } });
+      return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.congested);
+    // Throws for a value that its field cannot hold.
+    const bytes = encode({ case: "command", value: { commandId: BigInt(commandId), action } });
+    this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + this.options.answerWithinS * 1000);
+    this.socket!.send(bytes);
   }
 
   private connect(): void {
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     this.retryTimer = undefined;
-    if (this.move) this.url = this.move.url;
+    if (this.move) this.socketUrl = this.move.url;
     this.move = undefined;
     this.dropSocket();
     this.setState({ name: "connecting" });
     this.lastHeardMs = this.world.nowMs();
     let socket: SocketLike;
     try {
-      socket = this.world.openSocket(this.url, kSubprotocol);
+      socket = this.world.openSocket(this.socketUrl, kSubprotocol);
     } catch (error) {
       this.setState({ name: "refused", reason: error instanceof Error ? error.message : String(error), rooms: [] });
       return;
@@ -162,18 +146,21 @@ export class Connection implements ConnectionCalls {
     this.socket = socket;
     socket.binaryType = "arraybuffer";
     let isOpen = false;
+    let fault: string | undefined;
     socket.onopen = () => {
       isOpen = true;
       const version = { major: kWireMajor, minor: kWireMinor };
-      this.send({ case: "hello", value: { version, client: kClientName, ...this.identity } });
+      this.send({ case: "hello", value: { version, client: this.options.client, ...this.identity } });
     };
     socket.onmessage = (event) => this.receive(event.data);
     socket.onclose = (event) => {
-      this.lost(event.reason || kNetTexts.closed(event.code));
+      this.lost(event.reason || fault || kSessionTexts.closed(event.code));
       if (!isOpen) void this.askForRoom();
     };
-    // A close follows every error and carries the reason.
-    socket.onerror = () => {};
+    // A close follows every error. Browsers do not say what it was.
+    socket.onerror = ({ message }) => {
+      fault = message;
+    };
   }
 
   private receive(data: unknown): void {
@@ -182,7 +169,7 @@ export class Connection implements ConnectionCalls {
     this.meter.worked(this.world.nowMs() - this.lastHeardMs);
   }
 
-  /** Messages that the connection does not handle itself go to the page unchanged. */
+  /** Messages that the connection does not handle itself go to the sink unchanged. */
   private read(data: unknown): void {
     if (!(data instanceof ArrayBuffer)) return this.meter.malformed("a text message");
     this.meter.bytes(data.byteLength);
@@ -230,11 +217,11 @@ export class Connection implements ConnectionCalls {
 
   /** Stays until the planned moment if the server lets it, and connects anew then. */
   private drained(draining: DrainingInfo): void {
-    this.move = planMove(draining, this.url, this.world.random(), this.world.nowMs());
+    this.move = planMove(draining, this.socketUrl, this.world.random(), this.world.nowMs());
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     this.retryTimer = this.world.setTimer(() => {
       this.failedCount = 0;
-      this.failPending(kNetTexts.moves);
+      this.failPending(kSessionTexts.moves);
       this.connect();
     }, this.move.atMs - this.world.nowMs());
     this.sink.event({ kind: "draining", draining });
@@ -267,7 +254,7 @@ export class Connection implements ConnectionCalls {
 
   private greeted(greeting: GreetingInfo): void {
     if (greeting.versionMajor !== kWireMajor)
-      return this.refuse(kNetTexts.otherVersion(`${greeting.versionMajor}.${greeting.versionMinor}`, `${kWireMajor}.${kWireMinor}`));
+      return this.refuse(kSessionTexts.otherVersion(`${greeting.versionMajor}.${greeting.versionMinor}`, `${kWireMajor}.${kWireMinor}`));
     this.greeting = greeting;
     // The greeting of another scene does not change the estimate of the clock.
     if (this.clock.leadMs() === undefined) this.clock.greeted(greeting.serverTimeS, this.world.nowMs());
@@ -281,23 +268,17 @@ export class Connection implements ConnectionCalls {
     this.ping();
   }
 
-  private subscribe(): void {
+  /** Sends what `options.subscriptions` wants now, of one layer or of all; before the greeting nothing. */
+  subscribe(only?: LayerName): void {
     if (!this.greeting) return;
-    const offered = this.greeting.frameRateMaxHz;
-    const frameRateHz = offered > 0 ? Math.min(offered, this.frameRateMaxHz) : this.frameRateMaxHz;
-    const adapts = this.detail === "auto";
-    const level = wireLevel(this.detail === "auto" ? this.governor.level : this.detail);
-    for (const layer of this.greeting.layers) {
-      const rateHz = layer === "diagnostics" ? Math.min(kDiagnosticsRateHz, frameRateHz) : frameRateHz;
-      const isShown = this.layers.includes(layer) && (this.visible || layer === "diagnostics");
-      const maxRateHz = isShown ? rateHz : 0;
-      this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: layer === "particles" && this.exactParticles ? Packing.PLAIN : Packing.PACKED, level, adapts } });
-    }
+    for (const { layer, maxRateHz, packed, level, adapts } of this.options.subscriptions(this.greeting))
+      if (only === undefined || layer === only) this.send({ case: "subscribe", value: { layer: kLayers[layer], maxRateHz, packing: packed ? Packing.PACKED : Packing.PLAIN, level: wireLevel(level), adapts } });
   }
 
   private ping(): void {
     this.lastPingMs = this.world.nowMs();
-    if (this.socket!.bufferedAmount > kMaxUnsentBytes) return;
+    // Who was told of the greeting may have stopped the connection.
+    if (!this.socket || this.socket.bufferedAmount > kMaxUnsentBytes) return;
     ++this.pingCount;
     this.send({ case: "ping", value: { clientTimeS: this.lastPingMs / 1000 } });
   }
@@ -311,12 +292,11 @@ export class Connection implements ConnectionCalls {
 
   private tick(): void {
     const nowMs = this.world.nowMs();
-    this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), ...shownLevel(this.detail, this.governor.level, this.linkLevel) } });
-    if (this.detail === "auto" && this.state.name === "live" && this.governor.note(this.meter.busyShare)) this.subscribe();
+    this.sink.event({ kind: "stats", stats: { ...this.meter.measure(nowMs), linkLevel: this.linkLevel } });
     for (const commandId of this.pending.takeOverdue(nowMs))
-      this.rejectHere(commandId, kNetTexts.noAnswer(kAnswerTimeoutMs / 1000));
+      this.rejectHere(commandId, "NO_ANSWER", kSessionTexts.noAnswer(this.options.answerWithinS));
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
-    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(kNetTexts.silent(kSilenceMs / 1000));
+    if (nowMs - this.lastHeardMs > kSilenceMs) return this.lost(kSessionTexts.silent(kSilenceMs / 1000));
     const pingEveryMs = this.pingCount < kFirstPings ? 0 : kPingEveryMs;
     if (this.state.name === "live" && nowMs - this.lastPingMs >= pingEveryMs) this.ping();
   }
@@ -325,45 +305,45 @@ export class Connection implements ConnectionCalls {
     if (this.state.name !== "live" && this.state.name !== "connecting") return;
     if (this.move) {
       this.dropSocket();
-      this.failPending(kNetTexts.restarts);
-      return this.setState({ name: "retrying", inS: Math.max(0, this.move.atMs - this.world.nowMs()) / 1000, why: kNetTexts.restarts });
+      this.failPending(kSessionTexts.restarts);
+      return this.setState({ name: "retrying", inS: Math.max(0, this.move.atMs - this.world.nowMs()) / 1000, why: kSessionTexts.restarts });
     }
     this.failedCount = this.state.name === "live" && this.world.nowMs() - this.liveSinceMs >= kSettledMs ? 1 : this.failedCount + 1;
     this.dropSocket();
-    this.failPending(kNetTexts.lost);
+    this.failPending(kSessionTexts.lost);
     const inS = backoffS(this.failedCount, this.world.random());
-    this.setState({ name: "retrying", inS, why });
     this.retryTimer = this.world.setTimer(() => this.connect(), inS * 1000);
+    this.setState({ name: "retrying", inS, why });
   }
 
-  /** Opens a missing room if the page's address says of which scene. One that this page was in was closed on purpose: it stays closed. */
+  /** Opens a missing room if the world can. One that this client was in was closed on purpose: it stays closed. */
   private async askForRoom(): Promise<void> {
     const attempt = this.failedCount;
-    const missing = await this.world.findMissingRoom(this.url, this.identity.token);
+    const missing = await this.world.findMissingRoom(this.socketUrl, this.identity.token);
     if (!missing || this.state.name !== "retrying" || this.failedCount !== attempt) return;
     if (this.retryTimer !== undefined) this.world.clearTimer(this.retryTimer);
     if (this.world.openRoom && this.liveSinceMs === 0) void this.openRoom(missing);
-    else this.refuse(kNetTexts.noRoom(missing.name), missing.rooms);
+    else this.refuse(kSessionTexts.noRoom(missing.name), missing.rooms);
   }
 
   /** Adds the rooms that there are to a refusal, if this one was closed. */
   private async addRooms(): Promise<void> {
     const { state } = this;
-    const missing = await this.world.findMissingRoom(this.url, this.identity.token);
+    const missing = await this.world.findMissingRoom(this.socketUrl, this.identity.token);
     if (missing && state.name === "refused" && this.state === state) this.setState({ ...state, rooms: missing.rooms });
   }
 
   private async openRoom({ name, rooms }: MissingRoom): Promise<void> {
     this.setState({ name: "opening", room: name });
-    const whyNot = await this.world.openRoom!(this.url, this.identity.token);
+    const whyNot = await this.world.openRoom!(this.socketUrl, this.identity.token);
     if (this.state.name !== "opening") return;
     if (whyNot === undefined) this.connect();
-    else this.refuse(kNetTexts.noRoomBecause(name, whyNot), rooms);
+    else this.refuse(kSessionTexts.noRoomBecause(name, whyNot), rooms);
   }
 
   private refuse(reason: string, rooms: string[] = []): void {
     this.dropSocket();
-    this.failPending(kNetTexts.refused);
+    this.failPending(kSessionTexts.refused);
     this.setState({ name: "refused", reason, rooms });
   }
 
@@ -377,12 +357,14 @@ export class Connection implements ConnectionCalls {
     this.pingCount = 0;
     this.linkLevel = kFinestLevel;
     if (!socket) return;
-    socket.onopen = socket.onmessage = socket.onclose = socket.onerror = null;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    // Sockets that are closed before they open report that as an error, which somebody has to take in Node.
+    socket.onerror = () => {};
     socket.close();
   }
 
   private send(message: ClientBody): void {
-    this.socket?.send(toBinary(ClientMessageSchema, create(ClientMessageSchema, { message })));
+    this.socket?.send(encode(message));
   }
 
   private setState(state: ConnectionState): void {
@@ -390,11 +372,15 @@ export class Connection implements ConnectionCalls {
     this.sink.event({ kind: "state", state });
   }
 
-  private rejectHere(commandId: number, message: string): void {
-    this.sink.event({ kind: "reject", commandId: BigInt(commandId), reason: "NOT_SENT", field: "", message });
+  private rejectHere(commandId: number, reason: LocalReason, message: string): void {
+    this.sink.event({ kind: "reject", commandId: BigInt(commandId), reason, field: "", message });
   }
 
   private failPending(message: string): void {
-    for (const commandId of this.pending.takeAll()) this.rejectHere(commandId, message);
+    for (const commandId of this.pending.takeAll()) this.rejectHere(commandId, "LOST", message);
   }
+}
+
+function encode(message: ClientBody): Uint8Array<ArrayBuffer> {
+  return toBinary(ClientMessageSchema, create(ClientMessageSchema, { message }));
 }

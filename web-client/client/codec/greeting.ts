@@ -1,4 +1,4 @@
-// The greeting as plain data that survives postMessage: what the page needs of the scene, without Protobuf objects.
+// The greeting as plain data that survives postMessage: what clients need of the scene, without Protobuf objects.
 import { CouplingMode, type ParticleScene, type Scene } from "../gen/spindrift/v1/scene_pb";
 import type { BoatList, Greeting } from "../gen/spindrift/v1/wire_pb";
 import { readCourse, type CourseInfo } from "./course";
@@ -170,7 +170,7 @@ function breaks(scene: Scene | undefined): boolean {
   return scene?.wave !== undefined && hasBreakers;
 }
 
-/** Malformed if a size that the page draws with is not a positive number. */
+/** Malformed if a size that clients calculate with is not a positive number. */
 export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | Malformed {
   const scene = greeting.scene;
   const wave = scene?.wave && readWave(scene.wave);

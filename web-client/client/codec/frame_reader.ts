@@ -31,13 +31,13 @@ function instantiate(): Exports {
   return new WebAssembly.Instance(compiled).exports as unknown as Exports;
 }
 
-/** Returns one line for the user if this browser cannot read packed frames. */
+/** Returns one line for the user if packed frames cannot be read here. */
 export function readerFault(): string | undefined {
   try {
     instantiate();
     return undefined;
   } catch (error) {
-    return `this browser cannot read the water's frames: it lacks WebAssembly with SIMD (${error instanceof Error ? error.message : String(error)})`;
+    return `packed frames cannot be read here, for want of WebAssembly with SIMD (${error instanceof Error ? error.message : String(error)})`;
   }
 }
 

@@ -1,4 +1,4 @@
-// What the page draws of a scene besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
+// What a scene has besides its water: setting, sides, wind sea, rocks, breakwaters and beaches, as plain, finite numbers.
 import { Bulk, Dispersion, Setting, Side, WaterType, WaveBoundary, type Scene, type WaveScene } from "../gen/spindrift/v1/scene_pb";
 
 /** As many as the server allows, or more; the rest is ignored. */
@@ -113,7 +113,7 @@ const kSettings: Partial<Record<Setting, SettingName>> = {
   [Setting.FLUME]: "flume",
 };
 
-/** Returns the scene's setting. A server that names none, or one that this page does not know, gets a simple one for its parts. */
+/** Returns the scene's setting. A server that names none, or one that this client does not know, gets a simple one for its parts. */
 export function readSetting(scene: Scene): SettingName {
   const wave = scene.wave && readWave(scene.wave);
   const named = kSettings[scene.setting];
@@ -130,7 +130,7 @@ const kWaterTypes: Partial<Record<WaterType, WaterTypeName>> = {
   [WaterType.LAGOON]: "lagoon",
 };
 
-/** Returns the optical type of the water; a server that names none, or one that this page does not know, has a sea or a pool. */
+/** Returns the optical type of the water; a server that names none, or one that this client does not know, has a sea or a pool. */
 export function readWaterType(scene: Scene): WaterTypeName {
   return kWaterTypes[scene.waterType] ?? (readSetting(scene) === "openSea" ? "coast" : "pool");
 }

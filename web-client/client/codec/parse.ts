@@ -1,8 +1,8 @@
 // Bytes of one WebSocket message → one member of a discriminated union. Pure: no state, no exception. Bytes that cannot be trusted
 // give "malformed" with the reason. Payloads are views into the message, not copies.
 //
-// kReaders is the one place that declares a server message for the page: the union of messages, the events that the worker posts and
-// the type of the page's handlers follow from it.
+// kReaders is the one place that declares a server message: the union of messages, the events of the connection and of the page's worker
+// follow from it.
 import { fromBinary } from "@bufbuild/protobuf";
 
 import { RejectReason, RoomEventKind, ServerMessageSchema, type Diagnostics, type Draining, type ServerMessage } from "../gen/spindrift/v1/wire_pb";
@@ -26,7 +26,7 @@ type ReaderOf<K extends Kind> = (value: Extract<WireMessage, { case: K }>["value
 const kReaders = {
   greeting: (greeting) => readGreeting(greeting),
   diagnostics: (diagnostics) => ({ diagnostics: readDiagnostics(diagnostics) }),
-  ack: ({ commandId, appliedTick, boatId, floaterId }) => ({ commandId, appliedTick, boatId, floaterId }),
+  ack: ({ commandId, appliedTick, boatId, floaterId, gaugeId }) => ({ commandId, appliedTick, boatId, floaterId, gaugeId }),
   reject: ({ commandId, reason, field, message }) => ({ commandId, reason: RejectReason[reason] ?? `${reason}`, field, message }),
   parameterChanged: ({ path, value, appliedTick }) =>
     Number.isFinite(value) ? { path, value, appliedTick } : malformed(`parameter ${path} is ${value}`),

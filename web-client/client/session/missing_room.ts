@@ -1,6 +1,6 @@
-// Why a WebSocket did not open: browsers hide the reply to a refused upgrade, so a page whose room does not exist asks REST.
+// Why a WebSocket did not open: browsers hide the reply to a refused upgrade, so a client whose room may not exist asks REST.
 
-/** The room of the page's address does not exist. */
+/** The room of the address does not exist. */
 export interface MissingRoom {
   name: string;
   /** The rooms that there are; never empty. */

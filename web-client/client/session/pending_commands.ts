@@ -1,4 +1,4 @@
-// Commands that wait for their ack or reject. Bounded, so that a page without answers stops sending.
+// Commands that wait for their ack or reject. Bounded, so that a client without answers stops sending.
 
 export const kMaxPendingCount = 64;
 

@@ -37,7 +37,7 @@ export interface GameInfo {
 
 const kPhases: Partial<Record<GamePhase, GameInfo["phase"]>> = { [GamePhase.COUNTDOWN]: "countdown", [GamePhase.RUNNING]: "running", [GamePhase.OVER]: "over" };
 
-/** `game` undefined: no game, or one of a kind that this page does not know. */
+/** `game` undefined: no game, or one of a kind that this client does not know. */
 export function readGame(game: Game): { game: GameInfo | undefined } | Malformed {
   const { beginsS, endsS, lapsCount, goalsCount, redGoalsCount, blueGoalsCount, winnerPersonId, winnerTeam, ballFloaterId } = game;
   const kind = game.kind === GameKind.RACE ? "race" : game.kind === GameKind.BALL ? "ball" : undefined;

@@ -1,10 +1,10 @@
 // Measures the link: kB/s, frames/s, latency. Frames of several layers that show the same state count as one frame; for a server
 // that does not number its states, the tick is used instead.
 import type { FrameLayer } from "../codec/layers";
-import type { LinkStats } from "./messages";
+import type { LinkStats } from "./events";
 
 const kRoundTripsKept = 5;
-type MeteredStats = Omit<LinkStats, "level" | "levelLimitedBy">;
+type MeteredStats = Omit<LinkStats, "linkLevel">;
 
 /** A state older than the newest by less than this was counted already; by more, it is another room's. */
 const kSameFrameStates = 30n;
@@ -15,8 +15,7 @@ export class LinkMeter {
   private lastMalformed = "";
   private bytesCount = 0;
   private busyMs = 0;
-  /** Share of the time between the last two measurements that was spent on messages, 0..1. */
-  busyShare = 0;
+  private busyShare = 0;
   private frameCount = 0;
   private lastState = -kSameFrameStates;
   private kilobytesPerS = 0;
@@ -76,6 +75,7 @@ export class LinkMeter {
       kilobytesPerS: this.kilobytesPerS,
       framesPerS: this.framesPerS,
       latencyMs: this.roundTripsMs.length ? Math.min(...this.roundTripsMs) : undefined,
+      busyShare: this.busyShare,
       receivedCount: { ...this.receivedCount },
       malformedCount: this.malformedCount,
       lastMalformed: this.lastMalformed,

@@ -1,0 +1,82 @@
+// Commands by name: every action of Command in wire.proto is a method that takes the fields of its message.
+import { getOption, hasOption, ScalarType, type DescMessage } from "@bufbuild/protobuf";
+
+import type { ParameterInfo } from "../codec/greeting";
+import { parameter } from "../gen/spindrift/v1/options_pb";
+import { CommandSchema } from "../gen/spindrift/v1/wire_pb";
+import type { CommandAction } from "../session/events";
+import type { Bound } from "./errors";
+
+/** The server's answer to a command that it carried out. */
+export interface Ack {
+  /** The first tick that shows it. */
+  appliedTick: number;
+  /** Of spawnBoat, spawnFloater and placeGauge: the new one; 0 of others. */
+  boatId: number;
+  floaterId: number;
+  gaugeId: number;
+}
+
+type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K }>["value"];
+
+/** Each sends its command. The promise is resolved when the server has carried it out, and rejected with Rejected, ConnectionLost or
+ *  NoAnswer; fields that the command does not have are a TypeError. Units and bounds stand at the fields. */
+export type Commands = { [K in CommandAction["case"]]: (fields?: Fields<K>) => Promise<Ack> };
+
+const actions = new Map(CommandSchema.oneofs[0]!.fields.map((field) => [field.localName, field]));
+
+/** Names of all commands. */
+export const kCommandNames = [...actions.keys()] as CommandAction["case"][];
+
+/** Throws a TypeError for a command or a field that there is not. */
+export function checkFields(name: string, fields: unknown): void {
+  const message = actions.get(name)?.message;
+  if (!message) throw new TypeError(`there is no command ${JSON.stringify(name)}; there are ${kCommandNames.join(", ")}`);
+  checkMessage(message, fields, name);
+}
+
+function checkMessage(message: DescMessage, value: unknown, path: string): void {
+  if (typeof value !== "object" || value === null) throw new TypeError(`${path} takes an object with its fields, not ${String(value)}`);
+  for (const [name, each] of Object.entries(value)) {
+    if (name.startsWith("$") || each === undefined) continue;
+    const field = message.fields.find(({ localName }) => localName === name);
+    if (!field) throw new TypeError(`${path} has no ${JSON.stringify(name)}; it has ${message.fields.map(({ localName }) => localName).join(", ") || "no fields"}`);
+    if (field.fieldKind === "message") checkMessage(field.message, each, `${path}.${name}`);
+    else if (field.fieldKind === "list" && !Array.isArray(each)) throw new TypeError(`${path}.${name} takes an array, not ${String(each)}`);
+    else if (field.fieldKind === "list" && field.listKind === "message") (each as unknown[]).forEach((one, k) => checkMessage(field.message, one, `${path}.${name}[${k}]`));
+    else if (field.fieldKind === "scalar" && typeof each !== typeOf(field.scalar)) throw new TypeError(`${path}.${name} takes a ${typeOf(field.scalar)}, not ${String(each)}`);
+  }
+}
+
+/** Fields of commands are no 64-bit numbers and no bytes. */
+function typeOf(scalar: ScalarType): "boolean" | "string" | "number" {
+  return scalar === ScalarType.BOOL ? "boolean" : scalar === ScalarType.STRING ? "string" : "number";
+}
+
+/** Returns what `action` holds in the field that a Reject names, and what the wire allows there; of a parameter, what its description says. */
+export function offence({ case: name, value: fields }: CommandAction, field: string, parameters: ReadonlyMap<string, ParameterInfo>): { value: unknown; bound: Bound | undefined } {
+  if (name === "setParameter") {
+    const described = parameters.get(field);
+    return { value: fields.value, bound: described && boundOf(described) };
+  }
+  const [head, ...path] = field.split(".");
+  const action = actions.get(name)!;
+  if (head !== action.name) return { value: undefined, bound: undefined };
+  let message = action.message;
+  let value: unknown = fields;
+  let bound: Bound | undefined;
+  for (const step of path) {
+    const [, protoName, index] = /^(\w+)(?:\[(\d+)\])?$/.exec(step) ?? [];
+    const at = message?.fields.find((each) => each.name === protoName);
+    if (!at) return { value: undefined, bound: undefined };
+    value = (value as Record<string, unknown> | undefined)?.[at.localName];
+    if (index !== undefined) value = (value as unknown[] | undefined)?.[Number(index)];
+    if (hasOption(at, parameter)) bound = boundOf(getOption(at, parameter));
+    message = at.message;
+  }
+  return { value, bound };
+}
+
+function boundOf({ min, max, unit }: Bound): Bound {
+  return { min, max, unit };
+}
