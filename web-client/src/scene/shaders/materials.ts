@@ -28,6 +28,7 @@ import fluidTileVert from "./fluid_tile.vert?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
+import glitter from "./glitter.glsl?raw";
 import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
 import lampVert from "./lamp.vert?raw";
@@ -116,6 +117,7 @@ const kShared: Record<string, string> = {
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,
   fluid_sizes: fluidSizes,
+  glitter,
   instance,
   look_map: lookMap,
   mirror,

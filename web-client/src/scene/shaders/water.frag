@@ -67,6 +67,13 @@ const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.6;
 
+#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT) && !defined(PLAIN)
+#define GLITTER
+#include <glitter>
+// Of the slopes lost within a pixel, the share of the variance that is drawn as waves of a few pixels.
+const float kDrawnShare = 0.7;
+#endif
+
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
 
@@ -158,6 +165,12 @@ void main() {
   vec2 width_m = fwidth(v_world.xz);
   variance = 0.2 * kFinestVariance + u_slope_variances.y * smoothstep(0.01, 0.12, max(width_m.x, width_m.y) / u_tiles_m.y);
   field.gb += rippleSlopes(v_world.xz);
+#endif
+#ifdef GLITTER
+  vec2 pixel_slopes = pixelSlopes(v_world.xz);
+  // Capillary waves ride on the ripples.
+  float lost_variance = variance + 0.5 * u_slope_variances.y;
+  field.gb += sqrt(0.5 * lost_variance) * pixel_slopes;
 #endif
 #ifdef RAIN
   if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
@@ -282,7 +295,16 @@ void main() {
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.
   water *= 1.0 - 0.45 * contact * contact;
-#ifdef OPEN_SEA
+#ifdef GLITTER
+  if (u_sun_sharp > 0.0) {
+    vec2 sharp = field.gb + (sqrt(kDrawnShare * lost_variance) - sqrt(0.5 * lost_variance)) * pixel_slopes;
+    vec3 glints = mirroredSun(ray, sharp, (1.0 - kDrawnShare) * lost_variance + 4e-5, facing);
+    // The finest are seen as an even gleam around the others.
+    vec3 gleam = mirroredSun(ray, field.gb, lost_variance, facing);
+    water += (u_sun_sharp * sunlit_share * edge) * mix(glints, gleam, 0.25);
+  }
+#else
+#if defined(OPEN_SEA) && defined(PLAIN)
   // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
   // of the same width stands for their Gaussian).
   // Of a low sun only: a high one is mirrored far out by slopes too steep for that.
@@ -304,6 +326,7 @@ void main() {
   narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
 #endif
   if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+#endif
 #endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_extent_m + 0.5;
