@@ -3,6 +3,7 @@ import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters 
 
 import bed from "./bed.glsl?raw";
 import below from "./below.glsl?raw";
+import bicubic from "./bicubic.glsl?raw";
 import bubblesFrag from "./bubbles.frag?raw";
 import caustics from "./caustics.glsl?raw";
 import causticsFrag from "./caustics.frag?raw";
@@ -113,6 +114,7 @@ const kShared: Record<string, string> = {
   sky,
   bed,
   below,
+  bicubic,
   caustics,
   cell_hash: cellHash,
   fluid_ellipse: fluidEllipse,

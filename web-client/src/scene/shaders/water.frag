@@ -8,6 +8,7 @@
 // there is only the page's own froth.
 #include <sky>
 #include <water_optics>
+#include <bicubic>
 
 in vec3 v_world;
 in float v_view_z;
@@ -139,9 +140,9 @@ void main() {
   vec3 normal = v_side_normal;
 #else
 #ifdef OPEN_SEA
-  vec4 field = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_extent_m + 0.5, 0.0) : vec4(0.0);
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
 #else
-  vec4 field = texture(u_field, v_world.xz / u_extent_m + 0.5);
+  vec4 field = smoothTexel(u_field, v_world.xz / u_extent_m + 0.5);
 #endif
   float variance = 0.0;
 #ifdef OPEN_SEA
@@ -342,7 +343,7 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+    foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
 #endif
 #ifdef OPEN_SEA
     foam *= v_share_away.x;

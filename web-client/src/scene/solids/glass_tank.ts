@@ -62,8 +62,9 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
     builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, paint, kCutEdge);
   };
   for (const side of [-1, 1]) {
-    upright(0, side * (hz + halfM), hx, halfM, kPane);
-    upright(side * (hx + halfM), 0, halfM, hz, kPane);
+    // A gap to the water, whose sides would otherwise lie in the same planes.
+    upright(0, side * (hz + 1.1 * halfM), hx, 0.9 * halfM, kPane);
+    upright(side * (hx + 1.1 * halfM), 0, 0.9 * halfM, hz, kPane);
     for (const end of [-1, 1]) upright(side * (hx + halfM), end * (hz + halfM), halfM, halfM, kCutEdge);
   }
   return builder.build();
