@@ -152,7 +152,7 @@ void main() {
   vec2 lost = smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), max(width_m.x, width_m.y) / u_tiles_m);
   // Somewhere far out there is always some wind.
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
-  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + kFinestVariance;
+  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + min(kFinestVariance, u_slope_variances.y);
 #ifdef PLAIN
   // Without mip levels the waves are faded here.
   if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
@@ -272,7 +272,7 @@ void main() {
   float fresnel = waterFresnel(facing);
 #ifdef SHORE
   // Thin water is broken by the sand below it, and mirrors less.
-  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.6, deep_m));
+  fresnel *= mix(0.2, 1.0, smoothstep(0.02, 1.1, deep_m));
 #endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
@@ -352,7 +352,7 @@ void main() {
 #ifdef BEACH
   // Shallow water at a beach always has a little foam; a moving shore knows where.
 #ifdef SHORE
-  foam = max(foam, max(inner * shore.b, 0.4 * (1.0 - smoothstep(0.0, 0.07, deep_m))));
+  foam = max(foam, max(inner * shore.b, 0.6 * (1.0 - smoothstep(0.0, 0.06, deep_m))));
 #else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
