@@ -368,7 +368,14 @@ void main() {
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
-    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.26 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
+#ifdef PLAIN
+    const float blur = 0.0;
+#else
+    // Far away the lace is finer than a pixel, and its edges would be dots.
+    vec2 at_step = fwidth(at);
+    float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
+#endif
+    float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.26 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     float clouded = 0.45 * foam * foam;
 #ifdef SHORE
