@@ -21,15 +21,27 @@ vec2 pixelSlopes(vec2 at) {
   return (finer * (1.0 - share) + wider * share) * inversesqrt(max(u_slope_variances.y * (1.0 - 2.0 * share + 2.0 * share * share), 1e-6));
 }
 
-// Sunlight that a surface mirrors toward the eye whose mean slopes are these and whose waves within the pixel have this variance, by the
-// density of the slopes that mirror the sun (Cox & Munk 1954).
-vec3 mirroredSun(vec3 ray, vec2 slopes, float variance, float facing) {
+// Share of the variance that is drawn as waves of a few pixels.
+const float kDrawnShare = 0.7;
+// The finest waves are seen as an even gleam around the glints.
+const float kGleam = 0.25;
+
+// Share of the sunlight that slopes of this variance around `slopes` mirror, by the density of those that do (Cox & Munk 1954).
+// `missing`: the slopes that mirror the sun.
+float mirroredShare(vec2 missing, float variance) {
+  float off = dot(missing, missing) / variance;
+  return off > 30.0 ? 0.0 : exp(-off) / variance;
+}
+
+// Sunlight that a surface mirrors toward the eye whose mean slopes are these, and whose waves within a pixel have this variance.
+vec3 mirroredSun(vec3 ray, vec2 slopes, vec2 pixel_slopes, float variance, float facing) {
   vec3 halfway = normalize(u_sun_direction - ray);
   vec2 missing = halfway.xz / max(halfway.y, 0.05) + slopes;
-  float off = dot(missing, missing) / variance;
-  if (off > 30.0) return vec3(0.0);
+  float gleam = mirroredShare(missing, variance);
+  float glints = mirroredShare(missing + sqrt(kDrawnShare * variance) * pixel_slopes, (1.0 - kDrawnShare) * variance + 4e-5);
   float steep = halfway.y * halfway.y;
-  float share = exp(-off) / (4.0 * variance * max(facing, 0.06) * steep * steep) * waterFresnel(max(-dot(halfway, ray), 0.0));
+  vec2 share = vec2(glints, gleam) * (waterFresnel(max(-dot(halfway, ray), 0.0)) / (4.0 * max(facing, 0.06) * steep * steep));
   // Brighter than white is only white.
-  return u_sun_light * (1.25 * share / (1.0 + 0.12 * share));
+  share /= 1.0 + 0.12 * share;
+  return u_sun_light * (1.25 * mix(share.x, share.y, kGleam));
 }

@@ -71,8 +71,8 @@ const float kContactM = 0.6;
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT) && !defined(PLAIN)
 #define GLITTER
 #include <glitter>
-// Of the slopes lost within a pixel, the share of the variance that is drawn as waves of a few pixels.
-const float kDrawnShare = 0.7;
+// The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
+const float kSkyShare = 0.7;
 #endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -167,14 +167,15 @@ void main() {
   variance = 0.2 * kFinestVariance + u_slope_variances.y * smoothstep(0.01, 0.12, max(width_m.x, width_m.y) / u_tiles_m.y);
   field.gb += rippleSlopes(v_world.xz);
 #endif
+#ifdef RAIN
+  if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
+#endif
 #ifdef GLITTER
   vec2 pixel_slopes = pixelSlopes(v_world.xz);
   // Capillary waves ride on the ripples.
   float lost_variance = variance + 0.5 * u_slope_variances.y;
-  field.gb += sqrt(0.5 * lost_variance) * pixel_slopes;
-#endif
-#ifdef RAIN
-  if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
+  vec2 level_slopes = field.gb;
+  field.gb += kSkyShare * sqrt(lost_variance) * pixel_slopes;
 #endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
@@ -297,13 +298,7 @@ void main() {
   // Less of the sky lights the water beside what stands in it.
   water *= 1.0 - 0.45 * contact * contact;
 #ifdef GLITTER
-  if (u_sun_sharp > 0.0) {
-    vec2 sharp = field.gb + (sqrt(kDrawnShare * lost_variance) - sqrt(0.5 * lost_variance)) * pixel_slopes;
-    vec3 glints = mirroredSun(ray, sharp, (1.0 - kDrawnShare) * lost_variance + 4e-5, facing);
-    // The finest are seen as an even gleam around the others.
-    vec3 gleam = mirroredSun(ray, field.gb, lost_variance, facing);
-    water += (u_sun_sharp * sunlit_share * edge) * mix(glints, gleam, 0.25);
-  }
+  if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
 #else
 #if defined(OPEN_SEA) && defined(PLAIN)
   // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
