@@ -24,7 +24,7 @@ vec2 pixelSlopes(vec2 at) {
 // Share of the variance that is drawn as waves of a few pixels.
 const float kDrawnShare = 0.7;
 // The finest waves are seen as an even gleam around the glints.
-const float kGleam = 0.25;
+const float kGleam = 0.12;
 
 // Share of the sunlight that slopes of this variance around `slopes` mirror, by the density of those that do (Cox & Munk 1954).
 // `missing`: the slopes that mirror the sun.

@@ -189,6 +189,10 @@ void main() {
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
 #endif
   contact *= contact;
+#ifndef PLAIN
+  // A band narrower than a pixel would be a row of dots.
+  contact *= 1.0 - smoothstep(0.3, 1.2, fwidth(solid_m) / kContactM);
+#endif
 #elif !defined(SKIRT)
   // The floor and the panes of a tank are close everywhere.
   const float contact = 0.0;
@@ -273,7 +277,7 @@ void main() {
   float fresnel = waterFresnel(facing);
 #ifdef SHORE
   // Thin water is broken by the sand below it, and mirrors less.
-  fresnel *= mix(0.2, 1.0, smoothstep(0.02, 1.1, deep_m));
+  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.8, deep_m));
 #endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
