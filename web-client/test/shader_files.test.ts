@@ -21,10 +21,14 @@ describe("the shader files", () => {
     for (const name of names) expect(table, `nothing uses ${name}`).toContain(`./${name}?raw`);
   });
 
-  it("read only those varyings of a particle that its vertex shader writes", () => {
-    const written = new Set([...texts.get("fluid_particle.vert")!.matchAll(/^flat out \w+ (\w+);/gm)].map(([, varying]) => varying));
-    const read = [...texts.get("fluid_ellipse.glsl")!.matchAll(/^flat in \w+ (\w+);/gm)].map(([, varying]) => varying);
-    expect(read.length).toBeGreaterThan(0);
-    for (const varying of read) expect(written, `nothing writes ${varying}`).toContain(varying);
+  it("read only those varyings that the vertex shader of their program writes", () => {
+    const fileOf = new Map([...table.matchAll(/import (\w+) from "\.\/([\w.]+)\?raw";/g)].map(([, variable, name]) => [variable!, name!]));
+    const whole = (name: string): string => texts.get(name)!.replace(/#include <(\w+)>/g, (_, included: string) => whole(`${included}.glsl`));
+    const programs = [...table.matchAll(/^ {2}(\w+): \[(\w+), (\w+)\],$/gm)];
+    expect(programs.length).toBeGreaterThan(20);
+    for (const [, program, vertex, fragment] of programs) {
+      const written = new Set([...whole(fileOf.get(vertex!)!).matchAll(/^(?:flat )?out \w+ (\w+);/gm)].map(([, varying]) => varying));
+      for (const [, varying] of whole(fileOf.get(fragment!)!).matchAll(/^(?:flat )?in \w+ (\w+);/gm)) expect(written, `${program}: nothing writes ${varying}`).toContain(varying);
+    }
   });
 });

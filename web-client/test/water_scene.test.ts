@@ -136,7 +136,7 @@ describe("the list of passes", () => {
     expect(names(kRooms["a beach where water runs up"]!).slice(0, 3)).toEqual(["field", "shore", "foam"]);
     expect(names(kRooms["a harbor with everything"]!)).not.toContain("shore");
     const tank = names(kRooms["a tank of particles"]!);
-    expect(tank.slice(0, 4)).toEqual(["solids", "particles", "fluid shadow", "present"]);
+    expect(tank.slice(0, 5)).toEqual(["solids", "particles", "fluid volume", "fluid shadow", "present"]);
     expect(tank.at(-1)).toBe("glass");
   });
 });

@@ -29,14 +29,8 @@ export type Resource =
   | "particles"
   /** Tiles of the screen with particles. */
   | "fluidTiles"
-  /** Distance of the particles' nearest surface. */
-  | "fluidFront"
-  /** The same, smoothed. */
-  | "fluidSurface"
-  /** Its normals. */
-  | "fluidNormals"
-  /** Thickness of the particles along each pixel's ray. */
-  | "fluidThickness"
+  /** Density of the particles in cells, and the white share of it. */
+  | "fluidVolume"
   /** The value that a look shows on the surface. */
   | "lookValue"
   /** Colours for the display, and depth. */

@@ -3,11 +3,12 @@ import type { FloatType, HalfFloatType } from "three";
 
 /** Settings of the particles' liquid. */
 export interface FluidQuality {
-  /** Size of its targets, as a share of the canvas. */
+  /** Cells of its volume along the spacing of the particles at rest. */
+  cellsPerSpacing: number;
+  /** Size of its picture as a share of the canvas. */
   scale: number;
-  /** Samples of its filter on each side of a pixel, and how often the filter runs. */
-  samplesCount: number;
-  roundsCount: number;
+  /** Drops drawn for each particle that flies apart from the liquid. */
+  dropsCount: number;
 }
 
 /** Settings of drops, foam and bubbles. */
@@ -64,27 +65,27 @@ export type QualityChoice = TierName | "automatic";
 export const kTiers: Record<TierName, Tier> = {
   minimal: {
     maxPixelRatio: 0.45, frameRateMaxHz: 15, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
-    fluid: { scale: 0.5, samplesCount: 6, roundsCount: 2 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
+    fluid: { cellsPerSpacing: 1, scale: 0.5, dropsCount: 3 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined, shadows: undefined,
   },
   low: {
     maxPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
-    fluid: { scale: 0.5, samplesCount: 8, roundsCount: 2 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
+    fluid: { cellsPerSpacing: 1, scale: 0.5, dropsCount: 4 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
     rain: { ringTexelsCount: 0, streaksCount: 3000 }, caustics: undefined, shadows: undefined,
   },
   medium: {
     maxPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
-    fluid: { scale: 0.75, samplesCount: 8, roundsCount: 2 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
+    fluid: { cellsPerSpacing: 1.25, scale: 0.75, dropsCount: 6 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
     rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: undefined, shadows: { texelsCount: 1024 },
   },
   high: {
     maxPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
-    fluid: { scale: 1, samplesCount: 12, roundsCount: 2 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
+    fluid: { cellsPerSpacing: 1.5, scale: 1, dropsCount: 9 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
     rain: { ringTexelsCount: 256, streaksCount: 10_000 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 },
   },
   highest: {
     maxPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
-    fluid: { scale: 1, samplesCount: 16, roundsCount: 3 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
+    fluid: { cellsPerSpacing: 2, scale: 1, dropsCount: 12 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
     rain: { ringTexelsCount: 512, streaksCount: 16_000 }, caustics: { cellsCount: 384, texelsCount: 1024 }, shadows: { texelsCount: 4096 },
   },
 };

@@ -51,6 +51,11 @@ export class FluidParticles implements Pass {
     return !this.shown || this.shown.count === 0;
   }
 
+  /** Where the particles shown are, m: lowest and highest x, y, z. */
+  get bounds(): { minM: [number, number, number]; maxM: [number, number, number] } {
+    return this.shown!;
+  }
+
   /** Radius of the particles shown. */
   get radiusM(): number {
     return this.shown?.radiusM ?? 1;

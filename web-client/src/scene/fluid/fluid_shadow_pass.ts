@@ -1,14 +1,15 @@
-// Shades the floor under a tank of particles. Reads the particles and the depth of the solids. Writes the colour of the solids.
-import { BufferAttribute, BufferGeometry, DstColorFactor, CustomBlending, Mesh, Scene, Vector2, ZeroFactor, type RawShaderMaterial } from "three";
+// Shades the floor under a tank of particles. Reads the volume and the depth of the solids. Writes the colour of the solids.
+import { BufferAttribute, BufferGeometry, CustomBlending, DstColorFactor, HalfFloatType, Mesh, RedFormat, Scene, WebGLRenderTarget, ZeroFactor, type RawShaderMaterial } from "three";
 
+import { FullscreenPass } from "../drawing/fullscreen";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
 import { makeMaterial } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
-import { makeHalfTarget, thicknessBlending } from "./fluid_targets";
+import type { FluidVolumePass } from "./fluid_volume_pass";
 
-const kTargetPx = 256;
+const kTargetPx = 160;
 /** The floor that is shaded, in sides of the tank. */
 const kShadedSides = 2;
 /** Distance between samples in particle radii. */
@@ -16,24 +17,23 @@ const kApartRadii = 4;
 
 export class FluidShadowPass implements Pass {
   readonly name = "fluid shadow";
-  readonly reads = ["particles", "solids"] as const;
+  readonly reads = ["fluidVolume", "solids"] as const;
   readonly writes = ["solids"] as const;
-  private readonly target = makeHalfTarget();
-  private readonly along: RawShaderMaterial;
+  private readonly target = new WebGLRenderTarget(kTargetPx, kTargetPx, { format: RedFormat, type: HalfFloatType, depthBuffer: false });
+  private readonly column: FullscreenPass;
   private readonly scene = new Scene();
   private readonly floor: Mesh<BufferGeometry, RawShaderMaterial>;
 
   constructor(
     private readonly particles: FluidParticles,
+    volume: FluidVolumePass,
     private readonly solids: SolidsPass,
     sky: Sky,
     sideM: number,
     colourRatio: number,
   ) {
-    this.target.setSize(kTargetPx, kTargetPx);
     const place = { u_floor_m: { value: 0 }, u_shaded_m: { value: kShadedSides * sideM } };
-    const sunlit = { ...particles.uniforms, ...sky.uniforms, ...place, u_target_px: { value: new Vector2(kTargetPx, kTargetPx) } };
-    this.along = makeMaterial("fluidThickness", sunlit, { defines: { SHADOW: 1 }, ...thicknessBlending });
+    this.column = new FullscreenPass(makeMaterial("fluidColumn", { ...volume.uniforms, ...sky.uniforms, ...place }, { depthTest: false, depthWrite: false }));
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([-0.5, 0, -0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0, 0.5]), 3));
     geometry.setIndex([0, 1, 2, 2, 1, 3]);
@@ -60,14 +60,14 @@ export class FluidShadowPass implements Pass {
     const { uniforms } = this.floor.material;
     uniforms["u_floor_m"]!.value = this.solids.surroundings.floorM;
     uniforms["u_apart_m"]!.value = kApartRadii * this.particles.radiusM;
-    this.particles.render(renderer, camera, this.along, this.target);
+    this.column.render(renderer, this.target);
     renderer.setRenderTarget(this.solids.target);
     renderer.render(this.scene, camera);
   }
 
   dispose(): void {
     this.target.dispose();
-    this.along.dispose();
+    this.column.dispose();
     this.floor.geometry.dispose();
     this.floor.material.dispose();
   }

@@ -1,17 +1,17 @@
-// Finds the tiles of the screen that particles touch, and draws screen passes over those tiles only.
-// Reads the particles. Writes one byte per tile.
-import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, Vector2, WebGLRenderTarget, type RawShaderMaterial, type RenderTarget, type WebGLRenderer } from "three";
+// Finds the tiles of the screen that particles touch, and draws over those tiles only. Reads the particles. Writes one byte per tile.
+import { BufferAttribute, BufferGeometry, Camera, Mesh, NearestFilter, RedFormat, Scene, Vector2, WebGLRenderTarget, type RawShaderMaterial, type WebGLRenderer } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
+import type { FluidVolumePass } from "./fluid_volume_pass";
 
 const kColumnsCount = 48;
 const kRowsCount = 32;
 
 export class FluidTilesPass implements Pass {
   readonly name = "fluid tiles";
-  readonly reads = ["particles"] as const;
+  readonly reads = ["particles", "fluidVolume"] as const;
   readonly writes = ["fluidTiles"] as const;
   /** For the materials of fluid_tile.vert. */
   readonly uniforms: Uniforms;
@@ -21,11 +21,14 @@ export class FluidTilesPass implements Pass {
   private readonly camera = new Camera();
   private readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
 
-  constructor(private readonly particles: FluidParticles) {
+  constructor(
+    private readonly particles: FluidParticles,
+    volume: FluidVolumePass,
+  ) {
     this.target = new WebGLRenderTarget(kColumnsCount, kRowsCount, { format: RedFormat, minFilter: NearestFilter, magFilter: NearestFilter, depthBuffer: false });
     this.uniforms = { u_tiles: { value: this.target.texture }, u_tiles_count: { value: new Vector2(kColumnsCount, kRowsCount) } };
     const countPx = { u_target_px: { value: new Vector2(kColumnsCount, Math.max(kRowsCount, kColumnsCount)) } };
-    this.material = makeMaterial("fluidTileMark", { ...particles.uniforms, ...countPx }, { defines: { TILES: 1 }, depthTest: false, depthWrite: false });
+    this.material = makeMaterial("fluidTileMark", { ...particles.uniforms, ...volume.uniforms, ...countPx }, { depthTest: false, depthWrite: false });
     this.mesh = new Mesh(makeTiles(), this.material);
     this.mesh.frustumCulled = false;
     this.scene.add(this.mesh);
@@ -40,10 +43,10 @@ export class FluidTilesPass implements Pass {
   }
 
   /** Draws `material` over the marked tiles of `target`; nothing where there are no particles. */
-  cover(renderer: WebGLRenderer, material: RawShaderMaterial, target: RenderTarget | null): void {
+  cover(renderer: WebGLRenderer, material: RawShaderMaterial, target: WebGLRenderTarget | null): void {
     if (this.particles.isEmpty) return;
     this.mesh.material = material;
-    renderer.setRenderTarget(target as never);
+    renderer.setRenderTarget(target);
     renderer.render(this.scene, this.camera);
   }
 

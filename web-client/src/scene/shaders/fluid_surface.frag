@@ -1,149 +1,215 @@
-// Light from the fluid to the eye: reflected sky by Fresnel, and through the fluid the scene behind, refracted, absorbed along the
-// thickness and replaced by scattered light, as in water.frag. Foam covers it.
-// Reads u_front (1 / distance [1/m]), u_normals (view space; foam), u_thickness (thickness [m], weight, weight of
-// particles among others, coverage), the solids' colour and depth. Blends over the picture; writes the fluid's depth.
-// WAVE: the fluid is one body with the wave, which lies in the picture and its depth buffer already. Toward the surface, normal and
-// light become those of the wave. Without it the fluid shows the solids refracted.
+// Light from the particles' liquid to the eye. A ray goes through the volume to the surface, where the sky is mirrored by Fresnel. The
+// refracted ray goes on through the liquid, is reflected where no light leaves, and shows what lies behind the liquid; on its way light is
+// absorbed and scattered (water_optics.glsl), and white water hides it.
+// Reads the volume, the solids' colour and depth. Blends over the picture; writes the surface's depth.
+// WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
+// volume is a tank with walls of glass.
 #include <sky>
 #include <water_optics>
-#include <fluid_sizes>
+#include <fluid_volume>
 
 in vec2 v_uv;
-uniform sampler2D u_front;
-uniform sampler2D u_normals;
-uniform sampler2D u_thickness;
 uniform sampler2D u_behind;
 uniform sampler2D u_behind_depth;
-uniform vec4 u_ray;        // view ray (x, y, -1) = ndc * u_ray.xy + u_ray.zw
+uniform sampler2D u_noise;
+uniform vec4 u_ray;            // view ray (x, y, -1) = ndc * u_ray.xy + u_ray.zw
 uniform vec2 u_near_far_m;
 uniform mat4 u_projection;
 uniform mat4 u_camera_world;
 uniform vec3 u_camera_m;
-uniform float u_radius_m;
-uniform sampler2D u_noise;
-uniform float u_colour_ratio;  // lengths in the fluid count as so much longer for its colour
-uniform vec2 u_extent_m;  // length and width of the water
+uniform float u_radius_m;      // of a particle
+uniform float u_colour_ratio;  // lengths in the liquid count as so much longer for its colour
+uniform float u_floor_m;
 #ifdef WAVE
 uniform sampler2D u_field;
-#else
-uniform float u_floor_m;
-const float kTankGlow = 1.8;  // a pale floor and walls light the water from all sides
-
-// Where a ray from the camera enters the tank and leaves it, in lengths of `ray`. `pane`: normal of the side by which it enters.
-vec2 throughTank(vec3 ray, out vec3 pane) {
-  vec3 safe = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
-  vec3 a = (vec3(-0.5 * u_extent_m.x, u_floor_m, -0.5 * u_extent_m.y) - u_camera_m) / safe;
-  vec3 b = (vec3(0.5 * u_extent_m.x, 1e3, 0.5 * u_extent_m.y) - u_camera_m) / safe;
-  vec3 near = min(a, b), far = max(a, b);
-  pane = near.x > near.z ? vec3(-sign(ray.x), 0.0, 0.0) : vec3(0.0, 0.0, -sign(ray.z));
-  return vec2(max(max(near.x, near.z), 0.0), min(min(far.x, far.z), far.y));
-}
+uniform vec2 u_extent_m;       // length and width of the wave
 #endif
-const float kLeastFacing = 0.18;
-// Size of one tile of the noise in particle radii.
-const float kLaceRadii = 17.0;
-const float kOutlineBend = 0.45;
 layout(location = 0) out vec4 color;
 
-// 1 / distance between texels of the smaller target, without those that are empty.
-float frontAt(vec2 uv) {
-  vec2 at = uv * vec2(textureSize(u_front, 0)) - 0.5;
-  ivec2 low = ivec2(floor(at));
-  vec2 f = at - vec2(low);
-  ivec2 last = textureSize(u_front, 0) - 1;
-  vec4 w = vec4((1.0 - f.x) * (1.0 - f.y), f.x * (1.0 - f.y), (1.0 - f.x) * f.y, f.x * f.y);
-  vec4 texels = vec4(texelFetch(u_front, clamp(low, ivec2(0), last), 0).r, texelFetch(u_front, clamp(low + ivec2(1, 0), ivec2(0), last), 0).r,
-                     texelFetch(u_front, clamp(low + ivec2(0, 1), ivec2(0), last), 0).r, texelFetch(u_front, clamp(low + 1, ivec2(0), last), 0).r);
-  w *= step(1e-9, texels);
-  return dot(w, texels) / max(w.x + w.y + w.z + w.w, 1e-6);
-}
+const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indices
+// Step of a ray near the liquid.
+const float kStepCells = 0.85;
+// Where no kernel reaches, the surface is at least so many particle radii away.
+const float kEmptyRadii = 3.6;
+const int kMostSteps = 128, kMostStepsInside = 64;
+// How far white water is torn, as density; one tile of the noise, in particle radii.
+const float kTorn = 0.16;
+const float kLaceRadii = 31.0;
+// Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
+const float kMist = 0.6;
+// Light that white water scatters over one particle radius.
+const float kWhiteness = 0.3;
+#ifndef WAVE
+const float kTankGlow = 1.8;  // a pale floor and walls light the water from all sides
+#endif
 
 float distanceAt(vec2 uv) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
   return near * far / (far - (far - near) * texture(u_behind_depth, uv).r);
 }
 
-void main() {
-  vec4 through = texture(u_thickness, v_uv);
-  if (through.a < 0.02) discard;
-  float front = frontAt(v_uv);
-  vec4 normal_foam = texture(u_normals, v_uv);
-  if (front <= 0.0 || dot(normal_foam.xyz, normal_foam.xyz) < 1e-6) discard;
-  float ahead_m = 1.0 / front;
-  float solid_m = distanceAt(v_uv);
-  float single = smoothstep(0.25, 0.9, 1.0 - through.b / max(through.g, 1e-4));
-  // Bulk water has an outline, a single drop a soft alpha. A soft edge where the fluid meets a solid.
-  float covered = mix(smoothstep(kCoveredFrom, kCoveredTo, through.a), 0.9 * through.a, single) * smoothstep(-0.1, 0.5, (solid_m - ahead_m) / u_radius_m);
-  vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
+// Lengths of the ray at which it enters the volume and leaves it.
+vec2 throughVolume(vec3 from, vec3 ray) {
+  ray = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
+  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_max_m - from) / ray;
+  vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// The outward normal of the volume's nearest side.
+vec3 sideAt(vec3 at_m) {
+  vec3 half_m = 0.5 * (u_volume_max_m - u_volume_min_m);
+  vec3 away_m = at_m - u_volume_min_m - half_m;
+  vec3 left_m = half_m - abs(away_m);
+  vec3 nearest = step(left_m, vec3(min(left_m.x, min(left_m.y, left_m.z))));
+  return normalize(nearest * sign(away_m));
+}
+
+// How far a position lies above the wave, in particle radii.
+float overWave(vec3 at_m) {
 #ifdef WAVE
-  const float at_pane = 0.0;
+  return (at_m.y - texture(u_field, at_m.xz / u_extent_m + 0.5).r) / u_radius_m;
 #else
-  // Water lies flat against the glass and ends there, although its particles bulge.
-  vec3 pane;
-  vec3 axis_ray = mat3(u_camera_world) * view_ray;
-  vec2 tank = throughTank(axis_ray, pane);
-  float inside_m = tank.y - tank.x;
-  float off_pane = (ahead_m - tank.x) * abs(dot(axis_ray, pane)) / u_radius_m;
-  float near_pane = 1.0 - smoothstep(1.5, 3.0, off_pane);
-  covered = max(covered, near_pane * smoothstep(0.12, 0.3, through.a));
-  covered *= clamp(0.5 + inside_m / max(fwidth(inside_m), 1e-6), 0.0, 1.0);
-  // Behind the pane's inner face.
-  ahead_m = max(ahead_m, tank.x + 0.1 * u_radius_m);
-  front = 1.0 / ahead_m;
+  return 1e3;
 #endif
-  if (covered <= 0.0) discard;
+}
 
-  vec3 world = u_camera_m + mat3(u_camera_world) * (view_ray * ahead_m);
-  vec3 ray = normalize(world - u_camera_m);
-  // Neighbours over which the particles' own pattern averages out. The coverage falls toward the outline, where the surface turns away.
-  vec2 apart = 1.5 * u_radius_m * front * 0.5 / u_ray.xy;
-  vec4 right = texture(u_thickness, v_uv + vec2(apart.x, 0.0)), left = texture(u_thickness, v_uv - vec2(apart.x, 0.0));
-  vec4 upper = texture(u_thickness, v_uv + vec2(0.0, apart.y)), lower = texture(u_thickness, v_uv - vec2(0.0, apart.y));
-  through.r = 0.2 * (through.r + right.r + left.r + upper.r + lower.r);
-  vec2 outward = vec2(left.a - right.a, lower.a - upper.a);
-  vec3 normal = mat3(u_camera_world) * normalize(normalize(normal_foam.xyz) + vec3(kOutlineBend * outward, 0.0));
+// Density over that of the surface, and its white share: white water is torn.
+vec2 liquidAt(vec3 at_m) {
 #ifndef WAVE
-  // The edge between the flat side and the surface is sharp, although that of the particles is round.
-  float toward_pane = dot(normal, pane);
-  float at_pane = near_pane * smoothstep(0.25, 0.75, toward_pane);
-  normal -= pane * max(toward_pane, 0.0) * (1.0 - smoothstep(2.0, 5.0, off_pane));
-  normal = normalize(mix(normal, pane, at_pane) + vec3(0.0, 1e-4, 0.0));
-  ahead_m = mix(ahead_m, tank.x, at_pane);
-  world = u_camera_m + axis_ray * ahead_m;
+  // Level toward the glass, from which the particles keep away.
+  at_m.xz = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
 #endif
-  float foam = clamp(normal_foam.a / max(length(normal_foam.xyz), 1e-3), 0.0, 1.0);
-  float thickness_m = min(through.r, max(solid_m - ahead_m, 0.0) * length(view_ray));
-  gl_FragDepth = clamp(0.5 * (u_projection[3][2] * front - u_projection[2][2]) + 0.5, 0.0, 1.0);
+  vec2 density = volumeAt(at_m);
+  float white = density.g / max(density.r, 1e-3);
+  if (density.r > 0.6 * kSurface && white > 0.05) {
+    vec3 at = at_m / (kLaceRadii * u_radius_m);
+    density.r -= kTorn * white * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5);
+  }
+  return vec2(density.r - kSurface, white);
+}
 
-  float raised = 1.0;
+// Where the ray crosses the surface between two lengths of which one lies in the liquid.
+float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
+  bool is_end_inside = liquidAt(from + ray * b_m).x > 0.0;
+  for (int i = 0; i < 5; ++i) {
+    float middle_m = 0.5 * (a_m + b_m);
+    if ((liquidAt(from + ray * middle_m).x > 0.0) == is_end_inside) b_m = middle_m;
+    else a_m = middle_m;
+  }
+  return b_m;
+}
+
+vec3 normalAt(vec3 at_m) {
+  vec2 apart_m = vec2(2.0 * u_radius_m, 0.0);
+  vec3 slope = vec3(volumeAt(at_m + apart_m.xyy).r - volumeAt(at_m - apart_m.xyy).r, volumeAt(at_m + apart_m.yxy).r - volumeAt(at_m - apart_m.yxy).r,
+                    volumeAt(at_m + apart_m.yyx).r - volumeAt(at_m - apart_m.yyx).r);
+  return -slope / max(length(slope), 1e-5);
+}
+
+// The light along a ray at a distance: that of the picture of the solids at the place where it shows it. Toward the picture's edges and
+// where something stands in front of the liquid it is that of a place nearer to this pixel; for rays that rise past the edges, of the sky.
+vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
+  vec3 at = transpose(mat3(u_camera_world)) * (from + ray * away_m - u_camera_m);
+  vec2 uv = ((at.xy / max(-at.z, 1e-3) - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
+  vec2 away = uv - v_uv;
+  vec2 most = max(step(0.0, away) - v_uv, v_uv - step(0.0, away)) / max(abs(away), vec2(1e-5));
+  vec2 shown = v_uv + away * min(min(most.x, most.y), 1.0);
+  for (int i = 0; i < 3 && distanceAt(shown) < surface_m; ++i) shown = mix(shown, v_uv, i == 2 ? 1.0 : 0.5);
+  vec2 rim = smoothstep(0.5, 0.47, abs(uv - 0.5));
+  float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z < 0.0 ? rim.x * rim.y : 0.0));
+  return mix(texture(u_behind, shown).rgb, textureLod(u_sky, ray, 1.0).rgb, is_sky);
+}
+
+void main() {
+  vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
+  float per_m = length(view_ray);
+  vec3 ray = mat3(u_camera_world) * view_ray / per_m;
+  float solid_m = distanceAt(v_uv) * per_m;
+  vec2 way_m = throughVolume(u_camera_m, ray);
+  float end_m = min(way_m.y, solid_m);
+  float at_m = max(way_m.x, 0.0) + 1e-4, before_m = at_m;
+  if (at_m >= end_m) discard;
+  // The first step differs from pixel to pixel, so that steps make no bands.
+  float step_m = kStepCells * u_cell_m;
+  float first_m = step_m * fract(52.98 * fract(0.067 * gl_FragCoord.x + 0.0058 * gl_FragCoord.y));
+
+  vec2 liquid = liquidAt(u_camera_m + ray * at_m);
+  bool is_pane = liquid.x > 0.0;
+  float mist = 0.0;
+  for (int i = 0; i < kMostSteps && liquid.x <= 0.0 && at_m < end_m; ++i) {
+    before_m = at_m;
+    at_m = min(at_m + (i == 0 ? first_m : liquid.x <= -kSurface ? max(step_m, kEmptyRadii * u_radius_m) : step_m), end_m);
+    liquid = liquidAt(u_camera_m + ray * at_m);
 #ifdef WAVE
-  vec4 field = texture(u_field, world.xz / u_extent_m + 0.5);
-  raised = smoothstep(0.0, 1.5, (world.y - field.r) / u_radius_m);
-  normal = normalize(mix(vec3(-field.g, 1.0, -field.b), normal, raised));
-  // Drawn in front of the wave's surface, from which it can hardly be told.
-  gl_FragDepth -= 1e-4 * (1.0 - raised);
+    // Hidden by the wave.
+    if (overWave(u_camera_m + ray * at_m) < -1.0) break;
 #endif
-  // At the lowest angles a normal from few pixels says little, and the reflection would hide the fluid.
-  if (dot(normal, ray) > -kLeastFacing) normal = normalize(normal - (dot(normal, ray) + kLeastFacing) * ray);
+    mist += (at_m - before_m) * max(liquid.x + kSurface - 0.2, 0.0) * liquid.y * liquid.y;
+  }
+  mist = 1.0 - exp(-kMist / u_radius_m * mist);
+  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 0.7 + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  if (liquid.x <= 0.0) {
+    if (mist < 0.01) discard;
+    color = vec4(toDisplay(froth), mist);
+    gl_FragDepth = clamp(0.5 * (u_projection[3][2] * per_m / before_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
+    return;
+  }
+  if (!is_pane) at_m = crossing(u_camera_m, ray, before_m, at_m);
+  vec3 surface = u_camera_m + ray * at_m;
+  float raised = smoothstep(0.4, 1.6, overWave(surface));
+  if (raised <= 0.0) discard;
+  vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
+  if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);
+  // Behind the pane's inner face.
+  float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
 
-  // A single drop is a lens: it shows the sky. Foam makes it cloudy; among other particles it is a closed white layer.
-  float alone = (1.0 - at_pane) * single;
-  // Foam is white where the noise is above a threshold that falls with the foam, so that a thin sheet stays clear between its threads.
-  // Seen along the axis that the surface faces most, so that it is stretched nowhere.
-  vec3 axes = normal * normal * normal * normal;
-  vec3 at = world / (kLaceRadii * u_radius_m);
-  vec3 fine = at * 2.7 + 0.31;
-  vec3 laces = 0.55 * vec3(texture(u_noise, at.zy, 2.0).r, texture(u_noise, at.xz, 2.0).r, texture(u_noise, at.xy, 2.0).r) +
-               0.45 * vec3(texture(u_noise, fine.zy).r, texture(u_noise, fine.xz).r, texture(u_noise, fine.xy).r);
-  float lace = dot(axes, laces) / (axes.x + axes.y + axes.z);
-  float strength = 0.85 * smoothstep(0.3, 1.0, foam);
-  float threads = smoothstep(0.85 - 0.85 * strength, 1.35 - 0.55 * strength, lace);
-  // A drop glitters on all sides, and is never darker than what it hides.
-  float white = mix(mix(threads, 1.0, 0.5 * strength) * (0.5 + 0.4 * foam), 0.35 + 0.25 * foam, alone * raised);
-  // Near an outline the far side reflects totally, so that the path is longer than the ray's straight way out.
-  float folded_m = 3.0 * u_radius_m * (1.0 - exp(-thickness_m / u_radius_m)) * (1.0 - alone) * (1.0 - at_pane) * raised;
-  float path_m = (thickness_m + folded_m) * u_colour_ratio;
-  vec3 passed = exp(-u_loss_per_m * path_m);
+  // Through the liquid to where the ray leaves it, at most two times reflected.
+  vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
+  float length_m = 0.0, white_m = 0.0, past_m = 0.0;
+  for (int part = 0; part < 3; ++part) {
+    float along_m = 0.2 * u_radius_m;
+    float most_m = throughVolume(from, bent).y;
+    bool is_side = true;
+    for (int i = 0; i < kMostStepsInside; ++i) {
+      float next_m = min(along_m + 2.0 * step_m, most_m);
+      vec3 at = from + bent * next_m;
+      vec2 through = liquidAt(at);
+      if (through.x < 0.0) {
+        next_m = crossing(from, bent, along_m, next_m);
+        is_side = false;
+      }
+      white_m += (next_m - along_m) * through.y * through.y;
+      along_m = next_m;
+      if (!is_side || along_m >= most_m || overWave(at) < 0.0) break;
+    }
+    from += bent * along_m;
+    length_m += along_m;
+    leaving = bent;
+    bool is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
+    if (is_floor || overWave(from) < 0.0) break;
+    vec3 outward = is_side ? sideAt(from) : normalAt(from);
+    leaving = refract(bent, -outward, kFromWater);
+    past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
+    if (dot(leaving, leaving) > 0.0) break;
+    past_m = 0.0;
+    bent = leaving = reflect(bent, outward);
+    from += 0.2 * u_radius_m * bent;
+  }
+#ifdef WAVE
+  // Further down it is the wave's water.
+  if (leaving.y < -0.05) {
+    float down_m = clamp((from.y - u_floor_m) / -leaving.y, 0.0, 40.0);
+    past_m = down_m;
+    length_m += down_m;
+  }
+#else
+  // What stands in the liquid is seen through less of it.
+  length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
+#endif
+  vec3 behind = behindAt(from, leaving, past_m, ahead_m);
+
+  vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
@@ -151,45 +217,20 @@ void main() {
   scattered *= kTankGlow;
 #endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
-  vec3 glow = scattered * (1.0 - passed);
+  vec3 lit_froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
+  vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 
-  float facing = clamp(-dot(normal, ray), 0.0, 1.0);
   // Glass hides most of the reflection of the water behind it.
-  float fresnel = waterFresnel(facing) * raised * (1.0 - 0.85 * at_pane);
+  float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-  // The particles' surface is not smooth enough for a sharp mirror.
-  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 4.0).rgb;
+  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
   float at_sun = dot(mirrored, u_sun_direction);
-  vec3 glint = vec3(0.0);
-  if (at_sun > 0.9) glint = raised * u_sun_sharp * u_sun_light * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - at_pane);
-
-  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
-  vec3 bent = refract(ray, normal, 0.75);
-  vec3 lens = skyLight(normalize(bent + 0.6 * (bent - ray))) * (0.55 + 0.4 * sun);
+  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
+  color = vec4(toDisplay(mix(mix(under, mirrored_light, fresnel) + glint * u_sun_light, froth, mist)), raised);
+  gl_FragDepth = clamp(0.5 * (u_projection[3][2] / ahead_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
 #ifdef WAVE
-  // The picture behind shows through by the green share that passes.
-  float kept = (1.0 - fresnel) * passed.g * (1.0 - white) * (1.0 - 0.4 * alone * raised);
-  vec3 own = mix(fresnel * mirrored_light + glint + (1.0 - fresnel) * mix(glow, lens * 0.8, alone * raised), froth, white);
-  color = vec4(toDisplay(own / max(1.0 - kept, 0.02)), covered * (1.0 - kept));
-#else
-  // The point where the refracted ray leaves the fluid, and what the screen shows there.
-  float reach_m = min(thickness_m, 0.8 * (solid_m - ahead_m) + u_radius_m);
-  // Behind a pane up to the floor or the far pane. Sides that it meets at a low angle reflect it totally.
-  vec3 half_m = vec3(0.5 * u_extent_m.x, 0.0, 0.5 * u_extent_m.y);
-  vec3 ways_m = (vec3(sign(bent.x) * half_m.x, u_floor_m, sign(bent.z) * half_m.z) - world) / (mix(vec3(1e-5), bent, step(vec3(1e-5), abs(bent))));
-  bvec2 is_total = lessThan(abs(bent.xz), vec2(0.66));
-  float floor_m = bent.y < 0.0 ? max(ways_m.y, 0.0) : 1e3;
-  float out_m = min(floor_m, min(is_total.x ? 1e3 : ways_m.x, is_total.y ? 1e3 : ways_m.z));
-  vec3 leaves = world + bent * min(mix(reach_m, min(out_m, 4.0 * half_m.x), at_pane), floor_m);
-  vec2 folded = 2.0 * clamp(leaves.xz, -half_m.xz, half_m.xz) - leaves.xz;
-  leaves.xz = mix(leaves.xz, folded, is_total);
-  leaves = transpose(mat3(u_camera_world)) * (leaves - u_camera_m);
-  vec2 uv = ((leaves.xy / -leaves.z - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
-  if (any(greaterThan(abs(uv - 0.5), vec2(0.499))) || distanceAt(uv) < ahead_m - u_radius_m) uv = v_uv;
-  vec3 behind = texture(u_behind, uv).rgb;
-  // Below the horizon the floor is reflected, of which the screen shows a part.
-  mirrored_light = mix(mirrored_light, behind, smoothstep(0.1, -0.1, mirrored.y));
-  vec3 inside = mix(behind * passed + glow, max(lens, behind), 0.8 * alone);
-  color = vec4(toDisplay(mix(mix(inside, mirrored_light, fresnel) + glint, froth, white)), covered);
+  // Drawn in front of the wave's surface, from which it can hardly be told.
+  gl_FragDepth -= 1e-4 * (1.0 - raised);
 #endif
 }

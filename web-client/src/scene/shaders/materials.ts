@@ -14,18 +14,20 @@ import elevationFrag from "./elevation.frag?raw";
 import fieldFrag from "./field.frag?raw";
 import flatShadowFrag from "./flat_shadow.frag?raw";
 import flatShadowVert from "./flat_shadow.vert?raw";
-import fluidDepthFrag from "./fluid_depth.frag?raw";
-import fluidEllipse from "./fluid_ellipse.glsl?raw";
-import fluidNormalFrag from "./fluid_normal.frag?raw";
-import fluidParticleVert from "./fluid_particle.vert?raw";
+import fluidColumnFrag from "./fluid_column.frag?raw";
+import fluidDropFrag from "./fluid_drop.frag?raw";
+import fluidDropVert from "./fluid_drop.vert?raw";
+import fluidPresentFrag from "./fluid_present.frag?raw";
 import fluidShadowFrag from "./fluid_shadow.frag?raw";
 import fluidShadowVert from "./fluid_shadow.vert?raw";
-import fluidSizes from "./fluid_sizes.glsl?raw";
-import fluidSmoothFrag from "./fluid_smooth.frag?raw";
 import fluidSurfaceFrag from "./fluid_surface.frag?raw";
-import fluidThicknessFrag from "./fluid_thickness.frag?raw";
+import fluidTileMarkVert from "./fluid_tile_mark.vert?raw";
 import fluidTileMarkFrag from "./fluid_tile_mark.frag?raw";
 import fluidTileVert from "./fluid_tile.vert?raw";
+import fluidVolume from "./fluid_volume.glsl?raw";
+import fluidVolumeFrag from "./fluid_volume.frag?raw";
+import fluidVolumeVert from "./fluid_volume.vert?raw";
+import fluidWords from "./fluid_words.glsl?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
@@ -76,13 +78,13 @@ const kPrograms = {
   elevation: [fullscreenVert, elevationFrag],
   field: [fullscreenVert, fieldFrag],
   flatShadow: [flatShadowVert, flatShadowFrag],
-  fluidDepth: [fluidParticleVert, fluidDepthFrag],
-  fluidNormal: [fluidTileVert, fluidNormalFrag],
+  fluidColumn: [fullscreenVert, fluidColumnFrag],
+  fluidDrop: [fluidDropVert, fluidDropFrag],
+  fluidPresent: [fluidTileVert, fluidPresentFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
-  fluidSmooth: [fluidTileVert, fluidSmoothFrag],
   fluidSurface: [fluidTileVert, fluidSurfaceFrag],
-  fluidThickness: [fluidParticleVert, fluidThicknessFrag],
-  fluidTileMark: [fluidParticleVert, fluidTileMarkFrag],
+  fluidTileMark: [fluidTileMarkVert, fluidTileMarkFrag],
+  fluidVolume: [fluidVolumeVert, fluidVolumeFrag],
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
   lamp: [lampVert, lampFrag],
@@ -117,8 +119,8 @@ const kShared: Record<string, string> = {
   bicubic,
   caustics,
   cell_hash: cellHash,
-  fluid_ellipse: fluidEllipse,
-  fluid_sizes: fluidSizes,
+  fluid_volume: fluidVolume,
+  fluid_words: fluidWords,
   glitter,
   instance,
   look_map: lookMap,

@@ -1,0 +1,45 @@
+// Draws what flies apart from the liquid as drops, over the picture. Reads the particles, the volume, the solids' depth and the canvas.
+// Writes the canvas.
+import { NormalBlending, Vector2, type Matrix4, type RawShaderMaterial } from "three";
+
+import type { Pass, Picture } from "../drawing/pass";
+import type { Sky } from "../light/sky";
+import { makeMaterial } from "../shaders/materials";
+import type { SolidsPass } from "../solids/solids_pass";
+import type { FluidParticles } from "./fluid_particles";
+import type { FluidVolumePass } from "./fluid_volume_pass";
+
+export class FluidDropsPass implements Pass {
+  readonly name = "fluid drops";
+  readonly reads = ["particles", "fluidVolume", "solids", "canvas"] as const;
+  readonly writes = ["canvas"] as const;
+  private readonly material: RawShaderMaterial;
+
+  /** `dropsCount`: drawn for each particle. */
+  constructor(
+    private readonly particles: FluidParticles,
+    volume: FluidVolumePass,
+    solids: SolidsPass,
+    sky: Sky,
+    private readonly dropsCount: number,
+  ) {
+    const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth } };
+    this.material = makeMaterial("fluidDrop", { ...sky.uniforms, ...particles.uniforms, ...volume.uniforms, ...own }, { blending: NormalBlending, transparent: true, depthWrite: false });
+  }
+
+  draw({ renderer, camera, sizePx }: Picture): void {
+    if (this.particles.isEmpty) return;
+    const { uniforms } = this.material;
+    (uniforms["u_target_px"]!.value as Vector2).copy(sizePx);
+    uniforms["u_camera_world"]!.value = camera.matrixWorld satisfies Matrix4;
+    for (let drop = 0; drop < this.dropsCount; ++drop) {
+      uniforms["u_drop"]!.value = drop;
+      this.material.uniformsNeedUpdate = true;
+      this.particles.renderOver(renderer, camera, this.material, null);
+    }
+  }
+
+  dispose(): void {
+    this.material.dispose();
+  }
+}
