@@ -17,7 +17,7 @@ const kShots = {
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
-  breaking_wave: { tick: 138 },
+  breaking_wave: { tick: 156 },
   breaking_wave_particles: { tick: 96 },
   breaking_wave_wave: { tick: 120 },
   dam_break: { tick: 60 },
@@ -37,7 +37,7 @@ const kShots = {
   splash_particles: { tick: 84 },
   splash_wave: { tick: 102 },
   still_pool: { tick: 60 },
-  thesis: { tick: 102 },
+  thesis: { tick: 114 },
   wave_only: { tick: 180 },
 };
 

@@ -102,7 +102,7 @@ export function coastHeightM(coast: Coast, xM: number, zM: number, pastQuay = fa
       const slope = beach ? Math.min((bed.depthM - beach.shoreDepthM) / beach.widthM, 0.25) : kShoreSlope;
       heightM = Math.max(heightM, edgeM + topM * (1 - Math.exp((-slope * Math.max(outM, 0)) / topM)) + hillsM);
     } else if (outM > 1e-9 || pastQuay) {
-      const uneven = hasRockyShores(bed.beaches) ? 1 + 0.45 * rolling((11 * xM) / sideM, (11 * zM) / sideM) + 0.4 * rolling((53 * xM) / sideM, (53 * zM) / sideM) : 1;
+      const uneven = hasRockyShores(bed.beaches) ? 1 + 0.45 * rolling((11 * xM) / sideM, (11 * zM) / sideM) + 0.22 * rolling((37 * xM) / sideM, (41 * zM) / sideM) : 1;
       heightM = Math.max(heightM, uneven * quayHeightM(bed) + 0.3 * kDuneSides * sideM * (1 + roll) * smoothstep(0.25, 1, outM / sideM) + hillsM);
     }
   }

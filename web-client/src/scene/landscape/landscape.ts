@@ -11,9 +11,9 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a laboratory is made of painted boards. */
-const kBoards: Paint = [0.64, 0.62, 0.57, 0.08];
-const kBoardsCut: Paint = [0.17, 0.19, 0.21, 0.08];
+/** A bed in a laboratory is coarse sand, which is seen from the side through the glass. */
+const kFill: Paint = [0.56, 0.46, 0.32, 0.9];
+const kFillCut: Paint = [0.72, 0.56, 0.37, 0.9];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
@@ -27,10 +27,10 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number, isIndoors = fal
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
   const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, isIndoors ? kBoards : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  builder.grid(rows, isIndoors ? kFill : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
-  for (const edge of edges) builder.grid([edge.map(down), edge], isIndoors ? kBoardsCut : kCut);
+  for (const edge of edges) builder.grid([edge.map(down), edge], isIndoors ? kFillCut : kCut);
   return builder.build();
 }
 

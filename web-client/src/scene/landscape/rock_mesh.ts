@@ -66,8 +66,8 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
     const uneven = 0.8 + 0.4 * hash(row, column % around, seed);
     const highM = rows[row]![column]![1];
     const stone = overgrown(shaded(kStone, uneven), highM, weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
-    // Sand lies on the foot.
-    return mixPaint(stone, bedPaint(bottomM, -bottomM), smoothstep(0.05, 0.6, highM / bottomM));
+    // What grows on the foot is dark; sand lies on its lowest part.
+    return mixPaint(shaded(stone, 1 - 0.6 * smoothstep(0, 0.15, highM / bottomM)), bedPaint(bottomM, -bottomM), smoothstep(0.7, 1, highM / bottomM));
   });
 }
 

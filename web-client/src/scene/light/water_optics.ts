@@ -32,7 +32,7 @@ const kExposure = 1.5;
 const kBubblesPerM = 0.35;
 const kBubblesShare = 0.55;
 /** Way of light through a crest (m), and the share of it that reaches the eye. */
-const kCrestM = 0.8;
+const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
 /** Little water looks like glass: that of a tank has the colour of one whose narrower side is this long (m), and at most so many times its own. */

@@ -3,6 +3,7 @@ import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters 
 
 import bed from "./bed.glsl?raw";
 import below from "./below.glsl?raw";
+import bicubic from "./bicubic.glsl?raw";
 import bubblesFrag from "./bubbles.frag?raw";
 import caustics from "./caustics.glsl?raw";
 import causticsFrag from "./caustics.frag?raw";
@@ -30,6 +31,7 @@ import fluidWords from "./fluid_words.glsl?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
+import glitter from "./glitter.glsl?raw";
 import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
 import lampVert from "./lamp.vert?raw";
@@ -114,10 +116,12 @@ const kShared: Record<string, string> = {
   sky,
   bed,
   below,
+  bicubic,
   caustics,
   cell_hash: cellHash,
   fluid_volume: fluidVolume,
   fluid_words: fluidWords,
+  glitter,
   instance,
   look_map: lookMap,
   mirror,

@@ -3,7 +3,7 @@
 uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
 uniform vec3 u_glow;
 // Share of the mirrored sky without single clouds: waves finer than the ripples blur them.
-const float kVeiledShare = 0.5;
+const float kVeiledShare = 0.7;
 
 // The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
 vec3 veiledSky(vec3 direction) {

@@ -26,6 +26,7 @@ uniform float u_darkness; // 0 by day, 1 at night
 #include <shadow>
 #endif
 #ifdef SHORE
+#include <bicubic>
 #include <shore>
 // Wet over dry albedo, by eye. Light in wet sand is scattered more often before it leaves: water between the grains makes them scatter
 // forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
@@ -72,6 +73,8 @@ void main() {
       // With an edge that follows the sand's grain, not the cells.
       float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.55, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
       wet_film = inner * washed * smoothstep(0.75, 1.0, shore.g) * (is_sand ? 1.0 : 0.35);
+      // Under standing water, the water mirrors the sky, not the ground.
+      wet_film *= 1.0 - smoothstep(0.004, 0.03, shore.r);
       foam = inner * shore.b;
       // Stone near the still water is always wet; sand is where water was.
       wet = is_sand ? mix(wet, washed, inner) : max(wet, inner * washed);

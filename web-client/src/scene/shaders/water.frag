@@ -8,6 +8,7 @@
 // there is only the page's own froth.
 #include <sky>
 #include <water_optics>
+#include <bicubic>
 
 in vec3 v_world;
 in float v_view_z;
@@ -66,6 +67,13 @@ layout(location = 0) out vec4 color;
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.6;
+
+#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT) && !defined(PLAIN)
+#define GLITTER
+#include <glitter>
+// The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
+const float kSkyShare = 0.7;
+#endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
@@ -132,9 +140,9 @@ void main() {
   vec3 normal = v_side_normal;
 #else
 #ifdef OPEN_SEA
-  vec4 field = v_share_away.x > 0.0 ? textureLod(u_field, v_world.xz / u_extent_m + 0.5, 0.0) : vec4(0.0);
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
 #else
-  vec4 field = texture(u_field, v_world.xz / u_extent_m + 0.5);
+  vec4 field = smoothTexel(u_field, v_world.xz / u_extent_m + 0.5);
 #endif
   float variance = 0.0;
 #ifdef OPEN_SEA
@@ -144,7 +152,7 @@ void main() {
   vec2 lost = smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), max(width_m.x, width_m.y) / u_tiles_m);
   // Somewhere far out there is always some wind.
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
-  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + kFinestVariance;
+  variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + min(kFinestVariance, u_slope_variances.y);
 #ifdef PLAIN
   // Without mip levels the waves are faded here.
   if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
@@ -162,6 +170,13 @@ void main() {
 #ifdef RAIN
   if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
 #endif
+#ifdef GLITTER
+  vec2 pixel_slopes = pixelSlopes(v_world.xz);
+  // Capillary waves ride on the ripples.
+  float lost_variance = variance + 0.5 * u_slope_variances.y;
+  vec2 level_slopes = field.gb;
+  field.gb += kSkyShare * sqrt(lost_variance) * pixel_slopes;
+#endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
@@ -174,6 +189,10 @@ void main() {
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
 #endif
   contact *= contact;
+#ifndef PLAIN
+  // A band narrower than a pixel would be a row of dots.
+  contact *= 1.0 - smoothstep(0.3, 1.2, fwidth(solid_m) / kContactM);
+#endif
 #elif !defined(SKIRT)
   // The floor and the panes of a tank are close everywhere.
   const float contact = 0.0;
@@ -258,7 +277,7 @@ void main() {
   float fresnel = waterFresnel(facing);
 #ifdef SHORE
   // Thin water is broken by the sand below it, and mirrors less.
-  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.6, deep_m));
+  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.8, deep_m));
 #endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
@@ -282,7 +301,10 @@ void main() {
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.
   water *= 1.0 - 0.45 * contact * contact;
-#ifdef OPEN_SEA
+#ifdef GLITTER
+  if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
+#else
+#if defined(OPEN_SEA) && defined(PLAIN)
   // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
   // of the same width stands for their Gaussian).
   // Of a low sun only: a high one is mirrored far out by slopes too steep for that.
@@ -305,6 +327,7 @@ void main() {
 #endif
   if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
+#endif
 #ifndef SKIRT
   vec2 place = v_world.xz / u_extent_m + 0.5;
 #if defined(RIPPLES) || defined(WALLS)
@@ -319,7 +342,7 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    foam = max(foam, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+    foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
 #endif
 #ifdef OPEN_SEA
     foam *= v_share_away.x;
@@ -328,7 +351,7 @@ void main() {
 #ifdef BEACH
   // Shallow water at a beach always has a little foam; a moving shore knows where.
 #ifdef SHORE
-  foam = max(foam, max(inner * shore.b, 0.4 * (1.0 - smoothstep(0.0, 0.07, deep_m))));
+  foam = max(foam, max(inner * shore.b, 0.6 * (1.0 - smoothstep(0.0, 0.06, deep_m))));
 #else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
@@ -344,7 +367,14 @@ void main() {
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
-    float white = smoothstep(1.0 - strength, 1.0 - strength + 0.26 + 0.3 * strength, lace + 0.02) * smoothstep(0.0, 0.35, foam);
+#ifdef PLAIN
+    const float blur = 0.0;
+#else
+    // Far away the lace is finer than a pixel, and its edges would be dots.
+    vec2 at_step = fwidth(at);
+    float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
+#endif
+    float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.26 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     float clouded = 0.45 * foam * foam;
 #ifdef SHORE

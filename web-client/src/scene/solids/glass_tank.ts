@@ -23,8 +23,8 @@ const kBayCount = 2;
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kTable: Paint = [0.155, 0.10, 0.062, 0.3];
-const kTableEdge: Paint = [0.10, 0.064, 0.04, 0.3];
+const kTable: Paint = [0.40, 0.30, 0.195, 0.35];
+const kTableEdge: Paint = [0.27, 0.19, 0.115, 0.35];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 /** Pale, so that it shows the light that the water focuses. */
 const kBase: Paint = [0.60, 0.575, 0.52, 0.1];
@@ -62,8 +62,9 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
     builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, paint, kCutEdge);
   };
   for (const side of [-1, 1]) {
-    upright(0, side * (hz + halfM), hx, halfM, kPane);
-    upright(side * (hx + halfM), 0, halfM, hz, kPane);
+    // A gap to the water, whose sides would otherwise lie in the same planes.
+    upright(0, side * (hz + 1.1 * halfM), hx, 0.9 * halfM, kPane);
+    upright(side * (hx + 1.1 * halfM), 0, 0.9 * halfM, hz, kPane);
     for (const end of [-1, 1]) upright(side * (hx + halfM), end * (hz + halfM), halfM, halfM, kCutEdge);
   }
   return builder.build();

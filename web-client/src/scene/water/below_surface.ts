@@ -1,13 +1,13 @@
 // What is drawn when the camera is in the water or close over it: the surface from below, and the solids seen through water. Each pixel
 // decides by itself whether its way begins in the water, so that the surface divides the picture where the camera is half below it.
-import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMaterial } from "three";
+import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMaterial, type Vector2 } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
 import { elevationAtM } from "../frames/height_field";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 
-/** The surface may divide the picture where the camera is less than this many near planes over it. */
+/** The surface may divide the picture where the camera is over the water, by less than this many near planes. */
 const kCloseNears = 4;
 /** Average albedo of the floor, where it is not on the screen. */
 const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
@@ -24,6 +24,8 @@ export class BelowSurface {
   readonly solids: RawShaderMaterial;
   private readonly uniforms: Uniforms;
   private readonly ahead = new Vector3();
+  /** The water ends at panes of glass. */
+  private readonly isCut: boolean;
 
   /** `uniforms` and `defines` are those of the water; `newest` returns the newest frame of the surface. */
   constructor(setting: GreetingInfo["setting"], uniforms: Uniforms, defines: Record<string, number>, private readonly newest: () => SurfaceFrame | undefined) {
@@ -34,6 +36,7 @@ export class BelowSurface {
       u_camera_world: { value: new Matrix4() },
       u_camera_ahead: { value: this.ahead },
     };
+    this.isCut = setting === "glassTank" || setting === "flume";
     this.surface = makeMaterial("waterBelow", this.uniforms, { side: BackSide, defines });
     this.solids = makeMaterial("presentBelow", this.uniforms, { depthWrite: false, defines });
   }
@@ -42,7 +45,9 @@ export class BelowSurface {
   isSeen(camera: PerspectiveCamera): boolean {
     const frame = this.newest();
     const { x, y, z } = camera.position;
-    if (y > (frame ? elevationAtM(frame, x, z) : 0) + kCloseNears * camera.near) return false;
+    const extentM = this.uniforms["u_extent_m"]!.value as Vector2;
+    const isBeside = this.isCut && Math.max(Math.abs(x) - extentM.x / 2, Math.abs(z) - extentM.y / 2) > camera.near;
+    if (y > (frame ? elevationAtM(frame, x, z) : 0) + (isBeside ? 0 : kCloseNears * camera.near)) return false;
     (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
     (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
     camera.getWorldDirection(this.ahead);
