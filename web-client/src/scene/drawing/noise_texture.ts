@@ -50,12 +50,15 @@ export function makeLace(side: number): Uint8Array<ArrayBuffer> {
   return lace;
 }
 
-export function makeNoiseTexture(): DataTexture {
-  const texture = new DataTexture(makeLace(kSide), kSide, kSide, RedFormat, UnsignedByteType);
+let lace: Uint8Array<ArrayBuffer> | undefined;
+
+/** `plain`: without mip levels, between which software renderers would interpolate at twice the cost. */
+export function makeNoiseTexture(plain: boolean): DataTexture {
+  const texture = new DataTexture((lace ??= makeLace(kSide)), kSide, kSide, RedFormat, UnsignedByteType);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
-  texture.generateMipmaps = true;
+  texture.minFilter = plain ? LinearFilter : LinearMipmapLinearFilter;
+  texture.generateMipmaps = !plain;
   texture.needsUpdate = true;
   return texture;
 }

@@ -1,5 +1,5 @@
 // The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
-// along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
+// along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. The plain tiers have water_plain.frag.
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
@@ -70,15 +70,6 @@ const float kContactM = 0.6;
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
 
-// exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
-vec3 fading(vec3 x) {
-#ifdef PLAIN
-  return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667)));
-#else
-  return exp(-x);
-#endif
-}
-
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
   return near * far / ((far - near) * depth - far);
@@ -145,14 +136,8 @@ void main() {
   // Somewhere far out there is always some wind.
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
   variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + kFinestVariance;
-#ifdef PLAIN
-  // Without mip levels the waves are faded here.
-  if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
-  if (lost.y < 1.0) field.gb += (1.0 - lost.y) * textureLod(u_ripples, sea_at / u_tiles_m.y, 0.0).gb;
-#else
   field.gb = mix(texture(u_swell, sea_at / u_tiles_m.x).gb, field.gb, v_share_away.x);
   field.gb += rippleSlopes(sea_at);
-#endif
 #endif
 #ifdef RIPPLES
   vec2 width_m = fwidth(v_world.xz);
@@ -182,7 +167,7 @@ void main() {
   // The scene behind, shifted by refraction. If the shifted pixel lies in front of the water, the unshifted one is used.
   float way_m = wayOut(v_world, ray);
   vec2 shifted_uv = uv;
-#if !defined(SKIRT) && !defined(PLAIN)
+#ifndef SKIRT
   vec3 bent = refract(ray, normal, 0.75);
   // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
   float reach_m = min(0.5 * way_m, 0.45);
@@ -200,20 +185,13 @@ void main() {
 #endif
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
 #ifdef OPEN_SEA
-  // Outside the square the bed is drawn for a short way only, with PLAIN nowhere where it is level. Elsewhere it has one colour; far
-  // away it falls off.
+  // Outside the square the bed is drawn for a short way only. Elsewhere it has one colour; far away it falls off.
   float undrawn = smoothstep(0.02, 0.35, v_share_away.y / max(u_extent_m.x, u_extent_m.y));
   float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / max(u_extent_m.x, u_extent_m.y));
 #ifdef BEACH
   float floor_share = bedDepth(v_world.xz, u_extent_m, u_depth_m) / u_depth_m;
   undrawn *= floor_share * floor_share;
   sunk *= floor_share * floor_share;
-#ifdef PLAIN
-  // The mesh of the beach ends where the bed becomes level: fade its grain before, but not what stands on it.
-  vec3 hit = v_world + ray * behind_m;
-  float hit_depth_m = bedDepth(hit.xz, u_extent_m, u_depth_m);
-  if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
-#endif
 #endif
   vec3 far_bed = kFarBed * (1.25 * u_sun_direction.y * u_sun_light + u_ambient_up);
   vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, far_bed, undrawn) : far_bed;
@@ -229,7 +207,7 @@ void main() {
   path_m = mix(deep_m * inversesqrt(1.0 - sine2), path_m, smoothstep(0.15, 0.6, deep_m));
 #endif
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = fading(u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
+  vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
   float sunlit_share = 1.0;
@@ -298,11 +276,9 @@ void main() {
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
   float narrow = 1500.0;
-#ifndef PLAIN
   // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
   vec3 turn = fwidth(mirrored);
   narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
-#endif
   if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #ifndef SKIRT
@@ -336,9 +312,7 @@ void main() {
   if (foam > 0.01) {
     vec2 at = v_world.xz - 0.6 * field.gb;
     float lace = texture(u_noise, at / u_lace_m).r;
-#ifndef PLAIN
     lace = clamp(0.54 * lace + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
-#endif
     // Patches, not an even veil with straight edges.
     foam *= 0.55 + 0.9 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
