@@ -138,7 +138,8 @@ export class WaterScene {
     camera.updateMatrixWorld();
     const light = this.daylight.update(nowS);
     if (light) this.setLight(light);
-    this.sky.update(renderer, nowS);
+    // Before a room is known nothing is drawn, and the light of its hour would be baked again.
+    if (this.base) this.sky.update(renderer, nowS);
     renderer.setRenderTarget(null);
     if (this.base) renderer.setClearColor(this.base.solids.backdrop, 1);
     renderer.clear();

@@ -57,7 +57,7 @@ export class Sky {
   /** Plain: without mip levels, which prevent flicker in distant reflections but are too slow for software renderers. */
   constructor({ plain, texelType }: Pick<Quality, "plain" | "texelType">) {
     const smooth = !plain;
-    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
+    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 4, {
       type: texelType,
       generateMipmaps: smooth,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
