@@ -1,5 +1,5 @@
 // Measures the page in headless Chromium against the real server, with software WebGL: time to the first picture, pictures per second, and
-// the time of each pass. `npm run bench:page` in web-client builds the page and calls this. The server must be built (`./dev build`).
+// the time of each pass, and the processor time of the browser per picture, which depends little on what else runs on the machine. `npm run bench:page` in web-client builds the page and calls this. The server must be built (`./dev build`).
 //   bench_page.mjs [--scenes A,B] [--qualities minimal,high] [--seconds S] [--size 1280x720]
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
@@ -10,6 +10,7 @@ import { parseArgs } from "node:util";
 import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
+import { cpuSecondsOf } from "./cpu_time.mjs";
 import { startServer } from "./server.mjs";
 
 const kWaitMs = 120_000;
@@ -57,10 +58,19 @@ async function measure(scene, quality, url) {
     const firstS = (performance.now() - begunMs) / 1000;
     await sleep(kSettleMs);
     const rates = [];
+    await page.evaluate(() => {
+      window.picturesCount = 0;
+      const count = () => (++window.picturesCount, requestAnimationFrame(count));
+      count();
+    });
+    const cpuNow = async () => ({ picturesCount: await page.evaluate(() => window.picturesCount), cpuS: cpuSecondsOf(profile) });
+    const cpuBefore = await cpuNow();
     for (let i = 0; i < seconds * kSamplesPerS; ++i) {
       await sleep(1000 / kSamplesPerS);
       rates.push(await page.evaluate(() => window.spindrift.stats().displayFps));
     }
+    const cpuAfter = await cpuNow();
+    const perPictureMs = Object.entries(cpuAfter.cpuS).map(([kind, cpuS]) => [kind, (1000 * (cpuS - (cpuBefore.cpuS[kind] ?? 0))) / (cpuAfter.picturesCount - cpuBefore.picturesCount)]);
     rates.sort((a, b) => a - b);
     const { pixelRatio } = await page.evaluate(() => window.spindrift.stats());
     const timesMs = await page.evaluate((count) => window.spindrift.passTimesMs(count), kPassPictures);
@@ -68,6 +78,8 @@ async function measure(scene, quality, url) {
     const rate = (share) => rates[Math.floor(share * (rates.length - 1))].toFixed(1);
     console.log(`${scene}, ${quality}, ${width} x ${height} at pixel ratio ${pixelRatio.toFixed(2)}: first picture with water after ${firstS.toFixed(2)} s, ` +
       `${rate(0.5)} pictures/s (lowest ${rate(0)})`);
+    const cpuMs = perPictureMs.reduce((sum, [, ms]) => sum + ms, 0);
+    console.log(`  processor time per picture ${cpuMs.toFixed(0)} ms: ${perPictureMs.filter(([, ms]) => ms >= 1).map(([kind, ms]) => `${kind} ${ms.toFixed(0)}`).join(", ")}`);
     for (const [name, ms] of Object.entries(passes)) console.log(`  ${name.padEnd(16)} ${ms.toFixed(1).padStart(7)} ms`);
     console.log(`  ${"(each wait".padEnd(16)} ${readBackMs.toFixed(1).padStart(7)} ms, subtracted)`);
   } finally {

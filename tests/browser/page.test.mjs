@@ -355,7 +355,7 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     for (const tier of ["low", "high", "minimal"]) {
       await quality.selectOption(tier);
       const stats = await waitFor(page, `the tier ${tier}`, (now) => now.quality === tier);
-      assert.equal(stats.pixelRatio, tier === "minimal" ? 0.45 : 1);
+      assert.equal(stats.pixelRatio, tier === "minimal" ? 0.65 : 1);
       await page.waitForURL((url) => url.searchParams.get("quality") === tier, { timeout: WAIT_MS });
       await drawnPictures(page, 0);
       // A picture of the tier "high" takes a second here.

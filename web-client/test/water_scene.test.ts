@@ -108,9 +108,9 @@ describe.each(kLists)("the passes of %s in the look %s", (_, __, passes) => {
 const namesOf = (lists: Map<LookName, Pass[]>): [LookName, string[]][] => [...lists].map(([look, passes]) => [look, passes.map(({ name }) => name)]);
 
 describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
-  it("differ between the qualities by caustics, shadows, rings of rain, ripples and smooth edges alone", { timeout: kLongestMs }, () => {
+  it("differ between the qualities by caustics, shadows, rings of rain, ripples, bubbles and smooth edges alone", { timeout: kLongestMs }, () => {
     const high = namesOf(passesOf(change, "high"));
-    const isShared = (name: string): boolean => !["caustics", "edges", "rain rings", "sea", "shadow", "flat shadow"].includes(name);
+    const isShared = (name: string): boolean => !["caustics", "edges", "bubbles", "rain rings", "sea", "shadow", "flat shadow"].includes(name);
     expect(high.map(([look, names]) => [look, names.filter(isShared)])).toEqual(namesOf(lists).map(([look, names]) => [look, names.filter(isShared)]));
     for (const [look, names] of high) {
       expect(names.includes("edges")).toBe(look === "natural");
@@ -129,8 +129,8 @@ describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", { timeout: kLongestMs }, () => {
     const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray", "lamps"]);
-    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "bubbles", "flat shadow", "water", "present", "spray"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray", "lamps"]);
+    expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray"]);
     expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
     expect(names(kRooms["a flume"]!)).not.toContain("rain streaks");
     expect(names(kRooms["a beach where water runs up"]!).slice(0, 3)).toEqual(["field", "shore", "foam"]);

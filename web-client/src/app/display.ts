@@ -73,7 +73,7 @@ export class Display {
   }
 
   get pixelRatio(): number {
-    return this.governor.pixelRatio(window.devicePixelRatio || 1);
+    return this.governor.pixelRatio(window.devicePixelRatio || 1, this.greeting?.wave === undefined && this.greeting?.hasParticles);
   }
 
   /** The tier that is drawn, the share of its resolution, and whether both follow the time that pictures take. */
@@ -109,6 +109,8 @@ export class Display {
     const isSameWater = before?.sideM === greeting.sideM && Math.abs(before.widthM - greeting.widthM) < 0.05 * greeting.widthM && before.room === greeting.room && before.sceneName === greeting.sceneName;
     this.greeting = greeting;
     this.scene.enter(greeting, isSameWater);
+    // Tanks have a resolution of their own.
+    this.resize();
     if (isSameWater) return;
     const box = this.scene.viewedBox();
     this.isBoxKnown = box !== undefined;

@@ -24,9 +24,12 @@ import type { DataTexture } from "three";
 import type { GreetingInfo } from "../../client/codec/greeting";
 import type { Pass } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
+import { EverySecond } from "./drawing/every_second";
 import { makeFluidPasses } from "./fluid/fluid";
+import { FluidParticles } from "./fluid/fluid_particles";
 import type { StreamedFrames } from "./frames/streamed_frames";
 import type { Sky } from "./light/sky";
+import { LookParticlesPass } from "./looks/look_particles_pass";
 import { RainRingsPass } from "./rain/rain_rings_pass";
 import { RainStreaksPass } from "./rain/rain_streaks_pass";
 import { FlatShadowPass } from "./shadows/flat_shadow_pass";
@@ -36,7 +39,7 @@ import { ShorePass } from "./shore/shore_pass";
 import type { ShoreWetness } from "./shore/shore_wetness";
 import { GlassPass } from "./solids/glass_pass";
 import { LampsPass } from "./solids/lamps_pass";
-import { SolidsPass } from "./solids/solids_pass";
+import { kInTextures, kOnCanvas, SolidsPass } from "./solids/solids_pass";
 import { isIndoors, makeSea } from "./solids/surroundings";
 import { CausticsPass } from "./water/caustics_pass";
 import { EdgesPass } from "./water/edges_pass";
@@ -86,7 +89,8 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality);
   shadow?.setCasters(solids);
-  return { field, foam, solids, passes: [field, shore, foam, sea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
+  const shownSea = sea && (quality.sparing ? new EverySecond(sea, 0) : sea);
+  return { field, foam, solids, passes: [field, shore, foam, shownSea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
@@ -98,14 +102,31 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
   const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality }, inputs);
-  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality.fluid) : { before: [], after: [] };
+  const fluid = greeting.hasParticles ? makeParticlePasses(greeting, field, solids, { frames, sky, noise, quality }) : { before: [], after: [] };
   const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
   const edges = quality.plain ? undefined : new EdgesPass();
-  const before = [...fluid.before, ...(white?.before ?? []), flatShadow, rings];
+  if (quality.plain && water) solids.use = plainUse(water);
+  // The bubbles are drawn into the solids' textures, which plain water does not show.
+  const whiteBefore = (white?.before ?? []).filter(({ name }) => !quality.plain || name !== "bubbles");
+  // The flat shadow is drawn into the froth.
+  const onWater = [...whiteBefore, flatShadow].map((pass) => (pass && quality.sparing && pass.writes.some((written) => written === "froth") ? new EverySecond(pass, 1) : pass));
+  const before = [...fluid.before, ...onWater, rings];
   const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass), edges];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
   return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
+}
+
+/** Returns the passes of particles: a liquid, or spheres where that is too expensive and the wave shows most of the water. */
+function makeParticlePasses(greeting: GreetingInfo, field: FieldPass | undefined, solids: SolidsPass, { frames, sky, noise, quality }: Pick<RoomTools, "frames" | "sky" | "noise" | "quality">): { before: Pass[]; after: Pass[] } {
+  if (!field || !quality.sparing) return makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality.fluid);
+  const particles = new FluidParticles(frames.particles, frames.clock, field.texture, greeting);
+  return { before: [particles], after: [new LookParticlesPass(particles, solids, sky, "drops")] };
+}
+
+/** Plain tiers draw the solids on the canvas, whose depth hides what is behind them; a camera in the water looks through their textures. */
+function plainUse(water: WaterPass): SolidsPass["use"] {
+  return ({ camera }) => (water.isSeenFromBelow(camera) ? kInTextures : kOnCanvas);
 }
 
 /** Leaves out passes whose results no later pass reads. */

@@ -1,5 +1,5 @@
 // Everything of one room as one picture: draws the passes that room_passes.ts lists, and what the page asks of them.
-import { PerspectiveCamera, Vector2, type WebGLRenderer } from "three";
+import { PerspectiveCamera, Vector2, type DataTexture, type WebGLRenderer } from "three";
 
 import type { GameInfo } from "../../client/codec/game";
 import type { BoatDetail, GreetingInfo } from "../../client/codec/greeting";
@@ -51,7 +51,7 @@ export class WaterScene {
   readonly ripple = new LocalRipple();
   readonly frames: StreamedFrames;
   private sky: Sky;
-  private readonly noise = makeNoiseTexture();
+  private noise: DataTexture;
   private readonly wetness = new ShoreWetness();
   private readonly picture: Picture;
   /** What every look needs: field, foam, surroundings. */
@@ -77,6 +77,7 @@ export class WaterScene {
   ) {
     this.frames = new StreamedFrames(release);
     this.sky = new Sky(quality);
+    this.noise = makeNoiseTexture(quality.plain);
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
   }
@@ -121,8 +122,10 @@ export class WaterScene {
   setQuality(quality: Quality): void {
     this.leave();
     this.sky.dispose();
+    this.noise.dispose();
     this.quality = quality;
     this.sky = new Sky(quality);
+    this.noise = makeNoiseTexture(quality.plain);
     if (this.greeting) this.enter(this.greeting, true);
   }
 
@@ -135,9 +138,12 @@ export class WaterScene {
     camera.updateMatrixWorld();
     const light = this.daylight.update(nowS);
     if (light) this.setLight(light);
-    this.sky.update(renderer, nowS);
+    // Before a room is known nothing is drawn, and the light of its hour would be baked again.
+    if (this.base) this.sky.update(renderer, nowS);
     renderer.setRenderTarget(null);
+    if (this.base) renderer.setClearColor(this.base.solids.backdrop, 1);
     renderer.clear();
+    renderer.setClearColor(0x000000, 0);
     for (const pass of this.passes) {
       pass.draw(picture);
       drawn?.(pass);
@@ -309,6 +315,7 @@ export class WaterScene {
   }
 
   private leaveWater(): void {
+    this.base?.solids.resetUse();
     this.water?.dispose();
     this.water = this.lookRoom = undefined;
     this.passes = [];

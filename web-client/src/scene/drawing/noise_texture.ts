@@ -8,20 +8,30 @@ import { hash } from "../maths/random";
 const kSide = 256;
 
 /** Worley noise, F2 - F1: distance to the second nearest minus distance to the nearest of one random point per cell. Repeats after `period` cells. */
-function cellWalls(x: number, y: number, period: number, seed: number): number {
-  let nearest = 9;
-  let next = 9;
-  const cx = Math.floor(x);
-  const cy = Math.floor(y);
-  for (let dy = -1; dy <= 1; ++dy)
-    for (let dx = -1; dx <= 1; ++dx) {
-      const px = (cx + dx + period) % period;
-      const py = (cy + dy + period) % period;
-      const away = (cx + dx + hash(px, py, seed) - x) ** 2 + (cy + dy + hash(px, py, seed + 1) - y) ** 2;
-      if (away < nearest) [nearest, next] = [away, nearest];
-      else if (away < next) next = away;
-    }
-  return Math.sqrt(next) - Math.sqrt(nearest);
+function makeCellWalls(period: number, seed: number): (x: number, y: number) => number {
+  // The points of the cells, with those around them.
+  const side = period + 4;
+  const points = Float64Array.from({ length: 2 * side * side }, (_, n) => {
+    const cell = n >> 1;
+    return hash(((cell % side) - 2 + period) % period, (Math.floor(cell / side) - 2 + period) % period, seed + (n & 1));
+  });
+  return (x, y) => {
+    let nearest = 9;
+    let next = 9;
+    const cx = Math.floor(x);
+    const cy = Math.floor(y);
+    for (let dy = -1; dy <= 1; ++dy)
+      for (let dx = -1; dx <= 1; ++dx) {
+        const at = 2 * ((cy + dy + 2) * side + cx + dx + 2);
+        const [awayX, awayY] = [cx + dx + points[at]! - x, cy + dy + points[at + 1]! - y];
+        const away = awayX * awayX + awayY * awayY;
+        if (away < nearest) {
+          next = nearest;
+          nearest = away;
+        } else if (away < next) next = away;
+      }
+    return Math.sqrt(next) - Math.sqrt(nearest);
+  };
 }
 
 function cloud(x: number, y: number, period: number, seed: number): number {
@@ -35,12 +45,13 @@ function cloud(x: number, y: number, period: number, seed: number): number {
 /** Returns one byte per sample, row by row; the square repeats. */
 export function makeLace(side: number): Uint8Array<ArrayBuffer> {
   const raw = new Float32Array(side * side);
+  const [large, small] = [makeCellWalls(9, 20), makeCellWalls(24, 30)];
   for (let k = 0; k < side; ++k)
     for (let i = 0; i < side; ++i) {
       const [u, v] = [i / side, k / side];
       const clouds = 0.5 * cloud(6 * u, 6 * v, 6, 3) + 0.3 * cloud(15 * u, 15 * v, 15, 4) + 0.2 * cloud(40 * u, 40 * v, 40, 5);
       const [wu, wv] = [u + 0.03 * clouds, v + 0.03 * (1 - clouds)];
-      const walls = 0.62 * (1 - Math.min(cellWalls(9 * wu, 9 * wv, 9, 20), 0.7) / 0.7) + 0.38 * (1 - Math.min(cellWalls(24 * wu, 24 * wv, 24, 30), 0.7) / 0.7);
+      const walls = 0.62 * (1 - Math.min(large(9 * wu, 9 * wv), 0.7) / 0.7) + 0.38 * (1 - Math.min(small(24 * wu, 24 * wv), 0.7) / 0.7);
       raw[k * side + i] = 0.6 * walls + 0.55 * clouds;
     }
   // Rank instead of value: uniformly distributed.
@@ -50,12 +61,15 @@ export function makeLace(side: number): Uint8Array<ArrayBuffer> {
   return lace;
 }
 
-export function makeNoiseTexture(): DataTexture {
-  const texture = new DataTexture(makeLace(kSide), kSide, kSide, RedFormat, UnsignedByteType);
+let lace: Uint8Array<ArrayBuffer> | undefined;
+
+/** `plain`: without mip levels, between which software renderers would interpolate at twice the cost. */
+export function makeNoiseTexture(plain: boolean): DataTexture {
+  const texture = new DataTexture((lace ??= makeLace(kSide)), kSide, kSide, RedFormat, UnsignedByteType);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.magFilter = LinearFilter;
-  texture.minFilter = LinearMipmapLinearFilter;
-  texture.generateMipmaps = true;
+  texture.minFilter = plain ? LinearFilter : LinearMipmapLinearFilter;
+  texture.generateMipmaps = !plain;
   texture.needsUpdate = true;
   return texture;
 }

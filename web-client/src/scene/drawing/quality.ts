@@ -25,6 +25,8 @@ export interface WhitewaterQuality {
 interface Tier {
   /** Most drawn pixels per CSS pixel, along each axis. */
   maxPixelRatio: number;
+  /** The same in a tank of particles, whose liquid costs by the pixel. */
+  tankPixelRatio: number;
   /** Frames per second, at most, that the page asks for; pictures between them are interpolated. */
   frameRateMaxHz: number;
   /** Cells along each side of the drawn surface. */
@@ -33,6 +35,8 @@ interface Tier {
   samplesCount: number;
   /** Shaders and meshes without what is slow on software renderers. */
   plain: boolean;
+  /** Draws sea, froth and flat shadows in every second picture, and particles on a wave as spheres. */
+  sparing: boolean;
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
   /** Texels along each side of the two tiles of the sea around the square. */
@@ -64,27 +68,27 @@ export type QualityChoice = TierName | "automatic";
 
 export const kTiers: Record<TierName, Tier> = {
   minimal: {
-    maxPixelRatio: 0.45, frameRateMaxHz: 15, surfaceCellsCount: 72, samplesCount: 1, plain: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
+    maxPixelRatio: 0.65, tankPixelRatio: 0.45, frameRateMaxHz: 10, surfaceCellsCount: 56, samplesCount: 1, plain: true, sparing: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
     fluid: { cellsPerSpacing: 1, scale: 0.5, dropsCount: 3 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined, shadows: undefined,
   },
   low: {
-    maxPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
+    maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, sparing: false, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
     fluid: { cellsPerSpacing: 1, scale: 0.5, dropsCount: 4 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
     rain: { ringTexelsCount: 0, streaksCount: 3000 }, caustics: undefined, shadows: undefined,
   },
   medium: {
-    maxPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
+    maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, sparing: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
     fluid: { cellsPerSpacing: 1.25, scale: 0.75, dropsCount: 6 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
     rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: undefined, shadows: { texelsCount: 1024 },
   },
   high: {
-    maxPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
+    maxPixelRatio: 1.5, tankPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
     fluid: { cellsPerSpacing: 1.5, scale: 1, dropsCount: 9 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
     rain: { ringTexelsCount: 256, streaksCount: 10_000 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 },
   },
   highest: {
-    maxPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
+    maxPixelRatio: 2, tankPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
     fluid: { cellsPerSpacing: 2, scale: 1, dropsCount: 12 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
     rain: { ringTexelsCount: 512, streaksCount: 16_000 }, caustics: { cellsCount: 384, texelsCount: 1024 }, shadows: { texelsCount: 4096 },
   },

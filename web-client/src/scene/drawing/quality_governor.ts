@@ -55,10 +55,11 @@ export class QualityGovernor {
     return this.choice === "automatic";
   }
 
-  /** Drawn pixels per CSS pixel. `devicePixelRatio`: those of the device. */
-  pixelRatio(devicePixelRatio: number): number {
+  /** Drawn pixels per CSS pixel. `devicePixelRatio`: those of the device. `isTank`: the room is a tank of particles. */
+  pixelRatio(devicePixelRatio: number, isTank = false): number {
     const { tier, resolutionShare } = kRungs[this.rung]!;
-    return Math.min(devicePixelRatio, kTiers[tier].maxPixelRatio) * resolutionShare;
+    const { maxPixelRatio, tankPixelRatio } = kTiers[tier];
+    return Math.min(devicePixelRatio, isTank ? tankPixelRatio : maxPixelRatio) * resolutionShare;
   }
 
   /** Share of the tier's own resolution. */

@@ -2,7 +2,7 @@
 // water. Colours are linear and relative: a white surface that faces the noon sun has about 1.6. Pure: no renderer.
 //
 // The sky's colours are keyframes over the sun's altitude, chosen by eye (no scattering model): today's clear noon is the last one.
-import { mix, smoothstep } from "../maths/interpolate";
+import { clamp, mix, smoothstep } from "../maths/interpolate";
 
 export type Rgb = readonly [red: number, green: number, blue: number];
 
@@ -174,6 +174,15 @@ const kStarSines = [-0.10, -0.26] as const;
 
 /** Lamps are lit when the sun is low: none above the first sine of its altitude, all below the second. */
 const kLampSines = [0.12, -0.06] as const;
+
+/** Returns the values for the display of linear light, as toDisplay() of sky.glsl does. */
+export function displayed({ x, y, z }: { x: number; y: number; z: number }, exposure: number): Rgb {
+  const of = (linear: number): number => {
+    const light = 1.9 * exposure * linear;
+    return Math.sqrt(clamp((light * (1 + light / 9)) / (1 + light), 0, 1));
+  };
+  return [of(x), of(y), of(z)];
+}
 
 /** Returns how bright lamps are: 0 by day, 1 at night. */
 export function darknessOf(light: Light): number {

@@ -8,6 +8,7 @@ import {
   LinearFilter,
   LinearMipmapLinearFilter,
   Matrix4,
+  PlaneGeometry,
   Mesh,
   Scene,
   Vector3,
@@ -21,10 +22,13 @@ import type { WaterTypeName } from "../../../client/codec/scene_info";
 import { makeFullscreenGeometry } from "../drawing/fullscreen";
 import type { Quality } from "../drawing/quality";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
-import { derive, indoors, lightAt, type Light, type Rgb } from "./light";
+import { derive, displayed, indoors, lightAt, type Light, type Rgb } from "./light";
 import { waterOpticsOf } from "./water_optics";
 
 const kFaceCount = 512;
+/** Cells of the dome in the plain tiers, whose light is that of their corners. */
+const kPlainColumns = 40;
+const kPlainRows = 30;
 /** Height of the lowest direction in which the sky is seen over a horizon of land or sea. */
 const kLowestShown = -0.03;
 /** Least time between two bakes: six faces cost a software renderer more than a picture. */
@@ -53,7 +57,7 @@ export class Sky {
   /** Plain: without mip levels, which prevent flicker in distant reflections but are too slow for software renderers. */
   constructor({ plain, texelType }: Pick<Quality, "plain" | "texelType">) {
     const smooth = !plain;
-    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 2, {
+    this.cube = new WebGLCubeRenderTarget(smooth ? kFaceCount : kFaceCount / 4, {
       type: texelType,
       generateMipmaps: smooth,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
@@ -71,6 +75,11 @@ export class Sky {
       u_veiled_sky: { value: [new Vector3(), new Vector3(), new Vector3()] },
       u_sun_sharp: { value: 1 },
       u_exposure: { value: 1 },
+      u_is_displayed: { value: false },
+      u_displayed_sky: { value: [new Vector3(), new Vector3(), new Vector3()] },
+      u_displayed_sun: vector(),
+      u_displayed_glow: vector(),
+      u_displayed_foam: vector(),
       u_loss_per_m: vector(),
       u_scattered: vector(),
       u_bubbly: vector(),
@@ -90,8 +99,9 @@ export class Sky {
       u_ambient_up: this.uniforms["u_ambient_up"]!,
       u_room_light: vector(),
       u_window_light: vector(),
+      u_lowest: { value: -1 },
     };
-    this.outdoors = makeMaterial("skyBake", this.bakeUniforms, { side: BackSide });
+    this.outdoors = makeMaterial("skyBake", this.bakeUniforms, { side: BackSide, defines: plain ? { PLAIN: 1 } : {} });
     this.room = makeMaterial("roomBake", this.bakeUniforms, { side: BackSide });
     this.box = new Mesh(new BoxGeometry(2, 2, 2), this.outdoors);
     this.scene.add(this.box);
@@ -101,9 +111,9 @@ export class Sky {
       u_camera_world: { value: new Matrix4() },
       u_has_disc: { value: true },
       u_stars: { value: 0 },
-      u_lowest: { value: -1 },
+      u_lowest: this.bakeUniforms["u_lowest"]!,
     };
-    this.dome = new Mesh(makeFullscreenGeometry(), makeMaterial("skyDome", this.domeUniforms, { depthWrite: false }));
+    this.dome = new Mesh(plain ? new PlaneGeometry(2, 2, kPlainColumns, kPlainRows) : makeFullscreenGeometry(), makeMaterial(plain ? "skyPlain" : "skyDome", this.domeUniforms, { depthWrite: false }));
     this.dome.frustumCulled = false;
     // After the solids: only the remaining pixels are shaded.
     this.dome.renderOrder = 10;
@@ -135,6 +145,7 @@ export class Sky {
     set(this.uniforms, "u_glow", light.glow);
     veiled.forEach((rgb, i) => (this.uniforms["u_veiled_sky"]!.value as Vector3[])[i]!.set(...rgb));
     this.uniforms["u_exposure"]!.value = light.exposure;
+    this.setDisplayed(light, veiled);
     set(this.bakeUniforms, "u_sun_direction", light.sunDirection);
     set(this.bakeUniforms, "u_zenith", light.zenith);
     set(this.bakeUniforms, "u_middle", light.middle);
@@ -149,6 +160,16 @@ export class Sky {
     this.domeUniforms["u_has_disc"]!.value = !this.isRoom;
     this.domeUniforms["u_stars"]!.value = light.stars;
     this.isStale = true;
+  }
+
+  /** Sets what plain water mixes: colours for the display. */
+  private setDisplayed({ key, glow, ambientUp, exposure, sharp }: Light, veiled: readonly Rgb[]): void {
+    const { u_displayed_sky, u_displayed_sun, u_displayed_glow, u_displayed_foam } = this.uniforms;
+    const shown = (of: (channel: 0 | 1 | 2) => number): Rgb => displayed({ x: of(0), y: of(1), z: of(2) }, exposure);
+    veiled.forEach((rgb, i) => (u_displayed_sky!.value as Vector3[])[i]!.set(...shown((k) => rgb[k])));
+    (u_displayed_sun!.value as Vector3).set(...shown((k) => key[k])).multiplyScalar(sharp);
+    (u_displayed_glow!.value as Vector3).set(...shown((k) => veiled[2]![k] + 0.08 * glow[k])).sub((u_displayed_sky!.value as Vector3[])[2]!);
+    (u_displayed_foam!.value as Vector3).set(...shown((k) => 0.94 * (0.9 * key[k] * Math.max(this.sunDirection.y, 0) + ambientUp[k])));
   }
 
   /** Bakes the cube map if the light has changed, at most once per kRebakeS. */

@@ -6,6 +6,7 @@ uniform isampler2D u_before;
 uniform isampler2D u_from;
 uniform isampler2D u_to;
 uniform isampler2D u_after;
+uniform int u_stride;    // frame samples per texel
 uniform vec4 u_weights;  // of the frames, times quantum over unit of the result
 
 const int kDentsMax = 16;
@@ -28,7 +29,7 @@ float dentsM(ivec2 at, ivec2 n) {
 }
 
 void main() {
-  ivec2 at = ivec2(gl_FragCoord.xy);
+  ivec2 at = ivec2(gl_FragCoord.xy) * u_stride + u_stride / 2;
   vec4 samples = vec4(texelFetch(u_before, at, 0).r, texelFetch(u_from, at, 0).r, texelFetch(u_to, at, 0).r, texelFetch(u_after, at, 0).r);
   float dents = u_dent_count > 0 ? dentsM(at, textureSize(u_from, 0)) / u_unit_m : 0.0;
   elevation = int(round(dot(samples, u_weights) + dents));

@@ -9,6 +9,7 @@ import caustics from "./caustics.glsl?raw";
 import causticsFrag from "./caustics.frag?raw";
 import causticsVert from "./caustics.vert?raw";
 import cellHash from "./cell_hash.glsl?raw";
+import farLand from "./far_land.glsl?raw";
 import edgesFrag from "./edges.frag?raw";
 import elevationFrag from "./elevation.frag?raw";
 import fieldFrag from "./field.frag?raw";
@@ -60,14 +61,20 @@ import shoreFrag from "./shore.frag?raw";
 import skyBakeFrag from "./sky_bake.frag?raw";
 import skyBakeVert from "./sky_bake.vert?raw";
 import skyDomeFrag from "./sky_dome.frag?raw";
+import skyPlainFrag from "./sky_plain.frag?raw";
+import skyPlainVert from "./sky_plain.vert?raw";
 import skyDomeVert from "./sky_dome.vert?raw";
 import solidFrag from "./solid.frag?raw";
+import solidPlain from "./solid_plain.glsl?raw";
+import solidPlainFrag from "./solid_plain.frag?raw";
 import solidVert from "./solid.vert?raw";
 import sprayFrag from "./spray.frag?raw";
 import tilesFrag from "./tiles.frag?raw";
 import waterBelowFrag from "./water_below.frag?raw";
 import waterFrag from "./water.frag?raw";
 import waterOptics from "./water_optics.glsl?raw";
+import waterPlain from "./water_plain.glsl?raw";
+import waterPlainFrag from "./water_plain.frag?raw";
 import waterVert from "./water.vert?raw";
 import whitewaterVert from "./whitewater.vert?raw";
 
@@ -102,10 +109,13 @@ const kPrograms = {
   shore: [fullscreenVert, shoreFrag],
   skyBake: [skyBakeVert, skyBakeFrag],
   skyDome: [skyDomeVert, skyDomeFrag],
+  skyPlain: [skyPlainVert, skyPlainFrag],
   solid: [solidVert, solidFrag],
+  solidPlain: [solidVert, solidPlainFrag],
   spray: [whitewaterVert, sprayFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
+  waterPlain: [waterVert, waterPlainFrag],
   waterBelow: [waterVert, waterBelowFrag],
 } as const;
 
@@ -119,6 +129,7 @@ const kShared: Record<string, string> = {
   bicubic,
   caustics,
   cell_hash: cellHash,
+  far_land: farLand,
   fluid_volume: fluidVolume,
   fluid_words: fluidWords,
   glitter,
@@ -129,6 +140,8 @@ const kShared: Record<string, string> = {
   sea_blend: seaBlend,
   shadow,
   shore,
+  solid_plain: solidPlain,
+  water_plain: waterPlain,
   water_optics: waterOptics,
 };
 

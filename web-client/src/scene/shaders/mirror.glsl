@@ -1,4 +1,4 @@
-// Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, PLAIN, SKIRT, MIRROR as there.
+// Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, SKIRT, MIRROR as there.
 #if defined(OPEN_SEA) || defined(RIPPLES)
 uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
 uniform vec3 u_glow;
@@ -17,9 +17,7 @@ vec3 veiledSky(vec3 direction) {
 
 // The sky as a surface mirrors it whose slopes have this variance within a pixel.
 vec3 mirroredSky(vec3 direction, float variance) {
-#if defined(OPEN_SEA) && defined(PLAIN)
-  return veiledSky(direction);
-#elif (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
+#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
   // Mip levels whose texels are as wide as the reflection: twice the slopes, and the turn of the mirror over a pixel.
   vec3 turn = fwidth(direction);
   float spread = float(textureSize(u_sky, 0).x) * (1.3 * sqrt(variance) + 0.5 * length(turn));

@@ -9,6 +9,7 @@ uniform vec3 u_ambient_down;
 uniform vec3 u_water_light;    // light that enters the water, relative to noon
 uniform float u_sun_sharp;     // share of it that comes from the disc: 0 under clouds
 uniform float u_exposure;
+uniform bool u_is_displayed;      // solids are drawn for the display instead of as linear light; in the plain tiers
 
 vec3 skyLight(vec3 direction) { return texture(u_sky, direction).rgb; }
 

@@ -1,4 +1,5 @@
-// Bakes the dome into one face of the cube, and in its alpha where stars shine through: the sky's colours, its glow around the sun, and clouds that cover a share of it (light/light.ts).
+// Bakes the dome into one face of the cube, and in its alpha where stars shine through: the sky's colours, its glow around the sun, and clouds that cover a
+// share of it (light/light.ts). PLAIN: and the far land, so that no picture has to.
 
 in vec3 v_direction;
 uniform vec3 u_sun_direction;  // also below the horizon
@@ -15,6 +16,10 @@ uniform vec3 u_ambient_up;
 layout(location = 0) out vec4 color;
 
 #include <cell_hash>
+#ifdef PLAIN
+#include <far_land>
+uniform float u_lowest;  // -1: there is no horizon
+#endif
 
 float noise(vec2 p) {
   vec2 cell = floor(p), f = fract(p);
@@ -66,6 +71,9 @@ void main() {
   // Air lies between the eye and the low ones.
   sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.16, up), 1.0, heavy)), cover);
   sky = mix(sky, ground, smoothstep(0.0, -0.08, direction.y));
+#ifdef PLAIN
+  if (u_lowest > -1.0) sky = withFarLand(sky, direction, 0.004);
+#endif
   // Stars shine through where there are no clouds, and not through the haze at the horizon.
   color = vec4(sky, (1.0 - cover) * smoothstep(0.0, 0.22, direction.y));
 }

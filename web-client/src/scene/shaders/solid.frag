@@ -1,7 +1,7 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
 // TANK: indoors, where only what is inside the water's sides is under water.
 // SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
-// INSTANCES: the grain turns with the object. PLAIN: without gloss. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
+// INSTANCES: the grain turns with the object. The plain tiers have solid_plain.frag. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
 in vec3 v_world;
@@ -118,7 +118,6 @@ void main() {
   vec3 ray = v_world - u_camera_m;
   float distance_m = length(ray);
   ray /= distance_m;
-#ifndef PLAIN
 #ifdef SHORE
   if (wet_film > 0.01) {
     // A film over grains: its mirror is as level as water, and broken by the grains.
@@ -137,7 +136,6 @@ void main() {
     mirrored.y = abs(mirrored.y);
     lit += shine * skyLight(mirrored) + (1.0 - grain) * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
   }
-#endif
   if (u_haze_m > 0.0) {
     float hazy = max(distance_m - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;
     if (hazy > 0.01) lit = mix(lit, skyLight(vec3(ray.x, max(ray.y, 0.01), ray.z)), 0.9 * hazy / (1.0 + hazy));

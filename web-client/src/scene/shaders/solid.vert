@@ -1,5 +1,5 @@
 // Boats, rocks, walls and the bed: coloured triangles. FLOATS: a buoy, which rises and tilts with the water's surface. INSTANCES: objects in the
-// water, drawn as instances of one mesh.
+// water, drawn as instances of one mesh. VERTEX_LIT: the vertices are lit, for solid_plain.frag.
 in vec3 position;
 in vec3 normal;
 in vec4 color;  // rgb, and the material's grain (0 paint, 1 stone, -1 lamp)
@@ -31,6 +31,10 @@ vec3 waterAt(vec2 middle_m) {
 }
 #endif
 
+#ifdef VERTEX_LIT
+#include <solid_plain>
+#endif
+
 void main() {
   v_world = (modelMatrix * vec4(position, 1.0)).xyz;
   v_normal = mat3(modelMatrix) * normal;
@@ -49,6 +53,14 @@ void main() {
   v_color.rgb = painted(color.rgb);
   v_own = position + paint.rgb;
   v_own_normal = normal;
+#endif
+#ifdef VERTEX_LIT
+#ifdef TANK
+  bool is_over_water = any(greaterThan(abs(v_world.xz), 0.5 * u_extent_m));
+#else
+  const bool is_over_water = false;
+#endif
+  lightSolid(v_world, normalize(v_normal), v_color, is_over_water);
 #endif
   gl_Position = projectionMatrix * viewMatrix * vec4(v_world, 1.0);
 }

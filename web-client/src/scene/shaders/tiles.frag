@@ -1,6 +1,6 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// CAUSTICS: from a photon grid; otherwise from the surface's curvature.
+// PLAIN: also for the display. CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
 #ifdef CAUSTICS
@@ -78,5 +78,8 @@ void main() {
     if (steep.y < 0.5) ambient *= 0.85;
   }
   vec3 lit = albedo * (sun_light * 1.25 * sun + ambient);
+#ifdef PLAIN
+  if (u_is_displayed) lit = toDisplay(lit);
+#endif
   color = vec4(lit, 1.0);
 }

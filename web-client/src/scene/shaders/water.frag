@@ -1,5 +1,5 @@
 // The water's surface: reflected sky by Fresnel, and through it the scene drawn before, refracted by the slope. Its colour is absorbed
-// along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. PLAIN: without refraction.
+// along the path in the water (Beer-Lambert, per channel) and replaced by scattered light. The plain tiers have water_plain.frag.
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
@@ -68,7 +68,7 @@ const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.6;
 
-#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT) && !defined(PLAIN)
+#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
 #define GLITTER
 #include <glitter>
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
@@ -77,15 +77,6 @@ const float kSkyShare = 0.7;
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
-
-// exp(-x) for x >= 0. Exponentials cost software renderers a third of the frame.
-vec3 fading(vec3 x) {
-#ifdef PLAIN
-  return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667)));
-#else
-  return exp(-x);
-#endif
-}
 
 float viewZ(float depth) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -153,14 +144,8 @@ void main() {
   // Somewhere far out there is always some wind.
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
   variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + min(kFinestVariance, u_slope_variances.y);
-#ifdef PLAIN
-  // Without mip levels the waves are faded here.
-  if (v_share_away.x < 1.0) field.gb = mix((1.0 - lost.x) * textureLod(u_swell, sea_at / u_tiles_m.x, 0.0).gb, field.gb, v_share_away.x);
-  if (lost.y < 1.0) field.gb += (1.0 - lost.y) * textureLod(u_ripples, sea_at / u_tiles_m.y, 0.0).gb;
-#else
   field.gb = mix(texture(u_swell, sea_at / u_tiles_m.x).gb, field.gb, v_share_away.x);
   field.gb += rippleSlopes(sea_at);
-#endif
 #endif
 #ifdef RIPPLES
   vec2 width_m = fwidth(v_world.xz);
@@ -189,10 +174,8 @@ void main() {
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
 #endif
   contact *= contact;
-#ifndef PLAIN
   // A band narrower than a pixel would be a row of dots.
   contact *= 1.0 - smoothstep(0.3, 1.2, fwidth(solid_m) / kContactM);
-#endif
 #elif !defined(SKIRT)
   // The floor and the panes of a tank are close everywhere.
   const float contact = 0.0;
@@ -201,7 +184,7 @@ void main() {
   // The scene behind, shifted by refraction. If the shifted pixel lies in front of the water, the unshifted one is used.
   float way_m = wayOut(v_world, ray);
   vec2 shifted_uv = uv;
-#if !defined(SKIRT) && !defined(PLAIN)
+#ifndef SKIRT
   vec3 bent = refract(ray, normal, 0.75);
   // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
   float reach_m = min(0.5 * way_m, 0.45);
@@ -219,20 +202,13 @@ void main() {
 #endif
   float behind_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
 #ifdef OPEN_SEA
-  // Outside the square the bed is drawn for a short way only, with PLAIN nowhere where it is level. Elsewhere it has one colour; far
-  // away it falls off.
+  // Outside the square the bed is drawn for a short way only. Elsewhere it has one colour; far away it falls off.
   float undrawn = smoothstep(0.02, 0.35, v_share_away.y / max(u_extent_m.x, u_extent_m.y));
   float sunk = smoothstep(0.8, 5.0, length(v_world.xz) / max(u_extent_m.x, u_extent_m.y));
 #ifdef BEACH
   float floor_share = bedDepth(v_world.xz, u_extent_m, u_depth_m) / u_depth_m;
   undrawn *= floor_share * floor_share;
   sunk *= floor_share * floor_share;
-#ifdef PLAIN
-  // The mesh of the beach ends where the bed becomes level: fade its grain before, but not what stands on it.
-  vec3 hit = v_world + ray * behind_m;
-  float hit_depth_m = bedDepth(hit.xz, u_extent_m, u_depth_m);
-  if (hit.y < 0.1 * u_depth_m - hit_depth_m) undrawn = max(undrawn, smoothstep(0.6, 0.95, hit_depth_m / u_depth_m));
-#endif
 #endif
   vec3 far_bed = kFarBed * (1.25 * u_sun_direction.y * u_sun_light + u_ambient_up);
   vec3 behind = undrawn < 1.0 && behind_depth < 1.0 ? mix(textureLod(u_behind, shifted_uv, 0.0).rgb, far_bed, undrawn) : far_bed;
@@ -248,7 +224,7 @@ void main() {
   path_m = mix(deep_m * inversesqrt(1.0 - sine2), path_m, smoothstep(0.15, 0.6, deep_m));
 #endif
   // The light is absorbed twice: down to the object and up to the eye.
-  vec3 passed = fading(u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
+  vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
   float sunlit_share = 1.0;
@@ -304,27 +280,11 @@ void main() {
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
 #else
-#if defined(OPEN_SEA) && defined(PLAIN)
-  // Glitter of the waves smaller than a pixel: the share of their slopes that mirror the sun (after Cox & Munk 1954; a rational function
-  // of the same width stands for their Gaussian).
-  // Of a low sun only: a high one is mirrored far out by slopes too steep for that.
-  float unresolved = u_sun_sharp * smoothstep(0.0005, 0.008, variance) * (1.0 - smoothstep(0.2, 0.4, u_sun_direction.y));
-  if (unresolved > 0.0) {
-    vec3 halfway = normalize(u_sun_direction - ray);
-    vec2 missing = halfway.xz / max(halfway.y, 0.05) + field.gb;
-    float spread = 1.0 + dot(missing, missing) / (8.0 * variance);
-    spread *= spread;
-    float glitter = 0.05 * waterFresnel(max(-dot(halfway, ray), 0.0)) / (variance * spread * spread * max(facing, 0.15));
-    water += u_sun_light * unresolved * glitter / (1.0 + 0.5 * glitter);
-  }
-#endif
   float at_sun = dot(mirrored, u_sun_direction);
   float narrow = 1500.0;
-#ifndef PLAIN
   // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
   vec3 turn = fwidth(mirrored);
   narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
-#endif
   if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
 #endif
 #endif
@@ -359,21 +319,15 @@ void main() {
   if (foam > 0.01) {
     vec2 at = v_world.xz - 0.6 * field.gb;
     float lace = texture(u_noise, at / u_lace_m).r;
-#ifndef PLAIN
     lace = clamp(0.54 * lace + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
-#endif
     // Patches, not an even veil with straight edges.
     foam *= 0.55 + 0.9 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
     float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
-#ifdef PLAIN
-    const float blur = 0.0;
-#else
     // Far away the lace is finer than a pixel, and its edges would be dots.
     vec2 at_step = fwidth(at);
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
-#endif
     float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.26 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     float clouded = 0.45 * foam * foam;

@@ -1,5 +1,5 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
-// LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
+// VERTEX_LIT: for water_plain.frag. LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
@@ -29,9 +29,13 @@ out vec2 v_share_away;  // of the simulated water; distance from the square (m)
 out vec3 v_world;
 out float v_view_z;
 out float v_top_m;
+#if defined(VERTEX_LIT) && !defined(SKIRT)
+#include <water_plain>
+#endif
 
 void main() {
-  v_top_m = texture(u_field, position.xz + 0.5).r;
+  vec4 field = texture(u_field, position.xz + 0.5);
+  v_top_m = field.r;
 #ifdef OPEN_SEA
   vec2 at = position.xz * u_extent_m;
   float away_m = awayFromWater(at, u_extent_m);
@@ -51,6 +55,8 @@ void main() {
   v_world = vec3(position.x * u_extent_m.x, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_extent_m.y);
 #ifdef SKIRT
   v_side_normal = normal;
+#elif defined(VERTEX_LIT)
+  preparePlain(field.gb, depth_m);
 #endif
   vec4 view = viewMatrix * vec4(v_world, 1.0);
   v_view_z = view.z;

@@ -1,7 +1,8 @@
 // Everything but water: the sky, what is around the water, boats, buoys, gauges and objects. Reads the field, for buoys, the shore, the caustics, the shadow, and the
 // frames of boats and objects.
-// Writes the solids' colour (linear light) and depth.
-import { DepthTexture, Scene, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+// Writes the solids' colour (linear light) and depth; in the plain tiers, where a room has a wave, the canvas instead, and the textures only for
+// passes that need them.
+import { Color, DepthTexture, Scene, SRGBColorSpace, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture, type WebGLRenderer } from "three";
 
 import type { GameInfo } from "../../../client/codec/game";
 import type { BoatDetail, GreetingInfo } from "../../../client/codec/greeting";
@@ -20,6 +21,7 @@ import { bedOf } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
+import { displayed } from "../light/light";
 import { clamp } from "../maths/interpolate";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
@@ -31,6 +33,18 @@ const kGrainSides = 1 / 16;
 const kGrainLimitsM = [0.5, 4] as const;
 /** Stone is wet up to this share of the depth above the still water. */
 const kWetDepths = 0.08;
+
+const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
+  openSea: [0.224, 0.205, 0.156],
+  pool: [0.34, 0.63, 0.69],
+  glassTank: [0.2, 0.22, 0.24],
+  flume: [0.2, 0.22, 0.24],
+};
+
+/** Where a picture has the solids: in the textures, for passes that look through or around them, or on the canvas, for the display. */
+export const kInTextures = "textures";
+export const kOnCanvas = "canvas";
+type SolidsUse = typeof kInTextures | typeof kOnCanvas;
 
 interface LitBy {
   caustics: Uniforms | undefined;
@@ -48,6 +62,16 @@ export class SolidsPass implements Pass {
   readonly darkness = { value: 0 };
   private readonly haze = { value: 0 };
   readonly scene = new Scene();
+  /** Chooses where a picture needs the solids. */
+  use: (picture: Picture) => SolidsUse = () => kInTextures;
+  /** Light of the level bed of an open sea, which the plain tiers do not draw. */
+  readonly bedLight = new Vector3();
+  /** What was drawn last. */
+  used: SolidsUse = kInTextures;
+  private readonly bedColor = new Color();
+  private isEmpty = false;
+  /** Albedo of the floor, on average. */
+  readonly floorAlbedo = new Vector3();
   /** Uniforms of caustics.glsl, shadow.glsl and shore.glsl; undefined where the scene does not have them. */
   readonly sunlight: LitBy;
   private readonly material: RawShaderMaterial;
@@ -69,6 +93,7 @@ export class SolidsPass implements Pass {
     quality: Quality,
   ) {
     const { sideM, widthM } = greeting;
+    this.floorAlbedo.set(...kFloors[greeting.setting]);
     const { caustics, shadow, shore } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
@@ -86,22 +111,24 @@ export class SolidsPass implements Pass {
       u_darkness: this.darkness,
     };
     const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isIndoors(greeting) && { TANK: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
-    this.material = makeMaterial("solid", uniforms, { defines });
+    if (quality.plain) defines["VERTEX_LIT"] = 1;
+    const program = quality.plain ? "solidPlain" : "solid";
+    this.material = makeMaterial(program, uniforms, { defines });
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, sea, haze: this.haze, solid: this.material, quality });
     this.gauges = new GaugePoles(greeting, this.material);
     this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
     if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material, makeMaterial("solid", uniforms, { defines, colorWrite: false }), quality.plain);
+      this.boats = new Boats(this.scene, this.material, makeMaterial(program, uniforms, { defines, colorWrite: false }), quality.plain);
       this.boats.setBoats(greeting.boats);
     }
-    if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, makeMaterial("solid", uniforms, { defines: { ...defines, INSTANCES: 1 } }), greeting, quality.plain);
+    if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, makeMaterial(program, uniforms, { defines: { ...defines, INSTANCES: 1 } }), greeting, quality.plain);
     const buoys = field ? buoyPlaces(greeting) : [];
     if (buoys.length > 0) {
-      this.buoys = new Buoys(buoys, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+      this.buoys = new Buoys(buoys, makeMaterial(program, uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
       this.scene.add(this.buoys.group);
     }
     if (field && greeting.course) {
-      this.course = new CourseMarks(greeting.course, makeMaterial("solid", uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+      this.course = new CourseMarks(greeting.course, makeMaterial(program, uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
       this.scene.add(this.course.group);
     }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
@@ -116,6 +143,10 @@ export class SolidsPass implements Pass {
 
   setBoats(boats: readonly BoatDetail[]): void {
     this.boats?.setBoats(boats);
+  }
+
+  private get isOpenSea(): boolean {
+    return this.greeting.setting === "openSea";
   }
 
   setGauges(gauges: readonly GaugeInfo[]): void {
@@ -165,16 +196,61 @@ export class SolidsPass implements Pass {
     if (floaters) this.floaters!.show(floaters.from, floaters.to, floaters.mix);
   }
 
-  draw({ renderer, camera, sizePx, shownS }: Picture): void {
+  /** Draws into the textures again. */
+  resetUse(): void {
+    this.use = () => kInTextures;
+  }
+
+  /** The colour behind everything on the canvas; in the plain tiers that of the level bed. */
+  get backdrop(): Color {
+    const { u_sun_light, u_ambient_up, u_exposure } = this.sky.uniforms;
+    const { bedLight, bedColor } = this;
+    bedLight.copy(u_sun_light!.value as Vector3).multiplyScalar(1.25 * this.sky.sunDirection.y).add(u_ambient_up!.value as Vector3).multiply(this.floorAlbedo);
+    return bedColor.setRGB(...displayed(bedLight, u_exposure!.value as number), SRGBColorSpace);
+  }
+
+  draw(picture: Picture): void {
+    const { renderer, camera, sizePx, shownS } = picture;
     this.place(shownS);
-    this.target.setSize(sizePx.x, sizePx.y);
     this.haze.value = isIndoors(this.greeting) ? 0 : hazeM(this.greeting);
     this.sky.follow(camera);
     this.surroundings.look(camera.position);
     (this.material.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);
+    this.used = this.use(picture);
+    if (this.used === kInTextures) {
+      this.target.setSize(sizePx.x, sizePx.y);
+      renderer.setRenderTarget(this.target);
+      renderer.clear();
+      renderer.render(this.scene, camera);
+      return;
+    }
+    if (!this.isEmpty || this.target.width > 1) this.emptyTextures(renderer);
+    const { dome, uniforms } = this.sky;
+    // Over a horizon the sky comes after the water, in the pixels that remain.
+    dome.visible = !this.isOpenSea;
+    uniforms["u_is_displayed"]!.value = true;
+    renderer.setRenderTarget(null);
+    renderer.render(this.scene, camera);
+    uniforms["u_is_displayed"]!.value = false;
+    dome.visible = true;
+  }
+
+  /** Passes that compare with the textures' depth find nothing in front. */
+  private emptyTextures(renderer: WebGLRenderer): void {
+    this.target.setSize(1, 1);
     renderer.setRenderTarget(this.target);
     renderer.clear();
-    renderer.render(this.scene, camera);
+    this.isEmpty = true;
+  }
+
+  /** Draws the sky of an open sea where the canvas shows nothing yet. Call it where the solids are on it. */
+  drawSky({ renderer, camera }: Picture): void {
+    if (!this.isOpenSea) return;
+    const { dome, uniforms } = this.sky;
+    uniforms["u_is_displayed"]!.value = true;
+    renderer.setRenderTarget(null);
+    renderer.render(dome, camera);
+    uniforms["u_is_displayed"]!.value = false;
   }
 
   dispose(): void {

@@ -2,20 +2,12 @@
 // decides by itself whether its way begins in the water, so that the surface divides the picture where the camera is half below it.
 import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMaterial, type Vector2 } from "three";
 
-import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
 import { elevationAtM } from "../frames/height_field";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 
 /** The surface may divide the picture where the camera is over the water, by less than this many near planes. */
 const kCloseNears = 4;
-/** Average albedo of the floor, where it is not on the screen. */
-const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
-  openSea: [0.224, 0.205, 0.156],
-  pool: [0.34, 0.63, 0.69],
-  glassTank: [0.2, 0.22, 0.24],
-  flume: [0.2, 0.22, 0.24],
-};
 
 export class BelowSurface {
   /** Of the water's meshes, seen from below. */
@@ -24,19 +16,25 @@ export class BelowSurface {
   readonly solids: RawShaderMaterial;
   private readonly uniforms: Uniforms;
   private readonly ahead = new Vector3();
-  /** The water ends at panes of glass. */
-  private readonly isCut: boolean;
 
-  /** `uniforms` and `defines` are those of the water; `newest` returns the newest frame of the surface. */
-  constructor(setting: GreetingInfo["setting"], uniforms: Uniforms, defines: Record<string, number>, private readonly newest: () => SurfaceFrame | undefined) {
+  /**
+   * `floorAlbedo`: on average, where the floor is not on the screen. `isCut`: the water ends at panes of glass. `uniforms` and `defines` are
+   * those of the water; `newest` returns the newest frame of the surface.
+   */
+  constructor(
+    floorAlbedo: Vector3,
+    private readonly isCut: boolean,
+    uniforms: Uniforms,
+    defines: Record<string, number>,
+    private readonly newest: () => SurfaceFrame | undefined,
+  ) {
     this.uniforms = {
       ...uniforms,
-      u_floor_albedo: { value: new Vector3(...kFloors[setting]) },
+      u_floor_albedo: { value: floorAlbedo },
       u_inverse_projection: { value: new Matrix4() },
       u_camera_world: { value: new Matrix4() },
       u_camera_ahead: { value: this.ahead },
     };
-    this.isCut = setting === "glassTank" || setting === "flume";
     this.surface = makeMaterial("waterBelow", this.uniforms, { side: BackSide, defines });
     this.solids = makeMaterial("presentBelow", this.uniforms, { depthWrite: false, defines });
   }

@@ -59,6 +59,8 @@ export class FieldPass implements Pass {
   private readonly drawnFrom: ShownSurfaces = { frames: this.drawn, weights: this.weights, ratesPerS: this.ratesPerS, isRateKnown: false };
 
   private readonly sideM: number;
+  private thinned: PlaneCounts;
+  private readonly stride = { value: 1 };
   private isDrawn = false;
 
   /** The texture has as many texels as a surface has samples, at most `quality.fieldCountMax` per side. `cellsOf`: the ground by the counts of a frame, for a moving shore. */
@@ -72,14 +74,15 @@ export class FieldPass implements Pass {
     this.sideM = sideM;
     const allowed = (count: number): number => clamp(count, 1, kMaxResolutionCount);
     const counts = { resolutionCount: allowed(resolutionCount), countZ: allowed(countZ) };
-    this.target = new WebGLRenderTarget(...this.fieldCounts(counts), {
+    this.thinned = this.thin(counts);
+    this.target = new WebGLRenderTarget(...this.fieldCounts(this.thinned), {
       type: quality.texelType,
       wrapS: periodicX ? RepeatWrapping : ClampToEdgeWrapping,
       wrapT: periodicZ ? RepeatWrapping : ClampToEdgeWrapping,
       depthBuffer: false,
     });
     this.texture = this.target.texture;
-    this.elevation = makeElevationTarget(counts);
+    this.elevation = makeElevationTarget(this.thinned);
     this.frames = new FrameTextures<SurfaceFrame>(counts, kFrameCount, makeTexture);
     const { blank } = this.frames;
     const state = { depthTest: false, depthWrite: false };
@@ -92,6 +95,7 @@ export class FieldPass implements Pass {
           u_from: { value: blank },
           u_to: { value: blank },
           u_after: { value: blank },
+          u_stride: this.stride,
           u_weights: { value: new Vector4(0, 0, 0, 0) },
           u_unit_m: unit,
           u_water_m: { value: new Vector2(sideM, widthM) },
@@ -102,9 +106,9 @@ export class FieldPass implements Pass {
       ),
     );
     if (cellsOf) {
-      const cells = { value: makeCellsTexture(cellsOf(counts)) };
+      const cells = { value: makeCellsTexture(cellsOf(this.thinned)) };
       const uniforms = { u_elevation: { value: this.elevation.texture }, u_unit_m: unit, u_cells: cells, u_film_m: { value: kFilmM } };
-      this.level = { pass: new FullscreenPass(makeMaterial("level", uniforms, { ...state, defines: quality.plain ? { PLAIN: 1 } : {} })), target: makeElevationTarget(counts), cells };
+      this.level = { pass: new FullscreenPass(makeMaterial("level", uniforms, { ...state, defines: quality.plain ? { PLAIN: 1 } : {} })), target: makeElevationTarget(this.thinned), cells };
     }
     this.derive = new FullscreenPass(
       makeMaterial(
@@ -136,9 +140,9 @@ export class FieldPass implements Pass {
     return { u_before: u_before!, u_from: u_from!, u_to: u_to!, u_after: u_after! };
   }
 
-  /** Texels of the field, and samples of the frames that it is drawn from. */
+  /** Texels of the field, and of the elevation and the level that it is drawn from. */
   get sizes(): { width: number; height: number; counts: PlaneCounts } {
-    return { width: this.target.width, height: this.target.height, counts: this.frames.counts };
+    return { width: this.target.width, height: this.target.height, counts: this.thinned };
   }
 
   /** The level of the water in units of u_unit_m, and the ground below it, as entries for materials; of a room with a moving shore. */
@@ -211,14 +215,22 @@ export class FieldPass implements Pass {
 
   private resize(counts: PlaneCounts): void {
     this.frames.resize(counts);
-    this.elevation.setSize(counts.resolutionCount, counts.countZ);
+    this.thinned = this.thin(counts);
+    this.elevation.setSize(this.thinned.resolutionCount, this.thinned.countZ);
     if (this.level) {
-      this.level.target.setSize(counts.resolutionCount, counts.countZ);
+      this.level.target.setSize(this.thinned.resolutionCount, this.thinned.countZ);
       this.level.cells.value.dispose();
-      this.level.cells.value = makeCellsTexture(this.cellsOf!(counts));
+      this.level.cells.value = makeCellsTexture(this.cellsOf!(this.thinned));
     }
-    this.target.setSize(...this.fieldCounts(counts));
+    this.target.setSize(...this.fieldCounts(this.thinned));
     this.scale();
+  }
+
+  /** Returns the counts of the elevation: plain tiers read every second, third ... sample, so that no pass has more texels than the field. */
+  private thin({ resolutionCount, countZ }: PlaneCounts): PlaneCounts {
+    const stride = this.quality.plain ? Math.ceil(Math.max(resolutionCount, countZ) / this.quality.fieldCountMax) : 1;
+    this.stride.value = stride;
+    return { resolutionCount: Math.max(Math.floor(resolutionCount / stride), 1), countZ: Math.max(Math.floor(countZ / stride), 1) };
   }
 
   /** Texels along x and z: as many as samples, or as many as the quality allows along the longer side. */
@@ -229,7 +241,7 @@ export class FieldPass implements Pass {
 
   private scale(): void {
     const uniforms = this.derive.material.uniforms;
-    const { resolutionCount, countZ } = this.frames.counts;
+    const { resolutionCount, countZ } = this.thinned;
     uniforms["u_cell_m"]!.value = this.sideM / resolutionCount;
     (uniforms["u_cells_per_texel"]!.value as Vector2).set(resolutionCount / this.target.width, countZ / this.target.height);
   }

@@ -7,9 +7,10 @@ import type { WaterEdge } from "../solids/surroundings_context";
 /** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */
 const kSeaReachSides = 300;
 /** Its cells outside the square become larger by this factor, first slowly, for the waves near the square. */
-const kNearGrowth = 1.2;
-const kNearCount = 6;
-const kFarGrowth = 2.2;
+const kGrowth = { nearCount: 6, near: 1.2, far: 2.2 };
+/** A grid with fewer cells than this grows faster: its vertices cost more than what they show. */
+const kFewCells = 64;
+const kFastGrowth = { nearCount: 3, near: 1.5, far: 3.5 };
 
 /**
  * Returns the positions of the grid's lines along one axis: `cellsCount` equal cells over -1/2..1/2, and beyond the ends that are open
@@ -18,9 +19,10 @@ const kFarGrowth = 2.2;
 export function gridLines(cellsCount: number, openBelow: boolean, openAbove: boolean): number[] {
   const inside = Array.from({ length: cellsCount + 1 }, (_, i) => i / cellsCount - 0.5);
   const outside: number[] = [];
+  const growth = cellsCount < kFewCells ? kFastGrowth : kGrowth;
   let step = 1 / cellsCount;
   for (let at = 0.5, n = 0; at < kSeaReachSides; ++n) {
-    step *= n < kNearCount ? kNearGrowth : kFarGrowth;
+    step *= n < growth.nearCount ? growth.near : growth.far;
     at += step;
     outside.push(at);
   }

@@ -2,7 +2,7 @@
 // continues to the horizon and has no sides. Reads the field, the shore, the foam and the froth, the rain, the sea around, the
 // shadow, and the solids, which are seen through the water and in its mirror. Writes the canvas and its depth.
 // A camera close to the surface sees it from below as well (below_surface.ts).
-import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type RawShaderMaterial, Scene, type Texture, Vector2, Vector3, Vector4 } from "three";
+import { type BufferGeometry, type DataTexture, DoubleSide, FrontSide, Mesh, type PerspectiveCamera, type RawShaderMaterial, Scene, type Side, type Texture, Vector2, Vector3, Vector4 } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
@@ -54,6 +54,8 @@ export class WaterPass implements Pass {
   private readonly grid: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly underside: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly below: BelowSurface;
+  /** Materials of the plain tiers, by where the camera is. */
+  private readonly plain: { surface: RawShaderMaterial; dived: RawShaderMaterial } | undefined;
   private readonly ground: DataTexture | undefined;
 
   constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
@@ -69,6 +71,7 @@ export class WaterPass implements Pass {
       ...caustics,
       ...shadow,
       ...shore,
+      u_bed_light: { value: solids.bedLight },
       u_lift_m: { value: (kLiftPerCell * longSideM(bed)) / quality.surfaceCellsCount },
       u_field: { value: field },
       u_behind: { value: color },
@@ -102,11 +105,17 @@ export class WaterPass implements Pass {
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     if (edge.kind === "walls") defines[edge.ripples ? "RIPPLES" : "WALLS"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
-    this.grid = new Mesh(top, makeMaterial("water", this.uniforms, { side: DoubleSide, defines }));
-    this.below = new BelowSurface(greeting.setting, this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
+    // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.
+    const surface = (side: Side, more: Record<string, number> = {}): RawShaderMaterial =>
+      quality.plain
+        ? makeMaterial("waterPlain", this.uniforms, { side: FrontSide, transparent: true, premultipliedAlpha: true, defines: { ...defines, ...more, VERTEX_LIT: 1 } })
+        : makeMaterial("water", this.uniforms, { side, defines: { ...defines, ...more } });
+    this.grid = new Mesh(top, surface(DoubleSide));
+    if (quality.plain) this.plain = { surface: this.grid.material, dived: surface(FrontSide, { DIVED: 1 }) };
+    this.below = new BelowSurface(solids.floorAlbedo, isIndoors(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
     this.underside = new Mesh(top, this.below.surface);
     this.meshes = [this.grid, this.underside];
-    if (sides) this.meshes.push(new Mesh(sides, makeMaterial("water", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
+    if (sides) this.meshes.push(new Mesh(sides, surface(FrontSide, { SKIRT: 1 })));
     for (const mesh of this.meshes) {
       mesh.frustumCulled = false;
       this.scene.add(mesh);
@@ -118,9 +127,15 @@ export class WaterPass implements Pass {
     (this.uniforms["u_near_far_m"]!.value as Vector2).set(camera.near, camera.far);
     (this.uniforms["u_resolution"]!.value as Vector2).copy(sizePx);
     const isBelow = (this.underside.visible = this.below.isSeen(camera));
-    this.grid.material.side = isBelow ? FrontSide : DoubleSide;
+    if (this.plain) this.grid.material = isBelow ? this.plain.dived : this.plain.surface;
+    else this.grid.material.side = isBelow ? FrontSide : DoubleSide;
     renderer.setRenderTarget(null);
     renderer.render(this.scene, camera);
+  }
+
+  /** Returns whether a picture from this camera shows the water from below. */
+  isSeenFromBelow(camera: PerspectiveCamera): boolean {
+    return this.below.isSeen(camera);
   }
 
   /** What is drawn where there is no surface, if the last picture shows the water from below. */
@@ -133,6 +148,8 @@ export class WaterPass implements Pass {
       mesh.geometry.dispose();
       mesh.material.dispose();
     }
+    this.plain?.surface.dispose();
+    this.plain?.dived.dispose();
     this.below.dispose();
     this.ground?.dispose();
   }

@@ -1,0 +1,26 @@
+// Boats, rocks, walls and the bed in the plain tiers: the light of the vertices (solid_plain.glsl), wet below a sharp line, and the lace of
+// the swash (SHORE).
+in vec3 v_light;
+in vec2 v_wet;
+#ifdef SHORE
+in vec3 v_world;
+in vec2 v_shore;
+uniform sampler2D u_noise;
+uniform float u_grain_m;  // size of one tile of the noise
+#endif
+layout(location = 0) out vec4 color;
+
+void main() {
+  float wet = 1.0 - smoothstep(0.6, 1.0, v_wet.x);
+#ifdef SHORE
+  wet = max(wet, smoothstep(0.2, 0.4, v_shore.x));
+#endif
+  vec3 light = v_light * (1.0 - v_wet.y * wet);
+#ifdef SHORE
+  if (v_shore.y > 0.02) {
+    float lace = textureLod(u_noise, v_world.xz / (2.2 * u_grain_m), 0.0).r;
+    light = mix(light, vec3(0.92), 0.8 * smoothstep(1.0 - v_shore.y, 1.12 - v_shore.y, lace + 0.12));
+  }
+#endif
+  color = vec4(light, 1.0);
+}

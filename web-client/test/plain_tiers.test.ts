@@ -1,0 +1,135 @@
+// What a picture of the plain tiers may cost, counted: draw calls, targets, vertices, and the textures that a pixel reads. A software renderer pays
+// for each of them.
+import { FloatType, WebGLCoordinateSystem, type Object3D, type Vector2, type WebGLRenderer, type WebGLRenderTarget } from "three";
+import { describe, expect, it } from "vitest";
+
+import type { GreetingInfo } from "../client/codec/greeting";
+import { kTiers, type TierName } from "../src/scene/drawing/quality";
+import skyPlain from "../src/scene/shaders/sky_plain.frag?raw";
+import solidPlain from "../src/scene/shaders/solid_plain.frag?raw";
+import waterPlain from "../src/scene/shaders/water_plain.frag?raw";
+import { gridLines } from "../src/scene/water/water_grid";
+import { WaterScene } from "../src/scene/water_scene";
+
+const kSizePx = [1280, 720] as const;
+const kOpen = { "-x": "open", "+x": "open", "-z": "closed", "+z": "open" } as const;
+/** An open sea with all that is drawn on one: boats, objects, rocks, wind, and particles. */
+const kHarbor = {
+  layers: ["surface", "foam", "bodies", "particles"],
+  setting: "openSea",
+  sideM: 16,
+  widthM: 16,
+  waterExtents: { sideM: 16, longM: 16, depthM: 2 },
+  waterType: "coast",
+  wave: { resolutionCount: 192, countZ: 192, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0, isNonlinear: false },
+  wind: { seed: 1n, gravityMps2: 9.81, comesIn: false, levelRatio: 1, dropsPerM2S: 0, waveHeightM: 0.3, directionDeg: 0, speedMps: 15, fetchM: 2000 },
+  obstacles: [{ shape: "rock", xM: 2, zM: 2, radiusM: 1, heightM: 1 }],
+  beaches: [],
+  boats: [],
+  parameters: [],
+  hasParticles: true,
+  hasBoats: true,
+  hasFloaters: true,
+  gravityMps2: 9.81,
+} as unknown as GreetingInfo;
+
+interface Draw {
+  /** Undefined: the canvas. */
+  targetPx: number | undefined;
+  materials: Set<string>;
+}
+
+/** Notes every call that draws, in the pictures after the first, whose light is baked. */
+function drawsOf(tier: TierName, picturesCount: number): Draw[] {
+  const draws: Draw[] = [];
+  let target: WebGLRenderTarget | null = null;
+  const calls: Record<string, unknown> = {
+    xr: { enabled: false },
+    coordinateSystem: WebGLCoordinateSystem,
+    autoClear: true,
+    getDrawingBufferSize: (size: Vector2) => size.set(...kSizePx),
+    getRenderTarget: () => target,
+    setRenderTarget: (next: WebGLRenderTarget | null) => void (target = next),
+    render: (scene: Object3D) => {
+      const materials = new Set<string>();
+      scene.traverseVisible((object) => materials.add(((object as { material?: { name: string } }).material?.name ?? "")));
+      materials.delete("");
+      draws.push({ targetPx: target ? target.width * target.height : undefined, materials });
+    },
+  };
+  const renderer = new Proxy(calls, { get: (from, key: string) => (key in from ? from[key] : () => null) }) as unknown as WebGLRenderer;
+  const scene = new WaterScene(renderer, { ...kTiers[tier], texelType: FloatType }, () => {});
+  scene.enter(kHarbor, false);
+  scene.camera.position.set(0, 5, 20);
+  for (let n = 0; n <= picturesCount; ++n) {
+    const timeS = 1 + 0.1 * n;
+    const resolutionCount = kHarbor.wave!.resolutionCount;
+    scene.take({ layer: "surface", tick: 0n, stateId: BigInt(n + 1), timeS, serverTimeS: timeS, level: "full", resolutionCount, countZ: resolutionCount, sideM: 16, widthM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2 * resolutionCount ** 2) }, timeS);
+    scene.clock.hold(timeS);
+    scene.render(timeS);
+    if (n === 0) draws.length = 0;
+  }
+  scene.dispose();
+  return draws;
+}
+
+/** Returns the lines of a shader that remain with these defines. */
+function preprocessed(text: string, defines: readonly string[]): string {
+  const kept: boolean[] = [];
+  return text
+    .split("\n")
+    .filter((line) => {
+      const [, directive, condition = ""] = /^#(ifdef|ifndef|if|else|endif)\b\s*(.*)/.exec(line) ?? [];
+      if (directive === "endif") kept.pop();
+      else if (directive === "else") kept.push(!kept.pop()!);
+      else if (directive) kept.push((condition.match(/\w+/g) ?? []).filter((word) => word !== "defined").some((name) => defines.includes(name)) !== (directive === "ifndef"));
+      return !directive && kept.every(Boolean);
+    })
+    .join("\n")
+    .replace(/\/\/.*$/gm, "");
+}
+
+const readsOf = (text: string, ...defines: string[]): number => preprocessed(text, defines).match(/\btexture(Lod)?\(|\btexelFetch\(/g)?.length ?? 0;
+
+describe("a picture in the tier minimal", () => {
+  const draws = drawsOf("minimal", 2);
+
+  it("takes few draws, fewer than the tiers above", () => {
+    expect(draws.length / 2).toBeLessThanOrEqual(6);
+    expect(draws.length).toBeLessThan(drawsOf("low", 2).length);
+  });
+
+  it("has no picture between the scene and the canvas", () => {
+    const largestPx = Math.max(...draws.map(({ targetPx }) => targetPx ?? 0));
+    expect(largestPx).toBeLessThanOrEqual(kTiers.minimal.whitewater.frothTexelsCount ** 2);
+    // The same count finds the one of a higher tier.
+    expect(Math.max(...drawsOf("medium", 1).map(({ targetPx }) => targetPx ?? 0))).toBeGreaterThanOrEqual(kSizePx[0] * kSizePx[1]);
+  });
+
+  it("draws solids, water and sky with the plain programs alone", () => {
+    const onCanvas = new Set(draws.filter(({ targetPx }) => targetPx === undefined).flatMap(({ materials }) => [...materials]));
+    for (const name of ["solidPlain", "waterPlain", "skyPlain"]) expect(onCanvas).toContain(name);
+    for (const name of ["solid", "water", "skyDome", "present"]) expect(onCanvas).not.toContain(name);
+  });
+
+  it("has a grid of few vertices", () => {
+    const lines = gridLines(kTiers.minimal.surfaceCellsCount, true, true).length;
+    expect(lines ** 2).toBeLessThanOrEqual(6000);
+    expect(gridLines(kTiers.minimal.surfaceCellsCount, true, true)[0]).toBeLessThan(-100);
+  });
+});
+
+describe("a pixel of the plain programs", () => {
+  it("reads at most two textures", () => {
+    expect(readsOf(waterPlain, "OPEN_SEA", "BEACH", "SHORE", "FOAM")).toBeLessThanOrEqual(2);
+    expect(readsOf(waterPlain, "WALLS", "FOAM")).toBeLessThanOrEqual(2);
+    expect(readsOf(waterPlain, "SKIRT")).toBe(1);
+    expect(readsOf(waterPlain, "OPEN_SEA", "DIVED")).toBeGreaterThan(2);
+    expect(readsOf(solidPlain)).toBe(0);
+    expect(readsOf(skyPlain)).toBe(0);
+  });
+
+  it("does not branch, because both sides would be executed", () => {
+    for (const text of [waterPlain, solidPlain, skyPlain]) expect(preprocessed(text, ["OPEN_SEA", "BEACH", "FOAM"])).not.toMatch(/\b(if|for|while)\s*\(/);
+  });
+});
