@@ -3,6 +3,7 @@ import asyncio
 import os
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -118,6 +119,24 @@ def test_a_stream_of_answers_has_every_tick_and_ends_with_the_iteration(water):
         water.step(tick_count=1)
     assert ticks == list(range(ticks[0], ticks[0] + 12))
     assert outside == [3 + 12 * k / 60 > 4 for k in range(12)]
+
+
+def test_a_stream_goes_on_at_another_fidelity_and_ends_with_another_scene():
+    with spindrift.serve("wave_only", environment=ENVIRONMENT, patience_s=60, answer_within_s=60) as water:
+        stream = water.stream_query([[1.0, 0.5]])
+        first = next(stream)
+        assert water.scene.fidelity != spindrift.v1.scene_pb2.FIDELITY_DRAFT
+        water.change_scene(name="wave_only", fidelity="draft")
+        tick = water.query([[1.0, 0.5]]).tick
+        assert tick > first.tick
+        while next(stream).tick < tick:
+            pass
+        time.sleep(1.1)  # a room changes its scene once per second
+        water.change_scene(name="rain_rings")
+        with pytest.raises(spindrift.SpindriftError, match="the scene has changed"):
+            while True:
+                next(stream)
+        assert water.query([[0.1, 0.1]]).wet_ratio.tolist() == [1.0]
 
 
 def test_faulty_queries_say_what_would_be_right(water):
