@@ -187,6 +187,7 @@ core::Result<boost::json::object> measureQueries(const v1::Scene& scene, const g
   SteppedRoom room;
   if (auto opened = room.open(scene, device); !opened) return opened.error();
   const std::vector<Case> cases = {{"nobody asks, both blocks alike", 1, 0, false},
+                                   {"1 point", 1, 1, false},
                                    {"1,024 points that stay", 1, 1024, false},
                                    {"1,024 points that move", 1, 1024, true},
                                    {"8 people with 1,024 points each", SteppedRoom::kPeopleMaxCount, 1024, true}};
