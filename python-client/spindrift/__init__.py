@@ -12,7 +12,8 @@ from .blocking import Water, connect
 from .errors import ConnectionLost, Damaged, NoAnswer, Refused, Rejected, ServerFailed, SpindriftError
 from .frames import Boats, Floaters, Foam, Frame, Particles, Plane, Surface
 from .gauges import GaugeSeries
+from .queries import Answer
 from .server import Server, serve
 
-__all__ = ["Boats", "ConnectionLost", "Damaged", "Event", "Floaters", "Foam", "Frame", "GaugeSeries", "NoAnswer", "Particles", "Plane",
+__all__ = ["Answer", "Boats", "ConnectionLost", "Damaged", "Event", "Floaters", "Foam", "Frame", "GaugeSeries", "NoAnswer", "Particles", "Plane",
            "Refused", "Rejected", "Server", "ServerFailed", "SpindriftError", "Surface", "Water", "aio", "connect", "serve"]

@@ -15,21 +15,23 @@ import websockets
 from google.protobuf import json_format
 from google.protobuf.message import DecodeError
 
-from . import address, commands
+from . import address, commands, queries
 from .errors import ConnectionLost, Damaged, NoAnswer, Refused, Rejected, SpindriftError
 from .frames import LAYERS, Boats, Floaters, Foam, Frame, FrameReader, Particles, Surface
 from .gauges import GaugeSeries
 from .inbox import Inbox
+from .queries import Answer
 from .v1 import api_pb2 as api
 from .v1 import wire_pb2 as wire
 
-WIRE_VERSION = (1, 9)
+WIRE_VERSION = (1, 10)
 """What this client speaks: major, minor."""
 _SUBPROTOCOL = "spindrift.v1"
 _MAX_MESSAGE_BYTES = 64 * 1024 * 1024
 _MAX_WAITING_COMMANDS = 64
 _MAX_WAITING_FRAMES = 16
 _MAX_WAITING_EVENTS = 256
+_MAX_WAITING_ANSWERS = 64
 _SLOW_ACTIONS = ("change_scene", "set_parameter")
 """The server builds water for these, as long as that takes."""
 _FINAL_CODES = (1002, 1003, 1007, 1008, 4401, 4404, 4409)
@@ -83,6 +85,8 @@ class Water:
         self._reader = FrameReader()
         self._answers: dict[int, asyncio.Future] = {}
         self._next_command_id = 1
+        self._queries: dict[int, Inbox] = {}
+        self._next_query_id = 1
         self._move: tuple[float, str] | None = None
         self._failure: SpindriftError | None = None
         self.greeting: wire.Greeting | None = None
@@ -245,6 +249,45 @@ class Water:
         text = await asyncio.get_running_loop().run_in_executor(None, _fetch, self._address.rest(f"rooms/{room}/{path}"), self._address.token)
         return json_format.Parse(text, message, ignore_unknown_fields=True)
 
+    # ---- the water at points
+
+    async def query(self, points, *, velocities=None) -> Answer:
+        """The water at `points` ([count, 2]: x and z in metres) now, as one Answer of arrays. At most 1,024 points per client; points
+        outside of the water are marked. `velocities` count in streams only. Raises what commands raise, and ValueError for shapes."""
+        async with self._asked(queries.fields(points, velocities), 0) as inbox:
+            return await asyncio.wait_for(inbox.first(), self._answer_within_s)
+
+    async def stream_query(self, points, *, velocities=None, interval_ticks: int = 1) -> AsyncIterator[Answer]:
+        """An Answer now, and one whenever `interval_ticks` have passed, until the iteration ends. `velocities` ([2] for all points, or
+        [count, 2], m/s): the points move with them. At most 64 answers wait, the oldest are dropped, and their ticks show it. Raises
+        ConnectionLost when the connection is lost, and SpindriftError when the scene changes: ask again then."""
+        async with self._asked(queries.fields(points, velocities), interval_ticks) as inbox:
+            while True:
+                yield await inbox.first()
+
+    @contextlib.asynccontextmanager
+    async def _asked(self, fields, interval_ticks):
+        query_id, self._next_query_id = self._next_query_id, self._next_query_id % 0xFFFFFFFF + 1
+        inbox = self._queries[query_id] = Inbox(_MAX_WAITING_ANSWERS)
+        try:
+            await self.command("query", query_id=query_id, interval_ticks=interval_ticks, **fields)
+            yield inbox
+        finally:
+            if self._queries.pop(query_id, None) is not None and interval_ticks > 0 and self.is_live:
+                with contextlib.suppress(SpindriftError):
+                    await self.command("query", query_id=query_id)  # without points: ends the stream
+
+    def _query_answer(self, answer):
+        for result in answer.results:
+            inbox = self._queries.get(result.query_id)
+            if inbox is None:
+                continue
+            if result.ended:
+                inbox.fail(SpindriftError(f"the query has ended: {result.ended}"))
+                del self._queries[result.query_id]
+            else:
+                inbox.put(Answer.of(answer, result))
+
     # ---- the connection
 
     async def _run(self):
@@ -322,6 +365,8 @@ class Water:
             await self._frame(body)
         elif kind == "diagnostics":
             self._put("diagnostics", body)
+        elif kind == "query_answer":
+            self._query_answer(body)
         elif kind in ("ack", "reject"):
             self._answer(kind, body)
         elif kind == "refusal":
@@ -395,6 +440,9 @@ class Water:
         await self._socket.send(wire.ClientMessage(**message).SerializeToString())
 
     def _fail_answers(self, error):
+        for inbox in self._queries.values():
+            inbox.fail(error)
+        self._queries.clear()
         for answer in self._answers.values():
             if not answer.done():
                 answer.set_exception(error)

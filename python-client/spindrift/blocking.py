@@ -80,8 +80,12 @@ class Water:
         return sorted({*super().__dir__(), *dir(self._water)})
 
     def _each(self, generator):
-        while True:
-            yield self._loop.run(generator.__anext__())
+        try:
+            while True:
+                yield self._loop.run(generator.__anext__())
+        finally:
+            if self._loop is not None:
+                self._loop.run(generator.aclose())
 
 
 def connect(url: str = "http://127.0.0.1:8080", **options) -> Water:

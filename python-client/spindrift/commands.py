@@ -98,12 +98,13 @@ def describe(action) -> str:
 
 
 def add_methods(cls):
-    """Gives a class with `command(action, **fields)` a method for each action, with a docstring made from the wire's own options."""
+    """Gives a class with `command(action, **fields)` a method for each action that it has none for, with a docstring made from the wire's own options."""
     for action in _ACTIONS:
         def method(self, _name=action.name, **fields):
             return self.command(_name, **fields)
 
         method.__name__ = method.__qualname__ = action.name
         method.__doc__ = describe(action)
-        setattr(cls, action.name, method)
+        if action.name not in vars(cls):
+            setattr(cls, action.name, method)
     return cls

@@ -6,6 +6,7 @@ import pytest
 from fake_server import fake_server
 
 from spindrift import ConnectionLost, NoAnswer, Refused, Rejected, SpindriftError, aio
+from spindrift.queries import VALUES
 from spindrift.v1 import wire_pb2 as wire
 
 GOLDEN = pathlib.Path(__file__).resolve().parents[2] / "tests" / "golden"
@@ -152,6 +153,29 @@ async def test_answers_are_errors_by_their_kind_and_waiting_commands_are_bounded
         results = await asyncio.gather(*many, return_exceptions=True)
         assert [type(result) for result in results] == [NoAnswer] * 64 + [SpindriftError]
         assert "64 commands wait" in str(results[64])
+
+
+@scenario
+async def test_a_query_that_the_server_ends_is_an_error_and_so_is_a_lost_connection(fake):
+    async with aio.connect(fake.url) as water:
+        for end in ("scene", "connection"):
+            stream = water.stream_query([[0.0, 1.0]])
+            first = asyncio.ensure_future(stream.__anext__())
+            command = await fake.next("command")
+            await fake.send(ack=wire.Ack(command_id=command.command_id, applied_tick=5))
+            result = wire.QueryResult(query_id=command.query.query_id, **{name: [0.5] for name in VALUES})
+            await fake.send(query_answer=wire.QueryAnswer(tick=5, results=[result]))
+            assert (await first).elevation_m.tolist() == [0.5]
+            second = asyncio.ensure_future(stream.__anext__())
+            if end == "scene":
+                over = wire.QueryResult(query_id=command.query.query_id, last=True, ended="the scene has changed")
+                await fake.send(query_answer=wire.QueryAnswer(tick=6, results=[over]))
+                with pytest.raises(SpindriftError, match="the scene has changed"):
+                    await second
+            else:
+                await fake.close(1001)
+                with pytest.raises(ConnectionLost):
+                    await second
 
 
 def test_no_server_is_an_error_after_the_patience():

@@ -3,6 +3,7 @@ import asyncio
 import os
 import signal
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -90,6 +91,64 @@ def test_a_gauge_agrees_with_the_surface(water):
     assert gauge.elevation_m[at] == pytest.approx(float(frame.height_m(gauge.x_m, gauge.z_m)), abs=2 * frame.quantum_m)
     with pytest.raises(spindrift.SpindriftError, match="HTTP 404"):
         water.gauge("nowhere")
+
+
+def test_a_query_agrees_with_the_surface_of_its_tick(water):
+    water.splash(x_m=1, z_m=1, depth_m=0.3)
+    water.set_paused(paused=True)
+    surface = water.advance(20)
+    points = np.array([[1.0, 1.0], [-2.3, 0.4], [3.99, -3.99], [0.1, 50.0]])
+    answer = water.query(points)
+    assert (answer.tick, answer.state_id, answer.time_s) == (surface.tick, surface.state_id, surface.time_s)
+    assert answer.outside.tolist() == [False, False, False, True]
+    assert answer.elevation_m[:3] == pytest.approx(surface.height_m(points[:3, 0], points[:3, 1]), abs=surface.quantum_m)
+    assert answer.elevation_m.dtype == np.float32 and np.ptp(answer.elevation_m) > 0.01
+    assert answer.depth_m[0] == pytest.approx(water.scene.wave.depth_m + answer.elevation_m[0], abs=1e-4)
+    assert water.advance(1).tick == answer.tick + 1
+    assert water.query(points).tick == answer.tick + 1
+
+
+def test_a_stream_of_answers_has_every_tick_and_ends_with_the_iteration(water):
+    water.set_paused(paused=True)
+    ticks, outside = [], []
+    for answer in water.stream_query([[3.0, 0.0]], velocities=[12.0, 0.0]):
+        ticks.append(answer.tick)
+        outside.append(bool(answer.outside[0]))
+        if len(ticks) == 12:
+            break
+        water.step(tick_count=1)
+    assert ticks == list(range(ticks[0], ticks[0] + 12))
+    assert outside == [3 + 12 * k / 60 > 4 for k in range(12)]
+
+
+def test_a_stream_goes_on_at_another_fidelity_and_ends_with_another_scene():
+    with spindrift.serve("wave_only", environment=ENVIRONMENT, patience_s=60, answer_within_s=60) as water:
+        stream = water.stream_query([[1.0, 0.5]])
+        first = next(stream)
+        assert water.scene.fidelity != spindrift.v1.scene_pb2.FIDELITY_DRAFT
+        water.change_scene(name="wave_only", fidelity="draft")
+        tick = water.query([[1.0, 0.5]]).tick
+        assert tick > first.tick
+        while next(stream).tick < tick:
+            pass
+        time.sleep(1.1)  # a room changes its scene once per second
+        water.change_scene(name="rain_rings")
+        with pytest.raises(spindrift.SpindriftError, match="the scene has changed"):
+            while True:
+                next(stream)
+        assert water.query([[0.1, 0.1]]).wet_ratio.tolist() == [1.0]
+
+
+def test_faulty_queries_say_what_would_be_right(water):
+    with pytest.raises(ValueError, match=r"\[count, 2\]"):
+        water.query([1.0, 2.0])
+    with pytest.raises(ValueError, match="velocities"):
+        water.query([[1.0, 2.0]], velocities=[[1, 1], [2, 2]])
+    with pytest.raises(spindrift.Rejected, match="nan is not a finite number") as nan:
+        water.query([[0.0, 0.0], [0.0, np.nan]])
+    assert nan.value.field == "query.z_m[1]"
+    with pytest.raises(spindrift.Rejected, match="1025 points are more than 1024"):
+        water.query(np.zeros((1025, 2)))
 
 
 def test_a_room_that_does_not_exist_is_refused(server):

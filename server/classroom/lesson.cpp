@@ -71,7 +71,7 @@ v1::Tool toolOf(const v1::Command& command) {
 
 std::optional<wire::CommandRejection> refuse(const v1::Lesson& lesson, bool is_muted, core::Role role,
                                              const v1::Command& command) {
-  if (role >= core::Role::kOperator) return std::nullopt;
+  if (role >= core::Role::kOperator || command.has_query()) return std::nullopt;  // a query changes nothing
   const auto notNow = [](std::string why) {
     return wire::rejection(v1::REJECT_REASON_NOT_NOW, "", std::move(why) + "; an operator can change that");
   };

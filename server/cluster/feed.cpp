@@ -305,4 +305,12 @@ bool Feed::commandRejected(const rooms::Command& command, const wire::CommandRej
   return sendToNodeOf(command.sender.session_id, std::move(message));
 }
 
+bool Feed::queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer) {
+  v1::FromRoom message;
+  v1::QueryAnswered& answered = *message.mutable_query_answered();
+  answered.set_session(numberAtNode(sender.session_id));
+  *answered.mutable_answer() = answer;
+  return sendToNodeOf(sender.session_id, std::move(message));
+}
+
 }  // namespace spindrift::cluster

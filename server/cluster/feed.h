@@ -24,7 +24,7 @@
 namespace spindrift::cluster {
 
 /// Version of cluster.proto, the frames' head and the numbers of streams.
-inline constexpr std::uint32_t kClusterVersion = 3;
+inline constexpr std::uint32_t kClusterVersion = 4;
 /// A link whose other end was silent for so long is dead.
 inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.
@@ -63,6 +63,7 @@ class Feed final : public service::RemoteAudience {
   void closed(const rooms::Room& room) override;
   bool commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
+  bool queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer) override;
   void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
 

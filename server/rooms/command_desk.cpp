@@ -42,6 +42,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
   using C = v1::Command;
   using Act = RoomActions;
   using Desk = CommandDesk;
+  constexpr auto kViewer = core::Role::kViewer;
   constexpr auto kPlayer = core::Role::kPlayer;
   constexpr auto kOperator = core::Role::kOperator;
   constexpr bool kLight = false, kHeavy = true;
@@ -70,6 +71,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kEndGame, {kOperator, kLight}, &Act::endGame, nullptr},
       {C::kPlaceGauge, {kPlayer, kLight}, &Act::placeGauge, nullptr},
       {C::kRemoveGauge, {kPlayer, kLight}, &Act::removeGauge, nullptr},
+      {C::kQuery, {kViewer, kLight}, &Act::ask, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action

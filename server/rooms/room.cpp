@@ -107,7 +107,8 @@ Room::TimePoint Room::due() const {
   TimePoint next = stands_still ? ran_ + kStandingInterval : data_.time.due();
   const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
   if (const auto change = change_.due(ran_)) no_later_than(*change);
-  if (!change_.isLost() && data_.water->sim().framesInFlight() > 0) no_later_than(ran_ + kReadbackPollInterval);
+  const bool awaits_device = data_.water->sim().framesInFlight() > 0 || queries_.isWaiting();
+  if (!change_.isLost() && awaits_device) no_later_than(ran_ + kReadbackPollInterval);
   if (!stands_still) return next;
   if (is_woken_ || (data_.time.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
   if (desk_.hasWork()) no_later_than(ran_ + kWaitingCommandInterval);
@@ -127,7 +128,7 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   if (const auto built = change_.takeBuilt(now)) waterChanged(*built, now);
   if (change_.watchDevice(now)) return standStill();
   data_.time.beginRound(now);
-  frames_.handOver();
+  handOver();
   const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP;
   if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
@@ -135,6 +136,7 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   if (!data_.time.runs() || now >= data_.time.due()) desk_.carryOut(now);
   reports_.tellGame(now);
   announce();
+  queries_.sample(QueryBook::Which::kNew);  // the tick of their Ack
   if (change_.stopsTime()) {
     // The state stands still until the particles are laid out.
   } else if (data_.time.isPaused()) {
@@ -144,8 +146,13 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   }
   if (reports_.tellRecovery(now)) actions_.boatsChanged();
   if (!change_.stopsTime()) keeping_.keep(now);
-  frames_.handOver();
+  handOver();
   if (now >= next_vitals_) publishVitals(now);
+}
+
+void Room::handOver() {
+  frames_.handOver();
+  queries_.handOver();
 }
 
 void Room::step(TimePoint now) {
@@ -177,6 +184,7 @@ Room::TimePoint Room::timedStep() {
   data_.tick_cost.note(step_ms);
   data_.tick_meter.note(step_ms);
   data_.diary.ticked();
+  queries_.sample(QueryBook::Which::kDue);
   return end;
 }
 
@@ -198,6 +206,7 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
       data_.roster.keepOnly({});  // the boats of a new scene have no owner yet, whatever their ids
     }
     actions_.waterChanged(built.water == Water::kContinues);
+    queries_.waterChanged(built.water == Water::kContinues);
     publishVitals(now);
     reports_.sceneChanged();
   }
@@ -219,7 +228,10 @@ void Room::standStill() {
 void Room::settlePeople(TimePoint now) {
   const Roster::Turn turn = data_.roster.settle(now);
   for (const std::uint32_t boat_id : turn.boats_to_stop) actions_.stopBoat(boat_id);
-  if (turn.is_news) actions_.removeGaugesOfGone();
+  if (turn.is_news) {
+    actions_.removeGaugesOfGone();
+    queries_.removeOfGone();
+  }
   reports_.tellPeople(turn.is_news, now);
 }
 

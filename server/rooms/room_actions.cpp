@@ -185,4 +185,15 @@ RoomActions::Outcome RoomActions::spawnFloater(const Command& command) {
   return {};
 }
 
+RoomActions::Outcome RoomActions::ask(const Command& command) {
+  const core::Sender& sender = command.sender;
+  const v1::Query& asked = command.message.query();
+  // Streams end with their session, and the roster knows when that is.
+  if (asked.interval_ticks() > 0 && !room_.roster.isConnected(sender.person_id, sender.session_id)) {
+    return wire::rejection(v1::REJECT_REASON_FORBIDDEN, "query.interval_ticks",
+                           "only somebody in the room's list of people can ask for a stream: ask for one answer (0)");
+  }
+  return room_.queries.enter(sender, asked, room_.water->tick());
+}
+
 }  // namespace spindrift::rooms

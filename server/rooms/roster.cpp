@@ -103,6 +103,12 @@ bool Roster::isHere(std::uint32_t person_id) const {
   return people_.contains(person_id);
 }
 
+bool Roster::isConnected(std::uint32_t person_id, core::SessionId session) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  return found != people_.end() && found->second.session == session;
+}
+
 void Roster::setGaugeOwners(const std::set<std::uint32_t>& person_ids) {
   const std::lock_guard lock(mutex_);
   for (auto& [id, person] : people_) person.has_gauges = person_ids.contains(id);

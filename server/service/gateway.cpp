@@ -141,6 +141,12 @@ void Gateway::closed(const rooms::Room& room) {
   if (cluster_.audience) cluster_.audience->closed(room);
 }
 
+void Gateway::queryAnswered(const rooms::Room&, const core::Sender& sender, const v1::QueryAnswer& answer) {
+  if (sender.request_id != 0) return rest_.queryAnswered(sender, answer);
+  if (cluster_.audience && cluster_.audience->queryAnswered(sender, answer)) return;
+  sessions_.queryAnswered(sender.session_id, answer);
+}
+
 void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
   encoder_->submit(room.name(), room.demand(), std::move(frame));
 }

@@ -21,12 +21,6 @@ using net::HttpReply;
 
 constexpr std::string_view kRoot = "/api/v1/";
 
-HttpReply rejected(const wire::CommandRejection& rejection) {
-  v1::CommandAnswer out;
-  *out.mutable_reject() = rejection;
-  return json(httpStatusOf(rejection.reason()), out);
-}
-
 std::vector<std::string> split(std::string_view path) {
   std::vector<std::string> out;
   while (!path.empty()) {
@@ -149,6 +143,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     fillRoomInfo(*room, out);
     return respond(json(200, out));
   }
+  if (call.path[2] == "surface" && call.path.size() == 3) return surface(call, room, std::move(respond));
   if (call.path[2] == "gauges") return gauges(call, *room, respond);
   if (call.path.size() != 3) return respond(std::nullopt);
   const std::string& part = call.path[2];
@@ -242,16 +237,23 @@ void RestApi::drainServer(const Call& call, const net::HttpResponder& respond) {
 
 void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond) {
   // A form on a foreign page cannot send this content type (protection against cross-site requests).
-  if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
-  const core::ByteView body = call.request.body;
-  auto parsed = wire::parseCommandJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  if (!isJson(call.request.content_type)) return respond(bodyIsNotJson());
+  auto parsed = wire::parseCommandJson(bodyOf(call.request));
+  if (parsed && std::holds_alternative<v1::Command>(*parsed) && std::get<v1::Command>(*parsed).has_query())
+    return respond(
+        problem(400, "query: this address answers with an Ack; POST the query to /api/v1/rooms/ROOM/surface"));
+  submit(call, room, std::move(parsed), {.respond = std::move(respond)});
+}
+
+void RestApi::submit(const Call& call, const std::shared_ptr<rooms::Room>& room, ParsedCommand parsed,
+                     Pending pending) {
   if (!parsed) {
     counters_.rejected(v1::REJECT_REASON_MALFORMED);
-    return respond(problem(400, parsed.error().message));
+    return pending.respond(problem(400, parsed.error().message));
   }
   if (const auto* rejection = std::get_if<wire::CommandRejection>(&*parsed)) {
     counters_.rejected(rejection->reason());
-    return respond(rejected(*rejection));
+    return pending.respond(rejected(*rejection));
   }
   rooms::Command command;
   command.sender.request_id = ++last_request_id_;
@@ -260,7 +262,7 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
   command.message = std::get<v1::Command>(*std::move(parsed));
   {
     const std::lock_guard lock(mutex_);
-    pending_[command.sender.request_id] = std::move(respond);
+    pending_[command.sender.request_id] = std::move(pending);
   }
   const auto rejection = access_.takeCommand(call.grant.is_person ? call.grant.subject : "")
                              ? room->admit(command)
@@ -268,14 +270,15 @@ void RestApi::command(const Call& call, const std::shared_ptr<rooms::Room>& room
   if (rejection) commandRejected(command, *rejection);
 }
 
-net::HttpResponder RestApi::takePending(std::uint64_t request_id) {
+RestApi::Pending RestApi::takePending(std::uint64_t request_id) {
   const std::lock_guard lock(mutex_);
   auto node = pending_.extract(request_id);
-  return node ? std::move(node.mapped()) : net::HttpResponder();
+  return node ? std::move(node.mapped()) : Pending();
 }
 
 void RestApi::commandApplied(const rooms::Command& command, const v1::Ack& ack) {
-  const auto respond = takePending(command.sender.request_id);
+  if (command.message.has_query()) return;  // queryAnswered() follows
+  const auto respond = takePending(command.sender.request_id).respond;
   if (!respond) return;
   v1::CommandAnswer out;
   *out.mutable_ack() = ack;
@@ -285,7 +288,7 @@ void RestApi::commandApplied(const rooms::Command& command, const v1::Ack& ack) 
 void RestApi::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason());
   access_.audit().rejected(command, rejection);
-  if (const auto respond = takePending(command.sender.request_id)) respond(rejected(rejection));
+  if (const auto respond = takePending(command.sender.request_id).respond) respond(rejected(rejection));
 }
 
 }  // namespace spindrift::service

@@ -4,6 +4,7 @@
 #include <cctype>
 #include <utility>
 
+#include <spindrift/service/rest_api.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/api_message.h>
 
@@ -38,12 +39,26 @@ HttpReply bodyIsNotEmpty() {
   return problem(400, "this request has an empty body: send Content-Length: 0");
 }
 
+HttpReply bodyIsNotJson() {
+  return problem(415, "send Content-Type: application/json");
+}
+
+HttpReply rejected(const wire::CommandRejection& rejection) {
+  v1::CommandAnswer out;
+  *out.mutable_reject() = rejection;
+  return json(httpStatusOf(rejection.reason()), out);
+}
+
 HttpReply text(unsigned status, std::string body) {
   return {.status = status, .content_type = "text/plain; charset=utf-8", .body = std::move(body)};
 }
 
 unsigned statusOf(const core::Error& error) {
   return error.code == ErrorCode::kUnavailable ? 503 : error.code == ErrorCode::kInvalidInput ? 409 : 500;
+}
+
+std::string_view bodyOf(const net::HttpRequest& request) {
+  return {reinterpret_cast<const char*>(request.body.data()), request.body.size()};
 }
 
 bool isJson(std::string_view content_type) {

@@ -8,6 +8,7 @@
 
 #include <spindrift/core/result.h>
 #include <spindrift/net/server.h>
+#include <spindrift/wire/client_message.h>
 
 namespace spindrift::service {
 
@@ -23,11 +24,18 @@ net::HttpReply wrongMethod(const std::string& allowed);
 net::HttpReply unauthorized(std::string line);
 
 net::HttpReply bodyIsNotEmpty();
+net::HttpReply bodyIsNotJson();
+
+/// Returns the reply for a command that was refused.
+net::HttpReply rejected(const wire::CommandRejection& rejection);
 
 net::HttpReply text(unsigned status, std::string body);
 
 /// Returns the HTTP status for an error of the rooms.
 unsigned statusOf(const core::Error& error);
+
+/// Views the body; it must outlive the view.
+std::string_view bodyOf(const net::HttpRequest& request);
 
 /// RFC 9110 section 8.3.1: media type names are not case-sensitive, and parameters may follow.
 bool isJson(std::string_view content_type);

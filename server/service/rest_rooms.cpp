@@ -31,9 +31,8 @@ void RestApi::createRoom(const Call& call, net::HttpResponder respond) {
     out.headers.emplace_back("Retry-After", "5");
     return respond(std::move(out));
   }
-  if (!isJson(call.request.content_type)) return respond(problem(415, "send Content-Type: application/json"));
-  const core::ByteView body = call.request.body;
-  const auto wanted = wire::parseCreateRoomJson({reinterpret_cast<const char*>(body.data()), body.size()});
+  if (!isJson(call.request.content_type)) return respond(bodyIsNotJson());
+  const auto wanted = wire::parseCreateRoomJson(bodyOf(call.request));
   if (!wanted) return respond(problem(400, wanted.error().message));
   if (!core::isRoomName(wanted->name())) {
     return respond(problem(422, "name: a room's name has " + std::string(core::kRoomNameRule)));

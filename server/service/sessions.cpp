@@ -378,6 +378,12 @@ void Sessions::commandApplied(const rooms::Command& command, const v1::Ack& ack)
   hub().sendAnswer(command.sender.session_id, wire::ack(ack));
 }
 
+void Sessions::queryAnswered(net::SessionId session, const v1::QueryAnswer& answer) {
+  if (std::ranges::any_of(answer.results(), &v1::QueryResult::last))
+    return hub().sendAnswer(session, wire::queryAnswer(answer));
+  hub().sendState(session, topic::kQueries, wire::queryAnswer(answer));
+}
+
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason());
   access_.audit().rejected(command, rejection);

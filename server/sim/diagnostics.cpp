@@ -12,6 +12,7 @@
 #include <shared/gauge_uniforms.h>
 #include <shared/pool.h>
 
+#include "surface_points.h"
 #include "ticks_in_flight.h"
 
 namespace spindrift::sim {
@@ -114,8 +115,9 @@ void Diagnostics::placeGauges(Creation& create, const core::Scene& scene, const 
   shared::GaugeUniforms uniforms{};
   const auto add = [&](double x_m, double z_m) {
     shared::GaugePlace& place = uniforms.gauges[uniforms.gauge_count++];
-    place.column = static_cast<float>((x_m + layout.length_m / 2) / layout.cell_m - 0.5);
-    place.row = static_cast<float>((z_m + layout.width_m / 2) / layout.cell_m - 0.5);
+    const CellPlace at = cellPlaceOf(layout, x_m, z_m);
+    place.column = at.column;
+    place.row = at.row;
   };
   for (const core::Gauge& gauge : scene.gauges) add(gauge.x_m, gauge.z_m);
   placed_ids_.clear();

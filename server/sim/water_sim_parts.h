@@ -25,6 +25,7 @@
 #include "solvers.h"
 #include "stir.h"
 #include "surface_foam.h"
+#include "surface_points.h"
 #include "ticks_in_flight.h"
 #include "wave.h"
 #include "wind_sea.h"
@@ -68,6 +69,7 @@ struct WaterSim::Parts {
   std::unique_ptr<Stir> stir;  ///< in scenes without a wave
   std::unique_ptr<FramePacker> frames;
   std::unique_ptr<Diagnostics> diagnostics;
+  std::unique_ptr<SurfacePoints> points;  ///< from the first question on
   std::unique_ptr<Checkpoints> checkpoints;
   TicksInFlight ticks_in_flight;
   std::vector<float> settled_positions;        ///< starting positions; empty: the lattice

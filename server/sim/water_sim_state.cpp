@@ -7,6 +7,7 @@
 #include <shared/fixed_point.h>
 #include <spdlog/spdlog.h>
 
+#include "shader_defines.h"
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
@@ -134,6 +135,27 @@ bool WaterSim::requestFrame(const FrameRequest& request) {
   const auto timer = timers_.scope("stream");
   parts_->uniforms.bindUniform(SIM_UNIFORMS);
   return parts_->frames->pack(tick_, time_s(), scene_, derived_, parts, request);
+}
+
+core::Result<bool> WaterSim::sampleAt(std::span<const SurfacePoint> points, std::uint64_t number) {
+  if (!parts_->wave) return core::invalid("the scene has no wave to ask");
+  if (!parts_->points) {
+    Creation create(ctx_, shaderDefines(scene_));
+    auto made = std::make_unique<SurfacePoints>(create);
+    if (create.error()) return *create.error();
+    parts_->points = std::move(made);
+  }
+  const auto timer = timers_.scope("queries");
+  parts_->uniforms.bindUniform(SIM_UNIFORMS);
+  return parts_->points->sample(points, number, *derived_.wave, *parts_->wave, parts_->foam.get());
+}
+
+std::vector<SurfaceSamples> WaterSim::takeSamples() {
+  return parts_->points ? parts_->points->poll() : std::vector<SurfaceSamples>();
+}
+
+std::size_t WaterSim::samplesInFlight() const {
+  return parts_->points ? parts_->points->inFlightCount() : 0;
 }
 
 core::ReducedCounts WaterSim::reducedCounts() const {

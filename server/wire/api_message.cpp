@@ -81,6 +81,22 @@ core::Result<std::variant<v1::Command, CommandRejection>> parseCommandJson(std::
   return checkCommand(*std::move(command));
 }
 
+core::Result<std::variant<v1::Command, CommandRejection>> parseQueryJson(std::string_view json) {
+  using Parsed = std::variant<v1::Command, CommandRejection>;
+  auto query = parse<v1::Query>(json);
+  if (!query) return query.error();
+  if (query->x_m().empty()) {
+    return Parsed(rejection(v1::REJECT_REASON_OUT_OF_RANGE, "query.x_m", "there are no points; give at least one"));
+  }
+  if (query->interval_ticks() > 0) {
+    return Parsed(rejection(v1::REJECT_REASON_OUT_OF_RANGE, "query.interval_ticks",
+                            "a request is answered once; leave it out, or ask over a WebSocket"));
+  }
+  v1::Command command;
+  *command.mutable_query() = *std::move(query);
+  return checkCommand(std::move(command));
+}
+
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {
   return parse<v1::CreateRoom>(json);
 }

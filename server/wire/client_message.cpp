@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <exception>
 #include <set>
@@ -23,6 +24,7 @@ constexpr std::size_t kPathMaxBytes = 128;
 /// Maximum length of a scene name in error messages.
 constexpr std::size_t kNameEchoMaxBytes = 64;
 constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
+constexpr const char* kNoWave = "this scene has no wave to measure; choose a scene that has";
 constexpr const char* kNoFloaters = "this scene has no floaters; choose a scene that has";
 
 CommandRejection rejectionOf(std::uint64_t command_id, scene::FieldIssue issue) {
@@ -52,6 +54,43 @@ void checkGame(v1::GameKind kind, const v1::Scene& scene, std::vector<scene::Fie
   if (kind == v1::GAME_KIND_RACE && !scene.has_boats()) scene::addAbsent(issues, "start_game.kind", kNoBoats);
 }
 
+/// Adds what is wrong with the points of a query.
+void checkPoints(const v1::Query& query, std::vector<scene::FieldIssue>& issues) {
+  using Values = google::protobuf::RepeatedField<float>;
+  const auto add = [&](v1::RejectReason reason, std::string field, std::string why) {
+    issues.push_back({reason, "query." + std::move(field), std::move(why)});
+  };
+  const int count = query.x_m_size();
+  if (static_cast<std::size_t>(count) > kQueryMaxPoints) {
+    return add(v1::REJECT_REASON_OUT_OF_RANGE, "x_m",
+               std::to_string(count) + " points are more than " + std::to_string(kQueryMaxPoints) +
+                   "; ask for fewer at a time");
+  }
+  if (query.z_m_size() != count) {
+    return add(
+        v1::REJECT_REASON_OUT_OF_RANGE, "z_m",
+        std::to_string(query.z_m_size()) + " values for " + std::to_string(count) + " of x_m; give one per point");
+  }
+  const std::pair<const char*, const Values*> velocities[] = {{"velocity_x_mps", &query.velocity_x_mps()},
+                                                              {"velocity_z_mps", &query.velocity_z_mps()}};
+  for (const auto& [name, values] : velocities) {
+    if (values->size() <= 1 || values->size() == count) continue;
+    return add(v1::REJECT_REASON_OUT_OF_RANGE, name,
+               std::to_string(values->size()) + " values for " + std::to_string(count) +
+                   " points; give none, one for all, or one per point");
+  }
+  const std::pair<const char*, const Values*> positions[] = {{"x_m", &query.x_m()}, {"z_m", &query.z_m()}};
+  for (const auto& fields : {positions, velocities}) {
+    for (int f = 0; f < 2; ++f) {
+      const auto& [name, values] = fields[f];
+      const auto bad = std::ranges::find_if(*values, [](float value) { return !std::isfinite(value); });
+      if (bad == values->end()) continue;
+      return add(v1::REJECT_REASON_NOT_FINITE, name + ("[" + std::to_string(bad - values->begin())) + "]",
+                 core::formatNumber(*bad) + " is not a finite number; send a finite one");
+    }
+  }
+}
+
 }  // namespace
 
 CommandRejection rejection(v1::RejectReason reason, std::string field, std::string message, std::uint64_t command_id) {
@@ -71,6 +110,7 @@ std::variant<v1::Command, CommandRejection> checkCommand(v1::Command command) {
   }
   std::vector<scene::FieldIssue> issues;
   scene::checkFields(command, "", issues);
+  if (command.has_query()) checkPoints(command.query(), issues);
   if (!issues.empty()) return rejectionOf(id, std::move(issues.front()));
   if (command.has_set_parameter()) {
     const v1::SetParameter& set = command.set_parameter();
@@ -279,12 +319,15 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
     case v1::Command::kPlaceGauge: {
       const v1::PlaceGauge& gauge = command.place_gauge();
       if (!scene.has_wave()) {
-        scene::addAbsent(issues, "place_gauge", "this scene has no wave to measure; choose a scene that has");
+        scene::addAbsent(issues, "place_gauge", kNoWave);
       } else {
         issues = scene::checkPlace(gauge.x_m(), gauge.z_m(), scene, "place_gauge.");
       }
       break;
     }
+    case v1::Command::kQuery:
+      if (!scene.has_wave()) scene::addAbsent(issues, "query", kNoWave);
+      break;
     case v1::Command::kStartGame:
       checkGame(command.start_game().kind(), scene, issues);
       break;

@@ -87,6 +87,10 @@ core::SharedBytes game(const v1::Game& game) {
   return messageWith(&v1::ServerMessage::mutable_game, game);
 }
 
+core::SharedBytes queryAnswer(const v1::QueryAnswer& answer) {
+  return messageWith(&v1::ServerMessage::mutable_query_answer, answer);
+}
+
 core::SharedBytes levelChanged(core::Level level) {
   v1::LevelChanged out;
   out.set_level(codec::toWire(level));

@@ -3,6 +3,8 @@
 #ifndef SPINDRIFT_FOAM_CELL
 #define SPINDRIFT_FOAM_CELL
 
+#include "common/finite.glsl"
+
 /// Foam cells along x and z of a wave of n cells.
 ivec2 foamCounts(ivec2 n) { return (n + 1) / 2; }
 
@@ -13,5 +15,11 @@ ivec2 foamCellOf(ivec2 wave_cell, ivec2 n) { return wave_cell * foamCounts(n) / 
 ivec2 firstWaveCellOf(ivec2 foam_cell, ivec2 n) { return foam_cell * n / foamCounts(n); }
 
 int foamIndexOf(ivec2 foam_cell, ivec2 n) { return foam_cell.x + foamCounts(n).x * foam_cell.y; }
+
+/// White water of all sources, 0..1.
+float whiteOf(vec4 sources) {
+  const float white = sources.x + sources.y + sources.z;
+  return isNaN(white) ? 0.0 : clamp(white, 0.0, 1.0);
+}
 
 #endif

@@ -87,7 +87,10 @@
 #define SURFACE 15
 #define SURFACE_FLOW 16
 
-// Frames: packed words. Diagnostics: partial sums of work groups; readings of the gauges.
+// Points that somebody asks for; diagnostics/points.comp. The number is that of the grid; only its own pass uses this buffer.
+#define QUERY_POINTS 7
+
+// Frames: packed words. Diagnostics: partial sums of work groups; readings of the gauges; values at points.
 #define PACKED_WORDS 17
 #define PARTIAL_SUM 18
 

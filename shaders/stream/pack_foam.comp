@@ -3,7 +3,6 @@
 // Reads FOAM_FIELD [foamCounts()]. Writes PACKED_WORDS [a quarter of target_nx * target_nz, rounded up, from first_word on]; bytes left over are 0.
 #include "shared/groups.h"
 #include "shared/sim_uniforms.h"
-#include "common/finite.glsl"
 #include "foam/foam_cell.glsl"
 #include "stream/cover.glsl"
 
@@ -15,21 +14,15 @@ uniform uint first_word;
 uniform uint target_nx;
 uniform uint target_nz;
 
-float whiteOf(int i) {
-  const vec4 f = texelFetch(foam, i);
-  const float white = f.x + f.y + f.z;
-  return isNaN(white) ? 0.0 : clamp(white, 0.0, 1.0);
-}
-
 float meanWhite(int i) {
   const ivec2 n = foamCounts(ivec2(int(sim.wave_nx), int(sim.wave_nz)));
   const ivec2 target = ivec2(int(target_nx), int(target_nz));
-  if (target == n) return whiteOf(i);
+  if (target == n) return whiteOf(texelFetch(foam, i));
   const Cover x = coverOf(i % target.x, n.x, target.x);
   const Cover z = coverOf(i / target.x, n.y, target.y);
   float sum = 0.0;
   for (int c = z.first; c <= z.last; ++c) {
-    for (int a = x.first; a <= x.last; ++a) sum += weightIn(z, c) * weightIn(x, a) * whiteOf(c * n.x + a);
+    for (int a = x.first; a <= x.last; ++a) sum += weightIn(z, c) * weightIn(x, a) * whiteOf(texelFetch(foam, c * n.x + a));
   }
   return clamp(sum / (x.width * z.width), 0.0, 1.0);
 }

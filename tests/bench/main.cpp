@@ -13,6 +13,7 @@
 #include <spindrift/bench/codecs.h>
 #include <spindrift/bench/fanout.h>
 #include <spindrift/bench/load.h>
+#include <spindrift/bench/queries.h>
 #include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
 #include <spindrift/codec/stream.h>
@@ -31,7 +32,7 @@ namespace {
 constexpr double kFloaterSizesApart = 2.2;
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, fanout, load, soak; all: step and codec
+  std::string suite = "all";  ///< step, codec, fanout, load, query, soak; all: step and codec
   std::string scene = "harbor";
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
@@ -78,6 +79,14 @@ int benchSoak(const BenchOptions& options) {
   return 0;
 }
 
+/// Apart from the other suites, for the same reason.
+int benchQueries(const BenchOptions& options, const gpu::DeviceChoice& device, const v1::Scene& scene) {
+  auto result = bench::measureQueries(scene, device, options.seconds, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
 int bench(const BenchOptions& options) {
   if (options.suite == "load") return benchLoad(options);
   if (options.suite == "soak") return benchSoak(options);
@@ -88,6 +97,7 @@ int bench(const BenchOptions& options) {
   auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
   if (options.suite == "fanout") return benchFanout(options, *loaded);
+  if (options.suite == "query") return benchQueries(options, *device, *loaded);
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
   core::Scene scene = scene::toCore(*loaded);
@@ -120,7 +130,7 @@ int bench(const BenchOptions& options) {
 std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<BenchOptions>();
   program.add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "soak"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "query", "soak"}))
       ->capture_default_str();
   program.add_option("--scene", options->scene, "Scene file or name of a shipped scene")
       ->check(isNotEmpty())

@@ -67,11 +67,15 @@ CLIENT_MESSAGES = {
     "place_gauge": "command { command_id: 34 place_gauge { x_m: 3.5 z_m: -2 } }",
     "place_gauge_nan": "command { command_id: 35 place_gauge { x_m: nan z_m: 600 } }",
     "remove_gauge": "command { command_id: 36 remove_gauge { gauge_id: 4294967295 } }",
+    "query": "command { command_id: 37 query { query_id: 1 x_m: 1.5 x_m: -2 z_m: 0 z_m: 900 } }",
+    "query_stream": "command { command_id: 38 query { x_m: 1 x_m: 2 z_m: 3 z_m: 4 velocity_x_mps: 0.5 velocity_z_mps: 1 velocity_z_mps: -1 interval_ticks: 1 } }",
+    "query_faulty": "command { command_id: 39 query { x_m: nan x_m: inf z_m: 1 velocity_x_mps: 1 velocity_x_mps: 2 velocity_x_mps: 3 interval_ticks: 3601 } }",
 }
 
 # Commands and requests of the REST interface.
 JSON_MESSAGES = {
     "json_boat": '{"command_id":"7","spawn_boat":{"boat":{"x_m":1,"heading_deg":90}}}',
+    "json_query": '{"x_m":[1,2.5],"z_m":[-1,1e3]}',
     "json_room": '{"name":"a","scene":"pond","fidelity":"FIDELITY_DRAFT"}',
     "json_splash": '{"splash":{"x_m":1,"depth_m":0.4}}',
 }

@@ -21,6 +21,7 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   int frame_count = 0;
   std::vector<core::LevelSet> ready_levels;  ///< of each frame
   std::vector<std::uint64_t> applied;
+  std::vector<v1::QueryAnswer> query_answers;
   std::vector<std::string> rejected;
   std::vector<std::string> fidelity_news;
   std::vector<std::uint64_t> rejected_ids;
@@ -41,6 +42,9 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   void commandRejected(const rooms::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message());
     rejected_ids.push_back(rejection.command_id());
+  }
+  void queryAnswered(const rooms::Room&, const core::Sender&, const v1::QueryAnswer& answer) override {
+    query_answers.push_back(answer);
   }
   void frameReady(const rooms::Room&, core::FrameView frame) override {
     ++frame_count;

@@ -53,7 +53,10 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
     const bool is_play = name.find("boat") != std::string::npos || name.find("floater") != std::string::npos ||
                          name.find("gauge") != std::string::npos || name == "splash" || name == "breaking_wave" ||
                          name == "stroke";
-    EXPECT_EQ(traitsOf(command).role, is_play ? core::Role::kPlayer : core::Role::kOperator) << name;
+    const core::Role expected = name == "query" ? core::Role::kViewer
+                                : is_play       ? core::Role::kPlayer
+                                                : core::Role::kOperator;
+    EXPECT_EQ(traitsOf(command).role, expected) << name;
   }
   EXPECT_TRUE(traitsOf(reset()).is_heavy);
   EXPECT_FALSE(traitsOf(splash()).is_heavy);

@@ -1,7 +1,6 @@
 // Gauges: what they read of known water, and how long they remember it.
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -10,49 +9,13 @@
 #include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim_setup/basin.h>
 
-#include "sim_fixture.h"
+#include "seiche.h"
 
 namespace spindrift::sim {
 namespace {
 
-constexpr double kAmplitude_m = 0.05;
-constexpr double kPoolSide_m = 12.0;
-
-/// Walls all round; the lowest mode along x, from rest.
-core::Scene seicheScene() {
-  core::Scene scene;
-  scene.name = "seiche";
-  scene.wave.emplace();
-  scene.wave->resolution_count = 64;
-  scene.wave->side_m = kPoolSide_m;
-  scene.wave->depth_m = 1.5;
-  scene.wave->damping_per_s = 0.0;
-  setBoundaries(*scene.wave, core::WaveBoundary::kReflect);
-  return scene;
-}
-
-class GaugesOnDevice : public OnDevice {
+class GaugesOnDevice : public SeicheOnDevice {
  protected:
-  static double wavenumber_radpm() { return std::numbers::pi / kPoolSide_m; }
-
-  /// The mode at rest: the flow is that of half a step before.
-  static void startSeiche(WaterSim& sim) {
-    StateCopy state = sim.copyState();
-    const WaveLayout w = *sim.derived().wave;
-    const std::size_t n = w.count_x;
-    const std::size_t components = state.flow_m2ps.size() / state.elevation_m.size();
-    const auto eta = [&](std::size_t x) {
-      return kAmplitude_m * std::cos(wavenumber_radpm() * (static_cast<double>(x) + 0.5) * w.cell_m);
-    };
-    const double half_kick = 0.5 * sim.scene().gravity_mps2 * sim.scene().wave->depth_m * w.dt_s / w.cell_m;
-    for (std::size_t i = 0; i < n * n; ++i) {
-      const std::size_t x = i % n;
-      state.elevation_m[i] = eta(x);
-      state.flow_m2ps[i * components] = x + 1 < n ? static_cast<float>(half_kick * (eta(x + 1) - eta(x))) : 0.0F;
-    }
-    sim.setState(state);
-  }
-
   /// Runs until the gauges have so many ticks: they are some ticks behind.
   static void run(WaterSim& sim, std::size_t tick_count) {
     for (std::size_t k = 0; k < 2 * tick_count + 8 && sim.gauges()->series(0).time_s.size() < tick_count; ++k)

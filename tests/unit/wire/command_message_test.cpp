@@ -30,6 +30,10 @@ void fill(google::protobuf::Message& message) {
         reflection.SetDouble(&message, &field, options && value + step > options->max() ? value - step : value + step);
         break;
       }
+      case FieldDescriptor::CPPTYPE_FLOAT:
+        ASSERT_TRUE(field.is_repeated()) << field.full_name();
+        reflection.AddFloat(&message, &field, 1.5F);
+        break;
       case FieldDescriptor::CPPTYPE_UINT32:
         reflection.SetUInt32(&message, &field, 7);
         break;

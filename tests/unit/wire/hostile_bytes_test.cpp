@@ -72,7 +72,7 @@ core::Bytes serialized(const google::protobuf::MessageLite& message) {
 }
 
 std::vector<core::Bytes> validClientMessages() {
-  std::vector<v1::ClientMessage> messages(19);
+  std::vector<v1::ClientMessage> messages(20);
   messages[0].mutable_hello()->mutable_version()->set_major(1);
   messages[0].mutable_hello()->set_client("hostile \xC3\xA9");
   messages[1].mutable_subscribe()->set_layer(v1::LAYER_SURFACE);
@@ -106,6 +106,13 @@ std::vector<core::Bytes> validClientMessages() {
   messages[16].mutable_command()->mutable_remove_floater()->set_floater_id(1);
   messages[17].mutable_command()->mutable_place_gauge()->set_x_m(-2);
   messages[18].mutable_command()->mutable_remove_gauge()->set_gauge_id(1);
+  v1::Query& query = *messages[19].mutable_command()->mutable_query();
+  query.set_interval_ticks(1);
+  for (const float x_m : {-1.5F, 2.0F}) {
+    query.add_x_m(x_m);
+    query.add_z_m(-x_m);
+  }
+  query.add_velocity_z_mps(0.5F);
   std::vector<core::Bytes> out;
   for (const v1::ClientMessage& message : messages) out.push_back(serialized(message));
   return out;

@@ -18,8 +18,8 @@ import { isPlace, kMaxGaugeCount } from "./scene_info";
 import { readStrokes } from "./strokes";
 
 type WireMessage = Exclude<ServerMessage["message"], { case: undefined }>;
-/** Frames have parseFrame(). */
-type Kind = Exclude<WireMessage["case"], "frame">;
+/** Frames have parseFrame(); the page asks no queries. */
+type Kind = Exclude<WireMessage["case"], "frame" | "queryAnswer">;
 type ReaderOf<K extends Kind> = (value: Extract<WireMessage, { case: K }>["value"]) => object;
 
 /** Each returns plain data that survives postMessage, or why it cannot be trusted. */
@@ -57,7 +57,7 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
   try {
     const { message } = fromBinary(ServerMessageSchema, new Uint8Array(buffer));
     // A message that only a newer server knows, or an empty one: the wire says to ignore it.
-    if (message.case === undefined) return { kind: "unknown" };
+    if (message.case === undefined || message.case === "queryAnswer") return { kind: "unknown" };
     if (message.case === "frame") return parseFrame(message.value);
     const read = (kReaders[message.case] as (value: unknown) => object)(message.value);
     return isMalformed(read) ? read : ({ kind: message.case, ...read } as ParsedEvent);

@@ -17,6 +17,7 @@
 #include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_frames.h>
 #include <spindrift/rooms/room_keeping.h>
+#include <spindrift/rooms/room_queries.h>
 #include <spindrift/rooms/room_reports.h>
 #include <spindrift/rooms/room_view.h>
 #include <spindrift/rooms/water_change.h>
@@ -87,8 +88,11 @@ class Room {
   [[nodiscard]] std::uint64_t tick() const { return data_.water->tick(); }
   /// Returns sim::WaterSim::stateHash() of the water. Waits for the device.
   [[nodiscard]] std::uint64_t stateHash() { return data_.water->sim().stateHash(); }
-  /// Rejects the commands that still wait.
-  void abandonCommands() { desk_.close(); }
+  /// Rejects the commands that still wait, and ends the queries.
+  void abandonCommands() {
+    desk_.close();
+    queries_.endAll("the room was closed");
+  }
   /// Writes a snapshot and waits for it until the deadline. Errors: those of the files; kUnavailable when the device
   /// does not answer, or the deadline passes: a snapshot that has begun is written nevertheless, and the log holds the
   /// rest.
@@ -102,6 +106,8 @@ class Room {
   Room(std::string name, const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets,
        std::unique_ptr<water::RoomWater> room_water, history::Diary diary, v1::RoomAccess access);
 
+  /// Passes on what the device has finished.
+  void handOver();
   void step(TimePoint now);
   void advancePaused(TimePoint now);
   /// Makes a tick; returns its end.
@@ -122,6 +128,7 @@ class Room {
   RoomData data_;
   RoomReports reports_{data_};
   RoomFrames frames_{data_};
+  RoomQueries queries_{data_};
   WaterChange change_{data_};
   RoomActions actions_{data_};
   CommandDesk desk_{data_, actions_, change_};

@@ -61,6 +61,8 @@ class RoomActions {
   Outcome endGame(const Command& command);
   Outcome placeGauge(const Command& command);
   Outcome removeGauge(const Command& command);
+  /// Enters a query into the room's book, or ends a stream.
+  Outcome ask(const Command& command);
 
   /// Returns the ids that the last command gave out, once, in an Ack without anything else.
   [[nodiscard]] v1::Ack takeNewIds() { return std::exchange(new_ids_, {}); }

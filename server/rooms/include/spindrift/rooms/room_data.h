@@ -11,6 +11,7 @@
 #include <spindrift/history/diary.h>
 #include <spindrift/rooms/frame_schedule.h>
 #include <spindrift/rooms/placed_gauge.h>
+#include <spindrift/rooms/query_book.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_rules.h>
 #include <spindrift/rooms/room_time.h>
@@ -62,6 +63,7 @@ struct RoomData {
   FrameSchedule schedule{};
   Referee referee{};                  ///< of the game in the room
   std::vector<PlacedGauge> gauges{};  ///< that people have placed, oldest first
+  QueryBook queries{};
   ServerLoad load{};
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};

@@ -46,6 +46,9 @@ class RoomOutlets {
   /// The rejection contains the command's number.
   virtual void commandRejected(const Command& command, const wire::CommandRejection& rejection) = 0;
 
+  /// The surface at the points that this sender asks for, at one tick; it belongs to its queries only.
+  virtual void queryAnswered(const Room& room, const core::Sender& sender, const v1::QueryAnswer& answer) = 0;
+
   /// A frame that the room's demand() asked for. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
 };

@@ -58,6 +58,8 @@ class Roster {
   void keepOnly(const std::set<std::uint32_t>& boat_ids);
 
   [[nodiscard]] bool isHere(std::uint32_t person_id) const;
+  /// Returns whether this session is the person's present one.
+  [[nodiscard]] bool isConnected(std::uint32_t person_id, core::SessionId session) const;
   /// Says who has gauges in the water; nobody else has any.
   void setGaugeOwners(const std::set<std::uint32_t>& person_ids);
 

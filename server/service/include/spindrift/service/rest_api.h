@@ -8,6 +8,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include <spindrift/net/server.h>
@@ -48,8 +49,15 @@ class RestApi {
   /// log.
   void commandApplied(const rooms::Command& command, const v1::Ack& ack);
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
+  /// Reports the answer to a request's query, by its request_id; commandApplied() came before.
+  void queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer);
 
  private:
+  /// A request whose outcome comes from its room.
+  struct Pending {
+    net::HttpResponder respond{};
+    std::function<net::HttpReply(const v1::QueryAnswer&)> answered{};  ///< makes the reply to a query
+  };
   struct Call {
     const net::HttpRequest& request;
     std::vector<std::string> path;  ///< after /api/v1/: {"rooms", "main", "commands"}
@@ -68,11 +76,15 @@ class RestApi {
   void drainServer(const Call& call, const net::HttpResponder& respond);
   void closeRoom(const Call& call, net::HttpResponder respond);
   void command(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
+  using ParsedCommand = core::Result<std::variant<v1::Command, wire::CommandRejection>>;
+  /// Sends the command to the room; its outcome answers the request.
+  void submit(const Call& call, const std::shared_ptr<rooms::Room>& room, ParsedCommand parsed, Pending pending);
+  void surface(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   [[nodiscard]] core::Result<access::Grant> resolve(const std::string& authorization) const;
-  net::HttpResponder takePending(std::uint64_t request_id);
+  Pending takePending(std::uint64_t request_id);
 
   AccessControl& access_;
   CommandCounters& counters_;
@@ -86,7 +98,7 @@ class RestApi {
   GroundAnswers ground_;
   std::atomic<std::uint64_t> last_request_id_{0};
   std::mutex mutex_;
-  std::map<std::uint64_t, net::HttpResponder> pending_;  ///< at most one per connection
+  std::map<std::uint64_t, Pending> pending_;  ///< at most one per connection
 };
 
 }  // namespace spindrift::service

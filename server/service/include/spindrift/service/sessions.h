@@ -54,6 +54,9 @@ class Sessions {
                const std::string& why = "the room was closed");
   /// Sends the answer to the session that sent the command; counts and the audit log are the caller's.
   void commandApplied(const rooms::Command& command, const v1::Ack& ack);
+  /// Sends the answer to the session whose queries it belongs to. One that ends a query is never left out; of the
+  /// others, which belong to streams alone, only the newest waits for a slow connection.
+  void queryAnswered(net::SessionId session, const v1::QueryAnswer& answer);
   /// Sends the rejection, counts it, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Closes a session in whose place another connection continues.

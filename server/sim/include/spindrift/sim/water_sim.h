@@ -22,6 +22,7 @@
 #include <spindrift/sim/health.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_buffer.h>
+#include <spindrift/sim/surface_sample.h>
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_state/carried_state.h>
 #include <spindrift/sim_state/saved_state.h>
@@ -170,6 +171,15 @@ class WaterSim {
   std::vector<core::FrameView> takeFrames();
   /// Returns the number of levels that downsample this scene: planes, particles.
   [[nodiscard]] core::ReducedCounts reducedCounts() const;
+
+  /// Samples the present state at these points, 1 to kMaxSurfacePoints; takeSamples() returns the values with this
+  /// number. Changes nothing in the water. Returns false when there will be none: all slots are still in use by earlier
+  /// calls. kInvalidInput without a wave; kInternal when the device fails.
+  core::Result<bool> sampleAt(std::span<const SurfacePoint> points, std::uint64_t number);
+  /// Returns the values that have arrived, oldest first. Never waits.
+  std::vector<SurfaceSamples> takeSamples();
+  /// Returns the number of calls of sampleAt() whose values takeSamples() has not yet returned.
+  [[nodiscard]] std::size_t samplesInFlight() const;
 
   /// Returns the newest available health.
   [[nodiscard]] const Health& health() const { return health_; }

@@ -21,6 +21,9 @@ std::string toJson(const google::protobuf::Message& message);
 /// kInvalidInput with one line for text that is no such object or has unknown fields.
 core::Result<std::variant<v1::Command, CommandRejection>> parseCommandJson(std::string_view json);
 
+/// Parses the body of a request for the water at points, a Query, in the same way. It has points, and one answer.
+core::Result<std::variant<v1::Command, CommandRejection>> parseQueryJson(std::string_view json);
+
 /// Parses the body of a request for a room. Error: kInvalidInput with one line. Does not check whether the name is free
 /// or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);

@@ -19,13 +19,15 @@ namespace spindrift::wire {
 /// Version of the wire protocol. Clients with another major version are refused; minor versions only add fields and
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
-inline constexpr std::uint32_t kWireMinor = 9;
+inline constexpr std::uint32_t kWireMinor = 10;
 /// First minor version whose clients know planes that are not squares (count_z and width_m of their headers).
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
 inline constexpr std::uint32_t kDrainingMinor = 2;
 /// First minor version whose clients know floaters_predicted; others get floaters_fixed28.
 inline constexpr std::uint32_t kPackedFloatersMinor = 7;
+/// Limit of the points of a Query, and of those of a session together.
+inline constexpr std::size_t kQueryMaxPoints = 1024;
 /// Hello.client is cut to this length.
 inline constexpr std::size_t kClientNameMaxBytes = 64;
 /// Hello.name is cut to this length.
@@ -78,8 +80,8 @@ std::optional<CommandRejection> completeCommand(v1::Command& command, const v1::
 
 /// Checks a command that checkCommand() accepted against the scene: absent parts, splashes deeper or wider than the
 /// water or outside of it, crests too high or too long, parameters unknown, restart-only or out of range, boats and
-/// floaters too big, outside of the water or in an obstacle, gauges outside of the water, games for which the scene has
-/// no course. nullopt = allowed. `scene` has its defaults filled in.
+/// floaters too big, outside of the water or in an obstacle, gauges outside of the water, queries without a wave, games
+/// for which the scene has no course. nullopt = allowed. `scene` has its defaults filled in.
 std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, const v1::Scene& scene);
 
 }  // namespace spindrift::wire
