@@ -197,6 +197,7 @@ void main() {
     from += 0.2 * u_radius_m * bent;
   }
 #ifdef WAVE
+  float own_m = length_m;
   // Further down it is the wave's water.
   if (leaving.y < -0.05) {
     float down_m = clamp((from.y - u_floor_m) / -leaving.y, 0.0, 40.0);
@@ -227,7 +228,18 @@ void main() {
   vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
   float at_sun = dot(mirrored, u_sun_direction);
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
-  color = vec4(toDisplay(mix(mix(under, mirrored_light, fresnel) + glint * u_sun_light, froth, mist)), raised);
+  float alpha = raised;
+#ifdef WAVE
+  // Where the solids were drawn on the canvas, what is there shows through by the green share of its light that passes.
+  if (textureSize(u_behind, 0).x == 1) {
+    vec3 own_passed = exp(-u_loss_per_m * own_m);
+    float kept = own_passed.g * (1.0 - white) * (1.0 - fresnel) * (1.0 - mist);
+    under = mix(scattered * (1.0 - own_passed), lit_froth, white) / max(1.0 - kept, 0.02);
+    alpha *= 1.0 - kept;
+    fresnel = min(fresnel / max(1.0 - kept, 0.02), 1.0);
+  }
+#endif
+  color = vec4(toDisplay(mix(mix(under, mirrored_light, fresnel) + glint * u_sun_light, froth, mist)), alpha);
   gl_FragDepth = clamp(0.5 * (u_projection[3][2] / ahead_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
 #ifdef WAVE
   // Drawn in front of the wave's surface, from which it can hardly be told.
