@@ -26,10 +26,8 @@ import type { Pass } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
 import { EverySecond } from "./drawing/every_second";
 import { makeFluidPasses } from "./fluid/fluid";
-import { FluidParticles } from "./fluid/fluid_particles";
 import type { StreamedFrames } from "./frames/streamed_frames";
 import type { Sky } from "./light/sky";
-import { LookParticlesPass } from "./looks/look_particles_pass";
 import { RainRingsPass } from "./rain/rain_rings_pass";
 import { RainStreaksPass } from "./rain/rain_streaks_pass";
 import { FlatShadowPass } from "./shadows/flat_shadow_pass";
@@ -102,7 +100,7 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
   const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality }, inputs);
-  const fluid = greeting.hasParticles ? makeParticlePasses(greeting, field, solids, { frames, sky, noise, quality }) : { before: [], after: [] };
+  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality) : { before: [], after: [] };
   const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
   const edges = quality.plain ? undefined : new EdgesPass();
@@ -115,13 +113,6 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const after = [new PresentPass(sky, solids, water), ...fluid.after, ...(white?.after ?? []), streaks, lamps, glass && new GlassPass(glass), edges];
   const passes = [...before, water, ...after].filter((pass) => pass !== undefined);
   return { passes, white: white?.particles, dispose: () => passes.forEach((pass) => pass.dispose()) };
-}
-
-/** Returns the passes of particles: a liquid, or spheres where that is too expensive and the wave shows most of the water. */
-function makeParticlePasses(greeting: GreetingInfo, field: FieldPass | undefined, solids: SolidsPass, { frames, sky, noise, quality }: Pick<RoomTools, "frames" | "sky" | "noise" | "quality">): { before: Pass[]; after: Pass[] } {
-  if (!field || !quality.sparing) return makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality.fluid);
-  const particles = new FluidParticles(frames.particles, frames.clock, field.texture, greeting);
-  return { before: [particles], after: [new LookParticlesPass(particles, solids, sky, "drops")] };
 }
 
 /** Plain tiers draw the solids on the canvas, whose depth hides what is behind them; a camera in the water looks through their textures. */

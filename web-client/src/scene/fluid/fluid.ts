@@ -8,7 +8,7 @@
 import type { Texture } from "three";
 
 import type { Pass } from "../drawing/pass";
-import type { FluidQuality } from "../drawing/quality";
+import type { Quality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import type { Sky } from "../light/sky";
 import { tankColourRatio } from "../light/water_optics";
@@ -28,9 +28,11 @@ interface FluidPasses {
   after: Pass[];
 }
 
-/** `field` undefined: no wave around the particles. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, quality: FluidQuality): FluidPasses {
+/** `field` undefined: no wave around the particles. In a wave a sparing quality draws only drops. */
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, fluid: quality }: Pick<Quality, "fluid" | "sparing">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
+  // The wave shows most of the water.
+  if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing);
   const tiles = new FluidTilesPass(particles, volume);
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };

@@ -15,16 +15,16 @@ export class FluidDropsPass implements Pass {
   readonly writes = ["canvas"] as const;
   private readonly material: RawShaderMaterial;
 
-  /** `dropsCount`: drawn for each particle. */
+  /** `volume` undefined: all particles over the wave are drops. `dropsCount`: drawn for each particle. */
   constructor(
     private readonly particles: FluidParticles,
-    volume: FluidVolumePass,
+    volume: FluidVolumePass | undefined,
     solids: SolidsPass,
     sky: Sky,
     private readonly dropsCount: number,
   ) {
     const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth } };
-    this.material = makeMaterial("fluidDrop", { ...sky.uniforms, ...particles.uniforms, ...volume.uniforms, ...own }, { blending: NormalBlending, transparent: true, depthWrite: false });
+    this.material = makeMaterial("fluidDrop", { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own }, { defines: volume ? { VOLUME: 1 } : {}, blending: NormalBlending, transparent: true, depthWrite: false });
   }
 
   draw({ renderer, camera, sizePx }: Picture): void {

@@ -15,23 +15,22 @@ export class LookParticlesPass implements Pass {
   readonly writes = ["canvas"] as const;
   private readonly material: RawShaderMaterial;
 
-  /** `colour` undefined: no value is shown. "drops": as water, for plain tiers. */
+  /** `colour` undefined: no value is shown. */
   constructor(
     private readonly particles: FluidParticles,
     solids: SolidsPass,
     sky: Sky,
-    colour?: { of: "speed" | "density"; colours: LookColours } | "drops",
+    colour?: { of: "speed" | "density"; colours: LookColours },
   ) {
     const uniforms = {
       ...sky.uniforms,
       ...particles.uniforms,
-      ...(colour !== "drops" && colour?.colours.uniforms),
+      ...colour?.colours.uniforms,
       u_target_px: { value: new Vector2(1, 1) },
       u_camera_world: { value: new Matrix3() },
       u_behind_depth: { value: solids.textures.depth },
     };
-    const define = colour === "drops" ? "DROPS" : colour && (colour.of === "speed" ? "OF_SPEED" : "OF_DENSITY");
-    this.material = makeMaterial("lookParticle", uniforms, { defines: define ? { [define]: 1 } : {}, transparent: colour === "drops" });
+    this.material = makeMaterial("lookParticle", uniforms, { defines: colour ? { [colour.of === "speed" ? "OF_SPEED" : "OF_DENSITY"]: 1 } : {} });
   }
 
   draw({ renderer, camera, sizePx }: Picture): void {

@@ -1,7 +1,9 @@
-// Drops: what flies apart from the liquid. A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
+// Drops: what flies apart from the liquid, or all that is over a wave where no liquid is drawn (without VOLUME). A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
 // around it and stretched along their flight. They keep their places while it flies freely: their hash is that of its level velocity.
 #include <fluid_words>
+#ifdef VOLUME
 #include <fluid_volume>
+#endif
 
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
@@ -14,10 +16,12 @@ uniform bool u_has_water;
 flat out vec3 v_flight;    // unit direction on the screen, and width over length
 flat out vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 
+#ifdef VOLUME
 // Density of the volume at a particle between which it comes away from the liquid.
 const float kAlone = 0.30, kAmongOthers = 0.55;
 // Density (as streamed) of particles that are never apart from it.
 const float kDense = 0.7;
+#endif
 // A drop is drawn as long as it flies in this time.
 const float kExposureS = 0.02;
 const float kLeastPx = 1.6;
@@ -35,9 +39,13 @@ void main() {
   gl_PointSize = 1.0;
   v_flight = vec3(1.0, 0.0, 1.0);
   v_strength_white = vec2(0.0);
+#ifdef VOLUME
   if (particle.density > kDense) return;
   float strength = 1.0 - smoothstep(kAlone, kAmongOthers, volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
+#else
+  float strength = 1.0;
+#endif
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
   vec4 random = hash(vec3(level, u_drop));
   vec3 center_m = particle.center_m + 2.2 * u_radius_m * (random.xyz - 0.5);

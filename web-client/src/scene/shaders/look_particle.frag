@@ -1,5 +1,5 @@
 // A particle as a sphere. OF_SPEED, OF_DENSITY: in the colour of its value, which the middle shows unchanged; toward the rim it is darker.
-// DROPS: as water, in the plain tiers. Otherwise with Phong's lighting, whiter where the density is low, as in the thesis (section 3.7.1).
+// Otherwise with Phong's lighting, whiter where the density is low, as in the thesis (section 3.7.1).
 #include <sky>
 #if defined(OF_SPEED) || defined(OF_DENSITY)
 #define COLOURED
@@ -11,10 +11,6 @@ flat in float v_value;
 uniform mat4 projectionMatrix;
 uniform float u_radius_m;
 uniform mat3 u_camera_world;
-#ifdef DROPS
-uniform vec3 u_displayed_sky[3];  // zenith, middle, horizon
-uniform vec3 u_displayed_foam;
-#endif
 uniform sampler2D u_behind_depth;
 uniform vec2 u_target_px;
 layout(location = 0) out vec4 color;
@@ -27,11 +23,7 @@ void main() {
   float ahead_m = v_ahead_m - u_radius_m * normal.z;
   gl_FragDepth = clamp(0.5 * (projectionMatrix[3][2] / ahead_m - projectionMatrix[2][2]) + 0.5, 0.0, 1.0);
   if (textureLod(u_behind_depth, gl_FragCoord.xy / u_target_px, 0.0).r < gl_FragDepth) discard;
-#if defined(DROPS)
-  // Water shows what is behind it, foam is white; both are lighter above.
-  float light = mix(0.75, 1.0, smoothstep(-0.6, 0.7, (u_camera_world * normal).y));
-  color = vec4(mix(u_displayed_sky[1], u_displayed_foam, v_value) * light, mix(0.12, 0.9, v_value));
-#elif defined(COLOURED)
+#ifdef COLOURED
   color = vec4(mapped(v_value) * mix(0.55, 1.0, smoothstep(0.0, 0.75, normal.z)), 1.0);
 #else
   vec3 world_normal = u_camera_world * normal;
