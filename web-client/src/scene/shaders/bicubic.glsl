@@ -1,6 +1,11 @@
 // Include: a texture as a smooth surface through its texels (cubic B-spline), so that the grid does not show in slopes, foam and outlines.
-// Four bilinear samples stand for sixteen texels (Sigg & Hadwiger 2005).
+// Four bilinear samples stand for sixteen texels (Sigg & Hadwiger 2005). PLAIN: bilinear.
+#ifndef BICUBIC
+#define BICUBIC
 vec4 smoothTexel(sampler2D map, vec2 uv) {
+#ifdef PLAIN
+  return textureLod(map, uv, 0.0);
+#else
   vec2 size = vec2(textureSize(map, 0));
   vec2 at = uv * size - 0.5;
   vec2 f = fract(at);
@@ -13,4 +18,6 @@ vec4 smoothTexel(sampler2D map, vec2 uv) {
   vec4 places = vec4(centre - 1.0 + w1 / low, centre + 1.0 + w3 / high) / size.xyxy;
   return mix(mix(textureLod(map, places.zw, 0.0), textureLod(map, places.xw, 0.0), low.x),
              mix(textureLod(map, places.zy, 0.0), textureLod(map, places.xy, 0.0), low.x), low.y);
+#endif
 }
+#endif

@@ -1,4 +1,5 @@
-// Include: the shore of water that moves over its ground, from shore/shore_pass.ts. After <bicubic>.
+// Include: the shore of water that moves over its ground, from shore/shore_pass.ts.
+#include <bicubic>
 uniform sampler2D u_shore;
 
 // Depth over the bed (m; below 0: dry), wetness of the ground, foam.

@@ -26,7 +26,6 @@ uniform float u_darkness; // 0 by day, 1 at night
 #include <shadow>
 #endif
 #ifdef SHORE
-#include <bicubic>
 #include <shore>
 // Wet over dry albedo, by eye. Light in wet sand is scattered more often before it leaves: water between the grains makes them scatter
 // forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
