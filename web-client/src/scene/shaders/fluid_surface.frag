@@ -157,7 +157,7 @@ void main() {
   }
   if (!is_pane) at_m = crossing(u_camera_m, ray, before_m, at_m);
   vec3 surface = u_camera_m + ray * at_m;
-  float raised = smoothstep(0.4, 1.6, overWave(surface));
+  float raised = smoothstep(1.0, 2.4, overWave(surface));
   if (raised <= 0.0) discard;
   vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
   if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);

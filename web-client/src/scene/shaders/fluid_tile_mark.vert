@@ -1,5 +1,5 @@
 // Marks the tiles of the screen that a particle's kernel touches: one point per particle, as large as its square. Over a wave only
-// particles above its surface count.
+// particles that raise its surface count.
 #include <fluid_words>
 
 uniform mat4 viewMatrix;
@@ -14,7 +14,7 @@ void main() {
   vec3 center_m = unpackParticle().center_m;
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 1.0;
-  if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r) return;
+  if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r - 0.4 * u_radius_m) return;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;
   if (-seen_m.z < 0.1 * u_reach_m) return;
   gl_Position = projectionMatrix * vec4(seen_m, 1.0);
