@@ -36,7 +36,7 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing);
   const tiles = new FluidTilesPass(particles, volume);
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
-  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : tankColourRatio(size), quality);
+  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : 0.45 * tankColourRatio(size), quality);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
   // A wave has no floor of its own.
   const before = field ? [particles, volume] : [particles, volume, new FluidShadowPass(particles, volume, solids, sky, size.sideM, tankColourRatio(size))];

@@ -25,7 +25,7 @@ void main() {
     return;
   }
 #ifndef VOLUME
-  color = vec4(mix(u_displayed_sky[1], u_displayed_foam, 0.5 + 0.5 * v_strength_white.y), v_strength_white.x * (1.0 - away2 * away2));
+  color = vec4(mix(u_displayed_sky[1], u_displayed_foam, 0.5 + 0.5 * v_strength_white.y), v_strength_white.x * (1.0 - away2));
 #else
   vec2 screen = v_flight.xy * local.x + vec2(-v_flight.y, v_flight.x) * local.y;
   vec3 normal = mat3(u_camera_world) * vec3(screen, sqrt(1.0 - away2));
@@ -37,6 +37,6 @@ void main() {
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 froth = kFroth * (u_sun_light * sun * sun + u_ambient_up);
-  color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * (1.0 - away2 * away2));
+  color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * (1.0 - away2));
 #endif
 }

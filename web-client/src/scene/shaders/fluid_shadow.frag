@@ -17,7 +17,7 @@ void main() {
   float around_m = 0.25 * (texture(u_thickness, v_uv + vec2(step_uv, 0.0)).r + texture(u_thickness, v_uv - vec2(step_uv, 0.0)).r +
                            texture(u_thickness, v_uv + vec2(0.0, step_uv)).r + texture(u_thickness, v_uv - vec2(0.0, step_uv)).r);
   float mean_m = 0.5 * (middle_m + around_m);
-  float focus = clamp(1.0 + 0.4 * (middle_m - around_m) / u_apart_m, 0.45, 1.6);
+  float focus = clamp(1.0 + 1.3 * (middle_m - around_m) / u_apart_m, 0.45, 1.6);
   // Light of the sky remains where the sun is refracted away.
   vec3 light = 0.35 + 0.65 * focus * exp(-u_loss_per_m * mean_m * u_colour_ratio);
   vec2 rim = smoothstep(0.5, 0.4, abs(v_uv - 0.5));

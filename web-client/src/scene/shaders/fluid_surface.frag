@@ -40,7 +40,7 @@ const float kMist = 0.6;
 // Light that white water scatters over one particle radius.
 const float kWhiteness = 0.3;
 #ifndef WAVE
-const float kTankGlow = 1.8;  // a pale floor and walls light the water from all sides
+const float kTankGlow = 1.1;  // a pale floor and walls light the water from all sides
 #endif
 
 float distanceAt(vec2 uv) {
