@@ -128,7 +128,7 @@ describe("the panel", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
     }, [bytes.toString("base64"), file.suggestedFilename().endsWith("mp4") ? "video/mp4" : "video/webm"]);
     await player.close();
     assert.ok(seen.durationS > 0.8 && seen.durationS < 60, `${seen.durationS} s`);
-    assert.equal(seen.widthPx, 404, "0.45 pixels per pixel of the window at quality minimal, even");
+    assert.equal(seen.widthPx, 584, "0.65 pixels per pixel of the window at quality minimal, even");
     assert.equal(await film.getAttribute("aria-pressed"), "false");
   });
 });
