@@ -255,7 +255,10 @@ class Water:
         """The water at `points` ([count, 2]: x and z in metres) now, as one Answer of arrays. At most 1,024 points per client; points
         outside of the water are marked. `velocities` count in streams only. Raises what commands raise, and ValueError for shapes."""
         async with self._asked(queries.fields(points, velocities), 0) as inbox:
-            return await asyncio.wait_for(inbox.first(), self._answer_within_s)
+            try:
+                return await asyncio.wait_for(inbox.first(), self._answer_within_s)
+            except asyncio.TimeoutError:
+                raise NoAnswer(f"the water at the points did not come within {self._answer_within_s:g} s") from None
 
     async def stream_query(self, points, *, velocities=None, interval_ticks: int = 1) -> AsyncIterator[Answer]:
         """An Answer now, and one whenever `interval_ticks` have passed, until the iteration ends. `velocities` ([2] for all points, or

@@ -1,5 +1,6 @@
 // The real server as a child process: waits for its ready line, stops it by signal.
 import { spawn } from "node:child_process";
+import { createServer } from "node:net";
 import { createInterface } from "node:readline";
 import { fileURLToPath } from "node:url";
 
@@ -80,4 +81,13 @@ async function stop(child, ended, signal) {
   const { code, signal: last_signal } = await ended;
   clearTimeout(timer);
   return { code, signal: last_signal };
+}
+
+/** A port of the loopback that nobody listens on now. */
+export async function freePort() {
+  const probe = createServer().listen(0, "127.0.0.1");
+  await new Promise((resolve) => probe.on("listening", resolve));
+  const { port } = probe.address();
+  await new Promise((resolve) => probe.close(resolve));
+  return port;
 }

@@ -9,13 +9,14 @@
 
 #include "open_room.h"
 #include "server_fixture.h"
+#include "silent_outlets.h"
 
 namespace spindrift::test {
 
 using namespace std::chrono_literals;
 
 /// Records the room's outlets.
-struct RecordingOutlets final : rooms::RoomOutlets {
+struct RecordingOutlets final : SilentOutlets {
   int scene_count = 0;
   int recovered_count = 0;
   int frame_count = 0;
@@ -27,17 +28,8 @@ struct RecordingOutlets final : rooms::RoomOutlets {
   std::vector<std::uint64_t> rejected_ids;
 
   void sceneChanged(const rooms::Room&) override { ++scene_count; }
-  void timeChanged(const rooms::Room&, bool, double, std::uint32_t) override {}
-  void parameterChanged(const rooms::Room&, const std::string&, double) override {}
-  void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
-  void peopleChanged(const rooms::Room&, const v1::People&) override {}
-  void strokesChanged(const rooms::Room&, const v1::Strokes&) override {}
-  void lessonChanged(const rooms::Room&, const v1::Lesson&) override {}
-  void gameChanged(const rooms::Room&, const v1::Game&) override {}
-  void wasReset(const rooms::Room&, std::uint32_t) override {}
   void fidelityChanged(const rooms::Room&, const std::string& how) override { fidelity_news.push_back(how); }
   void hasRecovered(const rooms::Room&, const std::string&) override { ++recovered_count; }
-  void closed(const rooms::Room&) override {}
   void commandApplied(const rooms::Command& command, const v1::Ack&) override { applied.push_back(command.id()); }
   void commandRejected(const rooms::Command&, const wire::CommandRejection& rejection) override {
     rejected.push_back(rejection.message());

@@ -1,7 +1,6 @@
 // The npm package spindrift-client, installed as a user would, with the real server and with one that this test writes.
 import { execFile, spawnSync } from "node:child_process";
 import { readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { join } from "node:path";
 import { pathToFileURL } from "node:url";
 import { promisify } from "node:util";
@@ -9,7 +8,7 @@ import { WebSocketServer } from "ws";
 
 import { create, fromBinary, toBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
 import { Layer, ClientMessageSchema, ServerMessageSchema } from "../../web-client/client/gen/spindrift/v1/wire_pb";
-import { repository, startServer } from "../browser/server.mjs";
+import { freePort, repository, startServer } from "../browser/server.mjs";
 import { installClient, kClientDist, npm } from "./installed_client.mjs";
 
 const kGolden = join(repository, "tests/golden");
@@ -42,14 +41,6 @@ async function connected(url = server.url, options = {}) {
 
 /** Resolves to what a promise was rejected with. */
 const failure = (promise) => promise.then((value) => expect.fail(`resolved to ${JSON.stringify(value)}`), (error) => error);
-
-async function freePort() {
-  const probe = createServer().listen(0, "127.0.0.1");
-  await new Promise((resolve) => probe.on("listening", resolve));
-  const { port } = probe.address();
-  await new Promise((resolve) => probe.close(resolve));
-  return port;
-}
 
 function bytesOf(message) {
   return toBinary(ServerMessageSchema, create(ServerMessageSchema, { message }));

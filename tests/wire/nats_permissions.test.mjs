@@ -8,21 +8,13 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { connect as connectTls } from "node:tls";
 
-import { binary, repository, startServer } from "../browser/server.mjs";
+import { binary, freePort, repository, startServer } from "../browser/server.mjs";
 import { Layer, Packing } from "../../web-client/client/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
 const kPath = `${process.env.PATH}:/usr/sbin:/usr/bin:/bin`;
 const has = (program, argument) => spawnSync(program, [argument], { env: { PATH: kPath } }).error === undefined;
 const kStartLimitMs = 20_000;
-
-async function freePort() {
-  const probe = createServer().listen(0, "127.0.0.1");
-  await new Promise((resolve) => probe.on("listening", resolve));
-  const { port } = probe.address();
-  await new Promise((resolve) => probe.close(resolve));
-  return port;
-}
 
 describe.skipIf(!has("nats-server", "--version") || !has("openssl", "version"))("NATS with the documented permissions", () => {
   const folder = mkdtempSync(join(tmpdir(), "spindrift-nats-"));

@@ -2,24 +2,15 @@
 // or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { get } from "node:https";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
 
-import { repository, startServer } from "../browser/server.mjs";
+import { freePort, repository, startServer } from "../browser/server.mjs";
 
 const has = (program) => spawnSync(program, ["-h"], { env: { PATH: "/usr/sbin:/usr/bin:/bin" } }).error === undefined;
 const kStartLimitMs = 10_000;
-
-async function freePort() {
-  const probe = createServer().listen(0, "127.0.0.1");
-  await new Promise((resolve) => probe.on("listening", resolve));
-  const { port } = probe.address();
-  await new Promise((resolve) => probe.close(resolve));
-  return port;
-}
 
 /** Returns the blocks of documentation in this language: for the host as a whole, and for a path. */
 function documented(language) {

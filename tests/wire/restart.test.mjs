@@ -1,26 +1,17 @@
 // A server that ends and is started again: what probes, sessions, scripted clients and the page's own connection see.
 import { spawn } from "node:child_process";
 import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { createServer } from "node:net";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
 
 import { PageConnection } from "../../web-client/src/net/page_connection";
-import { binary, repository, startServer } from "../browser/server.mjs";
+import { binary, freePort, repository, startServer } from "../browser/server.mjs";
 
 /** From the signal to the exit of a server whose clients take part. */
 // The server's own bounds after SIGTERM: 1 s of --drain-s, 3 s for sessions, 5 s for the disk, 2 s for water that is being built.
 const kEndLimitMs = 11000;
 const kPatienceMs = 60_000;
-
-async function freePort() {
-  const probe = createServer().listen(0, "127.0.0.1");
-  await new Promise((resolve) => probe.on("listening", resolve));
-  const { port } = probe.address();
-  await new Promise((resolve) => probe.close(resolve));
-  return port;
-}
 
 async function until(what, holds) {
   for (const begin = Date.now(); Date.now() - begin < kPatienceMs; await new Promise((resolve) => setTimeout(resolve, 20))) {

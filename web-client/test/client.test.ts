@@ -37,6 +37,8 @@ describe("addresses", () => {
 describe("fields of commands", () => {
   it("are those of the wire, in inner messages and lists too", () => {
     expect(kCommandNames).toContain("removeGauge");
+    // Nobody would get its answer.
+    expect(() => checkFields("query", {})).toThrow(/^there is no command "query"/);
     expect(() => checkFields("spawnBoat", { boat: { xM: 1 } })).not.toThrow();
     expect(() => checkFields("spawnBoat", { boat: { x: 1 } })).toThrow(/^spawnBoat\.boat has no "x"; it has .*xM/);
     expect(() => checkFields("stroke", { points: [{ xM: 0 }, { xM: true }] })).toThrow(/^stroke\.points\[1\]\.xM takes a number, not true$/);

@@ -2,17 +2,14 @@
 import { fromJson, getOption, hasOption, type DescField, type DescMessage, type JsonValue } from "@bufbuild/protobuf";
 
 import { parameter } from "../gen/spindrift/v1/options_pb";
-import { CommandSchema } from "../gen/spindrift/v1/wire_pb";
-import { checkFields, kCommandNames } from "../water/commands";
-
-const actions = CommandSchema.oneofs[0]!.fields;
+import { checkFields, kActions, kCommandNames } from "../water/commands";
 
 /** Names of all commands. */
 export const kCommands = kCommandNames as [string, ...string[]];
 
 /** A line for each command and, indented, for each of its fields: type or unit and bounds, and what it is if left out. */
 export function describeCommands(): string {
-  return actions.map((action) => [action.localName, ...linesOf(action.message!, "  ")].join("\n")).join("\n");
+  return [...kActions.values()].map((action) => [action.localName, ...linesOf(action.message!, "  ")].join("\n")).join("\n");
 }
 
 function linesOf(message: DescMessage, indent: string): string[] {
@@ -32,7 +29,7 @@ function typeOf(field: DescField): string {
 export function fieldsOf(command: string, json: Record<string, unknown>): object {
   checkFields(command, json);
   try {
-    return fromJson(actions.find(({ localName }) => localName === command)!.message!, json as JsonValue);
+    return fromJson(kActions.get(command)!.message!, json as JsonValue);
   } catch (error) {
     throw new TypeError(`${command}: ${error instanceof Error ? error.message : String(error)}`);
   }

@@ -1,5 +1,5 @@
 // Commands by name: every action of Command in wire.proto is a method that takes the fields of its message.
-import { getOption, hasOption, ScalarType, type DescMessage } from "@bufbuild/protobuf";
+import { getOption, hasOption, ScalarType, type DescField, type DescMessage } from "@bufbuild/protobuf";
 
 import type { ParameterInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
@@ -17,20 +17,25 @@ export interface Ack {
   gaugeId: number;
 }
 
+/** A query's answer is a message of its own, which this client does not read: docs/javascript.md says how to ask. */
+const kWithoutMethod = "query";
+type CommandName = Exclude<CommandAction["case"], typeof kWithoutMethod>;
+
 type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K }>["value"];
 
 /** Each sends its command. The promise is resolved when the server has carried it out, and rejected with Rejected, ConnectionLost or
  *  NoAnswer; fields that the command does not have are a TypeError. Units and bounds stand at the fields. */
-export type Commands = { [K in CommandAction["case"]]: (fields?: Fields<K>) => Promise<Ack> };
+export type Commands = { [K in CommandName]: (fields?: Fields<K>) => Promise<Ack> };
 
-const actions = new Map(CommandSchema.oneofs[0]!.fields.map((field) => [field.localName, field]));
+/** The commands, by name. */
+export const kActions: ReadonlyMap<string, DescField> = new Map(CommandSchema.oneofs[0]!.fields.filter(({ localName }) => localName !== kWithoutMethod).map((field) => [field.localName, field]));
 
 /** Names of all commands. */
-export const kCommandNames = [...actions.keys()] as CommandAction["case"][];
+export const kCommandNames = [...kActions.keys()] as CommandName[];
 
 /** Throws a TypeError for a command or a field that there is not. */
 export function checkFields(name: string, fields: unknown): void {
-  const message = actions.get(name)?.message;
+  const message = kActions.get(name)?.message;
   if (!message) throw new TypeError(`there is no command ${JSON.stringify(name)}; there are ${kCommandNames.join(", ")}`);
   checkMessage(message, fields, name);
 }
@@ -48,7 +53,7 @@ function checkMessage(message: DescMessage, value: unknown, path: string): void 
   }
 }
 
-/** Fields of commands are no 64-bit numbers and no bytes. */
+/** Commands have neither 64-bit numbers nor bytes. */
 function typeOf(scalar: ScalarType): "boolean" | "string" | "number" {
   return scalar === ScalarType.BOOL ? "boolean" : scalar === ScalarType.STRING ? "string" : "number";
 }
@@ -60,7 +65,7 @@ export function offence({ case: name, value: fields }: CommandAction, field: str
     return { value: fields.value, bound: described && boundOf(described) };
   }
   const [head, ...path] = field.split(".");
-  const action = actions.get(name)!;
+  const action = kActions.get(name)!;
   if (head !== action.name) return { value: undefined, bound: undefined };
   let message = action.message;
   let value: unknown = fields;

@@ -220,7 +220,7 @@ export class Water {
   // ---- commands and requests
 
   /** Sends a command by its name; each name is a method too. At most 64 wait for their answers. */
-  async command<K extends CommandAction["case"]>(name: K, fields?: Parameters<Commands[K]>[0]): Promise<Ack> {
+  async command<K extends keyof Commands>(name: K, fields?: Parameters<Commands[K]>[0]): Promise<Ack> {
     const action = { case: name, value: fields ?? {} } as CommandAction;
     checkFields(name, action.value);
     if (this.failure) throw this.failure;

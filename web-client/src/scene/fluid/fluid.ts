@@ -1,7 +1,7 @@
 // Particles as one liquid: a volume of their density, through which the rays of the picture go.
 //   particles  frames -> particles on the GPU
 //   volume     particles -> density in cells
-//   shadow     volume -> light on the floor of a tank; where there is no wave
+//   shadow     volume -> light on the floor of a tank; in rooms without a wave
 //   tiles      particles -> tiles of the screen with liquid; the surface is searched for there only
 //   surface    volume, sky, solids -> canvas
 //   drops      particles apart from the liquid -> canvas
@@ -20,6 +20,9 @@ import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
 
+/** Share of the ratio of water_optics.ts that counts here: with all of it a tank of particles is opaque. */
+const kClearness = 0.45;
+
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {
   /** Before the water. */
@@ -36,7 +39,7 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing);
   const tiles = new FluidTilesPass(particles, volume);
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
-  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : 0.45 * tankColourRatio(size), quality);
+  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : kClearness * tankColourRatio(size), quality);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
   // A wave has no floor of its own.
   const before = field ? [particles, volume] : [particles, volume, new FluidShadowPass(particles, volume, solids, sky, size.sideM, tankColourRatio(size))];

@@ -1,7 +1,7 @@
 // The particles of the time shown, on the GPU: the 12 bytes of a plain particle unchanged, as six u16 in one interleaved buffer, so no
 // JavaScript runs per particle. Several passes draw them as points. Reads the particle frames. Writes
 // the particles.
-import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector2, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer, type WebGLRenderTarget } from "three";
+import { BufferGeometry, InterleavedBuffer, InterleavedBufferAttribute, Points, Scene, Vector2, Vector3, type PerspectiveCamera, type RawShaderMaterial, type RenderTarget, type Texture, type WebGLRenderer } from "three";
 
 import type { ParticleFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
@@ -18,7 +18,7 @@ export class FluidParticles implements Pass {
   readonly name = "particles";
   readonly reads = ["frames"] as const;
   readonly writes = ["particles"] as const;
-  /** For the materials of fluid_particle.vert, besides u_target_px. */
+  /** For shaders that include fluid_words.glsl, and for those that compare particles with the wave. */
   readonly uniforms: Uniforms;
   private readonly scene = new Scene();
   private readonly points = new Points<BufferGeometry, RawShaderMaterial>(new BufferGeometry());
@@ -84,15 +84,6 @@ export class FluidParticles implements Pass {
     this.points.material = material;
     renderer.setRenderTarget(target as never);
     renderer.render(this.scene, camera);
-  }
-
-  /** The same for a target that has `scale` times the canvas's size; nothing where there are no particles. */
-  renderScaled({ renderer, camera, sizePx }: Picture, material: RawShaderMaterial, target: WebGLRenderTarget, scale: number): void {
-    if (this.isEmpty) return;
-    const countPx = material.uniforms["u_target_px"]!.value as Vector2;
-    countPx.copy(sizePx).multiplyScalar(scale).ceil();
-    target.setSize(countPx.x, countPx.y);
-    this.render(renderer, camera, material, target);
   }
 
   dispose(): void {

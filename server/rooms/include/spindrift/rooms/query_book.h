@@ -53,7 +53,7 @@ class QueryBook {
   /// Enters single queries again whose answer was lost. Streams among them are left out.
   void putBack(std::vector<Taken> taken);
 
-  /// Removes the queries for which this holds, and returns them.
+  /// Removes the queries for which `holds` returns true, and returns them.
   std::vector<SurfaceQuery> removeIf(const std::function<bool(const SurfaceQuery&)>& holds);
   [[nodiscard]] bool isEmpty() const { return queries_.empty(); }
 
