@@ -24,7 +24,7 @@ from .queries import Answer
 from .v1 import api_pb2 as api
 from .v1 import wire_pb2 as wire
 
-WIRE_VERSION = (1, 10)
+WIRE_VERSION = (1, 11)
 """What this client speaks: major, minor."""
 _SUBPROTOCOL = "spindrift.v1"
 _MAX_MESSAGE_BYTES = 64 * 1024 * 1024

@@ -19,7 +19,7 @@ namespace spindrift::wire {
 /// Version of the wire protocol. Clients with another major version are refused; minor versions only add fields and
 /// messages.
 inline constexpr std::uint32_t kWireMajor = 1;
-inline constexpr std::uint32_t kWireMinor = 10;
+inline constexpr std::uint32_t kWireMinor = 11;
 /// First minor version whose clients know planes that are not squares (count_z and width_m of their headers).
 inline constexpr std::uint32_t kRectangleMinor = 1;
 /// First minor version whose clients know Draining.
