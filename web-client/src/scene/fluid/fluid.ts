@@ -21,7 +21,7 @@ import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
 
 /** Share of the ratio of water_optics.ts that counts here: with all of it a tank of particles is opaque. */
-const kClearness = 0.45;
+const kClearness = 0.7;
 
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {

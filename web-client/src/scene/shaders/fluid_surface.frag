@@ -33,12 +33,12 @@ const float kStepCells = 0.85;
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
-const float kTorn = 0.16;
+const float kTorn = 0.3;
 const float kLaceRadii = 31.0;
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.6;
 // Light that white water scatters over one particle radius.
-const float kWhiteness = 0.3;
+const float kWhiteness = 0.14;
 #ifndef WAVE
 const float kTankGlow = 1.1;  // a pale floor and walls light the water from all sides
 #endif

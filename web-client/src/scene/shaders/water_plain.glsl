@@ -30,8 +30,8 @@ out vec2 v_at;          // on the still water (m)
 // exp(-x) for x >= 0.
 vec3 fading(vec3 x) { return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667))); }
 
-// `slope` of the simulated water; `bed_m`: depth of the bed below the still water.
-void preparePlain(vec2 slope, float bed_m) {
+// `slope` and `curvature` of the simulated water; `bed_m`: depth of the bed below the still water.
+void preparePlain(vec2 slope, float curvature, float bed_m) {
   vec2 at = v_world.xz;
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
@@ -45,6 +45,8 @@ void preparePlain(vec2 slope, float bed_m) {
   vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
 #ifdef FOAM
   foam_shade.r = max(foam_shade.r, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+#elif defined(OPEN_SEA)
+  foam_shade.r = max(foam_shade.r, crestFoam(v_top_m, curvature));
 #endif
 #ifdef OPEN_SEA
   // Waves smaller than a pixel widen the reflection instead of tilting it.
