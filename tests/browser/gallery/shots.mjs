@@ -32,7 +32,7 @@ const kShots = {
   regatta: { tick: 300 },
   river_mouth: { tick: 780, historyTicks: 300 },
   ripple_tank: { tick: 540 },
-  rain_rings: { tick: 420 },
+  rain_rings: { tick: 312 },
   splash: { tick: 84 },
   splash_particles: { tick: 84 },
   splash_wave: { tick: 102 },

@@ -54,7 +54,7 @@ void main() {
   if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r + 0.3 * u_radius_m) return;
   // Few are large. The first stands for the mist among them.
   bool is_mist = u_drop == 0.0;
-  float radius_m = is_mist ? 2.0 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
+  float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
   if (is_mist) center_m = particle.center_m;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;
   if (-seen_m.z < 4.0 * u_radius_m) return;

@@ -65,7 +65,8 @@ void main() {
     length_px += speed_mps * kExposureS * px_per_m;
     v_flight.xy = flight / speed_mps;
   }
-  v_strength = is_mist ? 0.16 * (1.0 - age) * smoothstep(0.0, 0.08, age) : 0.85 * (1.0 - age * age);
+  // Mist that hangs in the air is too thin to be seen.
+  v_strength = is_mist ? 0.17 * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.4, 2.5, length(a_motion.xyz)) : 0.85 * (1.0 - age * age);
 #else
   v_strength = 1.0;
 #endif

@@ -28,7 +28,7 @@ const spread = (random: () => number, by: number): number => by * (2 * random() 
 /** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
 function dropRadiusM(random: () => number): number {
   const u = random();
-  return u < 0.2 ? 0.06 + 0.14 * random() : 0.004 + 0.016 * u * u * u;
+  return u < 0.15 ? 0.06 + 0.12 * random() : 0.004 + 0.016 * u * u * u;
 }
 
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
