@@ -19,7 +19,7 @@ const kShots = {
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 162 },
   breaking_wave_particles: { tick: 96 },
-  breaking_wave_wave: { tick: 168 },
+  breaking_wave_wave: { tick: 150 },
   dam_break: { tick: 60 },
   flume: { tick: 912 },
   flotsam: { tick: 300 },

@@ -18,7 +18,7 @@ flat out vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 
 #ifdef VOLUME
 // Density of the volume at a particle between which it comes away from the liquid.
-const float kAlone = 0.30, kAmongOthers = 0.55;
+const float kAlone = 0.30, kAmongOthers = 0.55, kAmongWhite = 0.9;
 // Density (as streamed) of particles that are never apart from it.
 const float kDense = 0.7;
 #endif
@@ -43,7 +43,7 @@ void main() {
   v_strength_white = vec2(0.0);
 #ifdef VOLUME
   if (particle.density > kDense) return;
-  float strength = 1.0 - smoothstep(kAlone, kAmongOthers, volumeAt(particle.center_m).r);
+  float strength = 1.0 - smoothstep(kAlone, u_has_water ? mix(kAmongOthers, kAmongWhite, particle.foam) : kAmongOthers, volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
 #else
   float strength = 1.0;

@@ -53,6 +53,8 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   float side_m = max(u_extent_m.x, u_extent_m.y);
   float pixel_m = distance_m * distance_m * 2.0 / (projectionMatrix[1][1] * u_resolution.y * max(u_camera_m.y - v_world.y, 0.1));
   vec2 seen = 1.0 - smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), vec2(pixel_m) / u_tiles_m);
+  // Far out the grid's cells are longer than the swell: its slopes at the vertices would be streaks.
+  seen.x *= 1.0 - smoothstep(0.1, 0.6, v_share_away.y / side_m);
   float variance = dot(u_slope_variances, (1.0 - seen) * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * smoothstep(0.5, 6.0, length(at) / side_m) + 0.0006;
   float rough = sqrt(variance);
   v_slopes = vec4(mix(seen.x * textureLod(u_swell, at / u_tiles_m.x, 0.0).gb, slope, v_share_away.x), seen.y, 1.6 * rough);
