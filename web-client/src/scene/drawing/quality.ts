@@ -71,8 +71,8 @@ export type QualityChoice = TierName | "automatic";
 
 export const kTiers: Record<TierName, Tier> = {
   minimal: {
-    maxPixelRatio: 0.65, tankPixelRatio: 0.55, frameRateMaxHz: 10, surfaceCellsCount: 56, samplesCount: 1, plain: true, sparing: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
-    fluid: { cellsPerSpacing: 1, scale: 0.42, partsCount: 2, halvingsCount: 3, dropsCount: 3 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
+    maxPixelRatio: 0.65, tankPixelRatio: 0.5, frameRateMaxHz: 10, surfaceCellsCount: 56, samplesCount: 1, plain: true, sparing: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
+    fluid: { cellsPerSpacing: 0.8, scale: 0.45, partsCount: 2, halvingsCount: 3, dropsCount: 3 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined, shadows: undefined,
   },
   low: {

@@ -326,7 +326,7 @@ void main() {
     foam *= 0.4 + 1.05 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
-    float strength = min(1.05 * foam * sqrt(foam) + 0.1, 0.8);
+    float strength = min(1.25 * foam * sqrt(foam) + 0.1, 0.8);
     // Far away the lace is finer than a pixel, and its edges would be dots.
     vec2 at_step = fwidth(at);
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
