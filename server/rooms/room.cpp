@@ -118,11 +118,10 @@ Room::TimePoint Room::due() const {
   return next;
 }
 
-void Room::run(TimePoint now, const ServerLoad& load) {
+void Room::run(TimePoint now) {
   is_woken_ = false;
   ++round_count_;
   ran_ = now;
-  data_.load = load;
   data_.water->bind();
   data_.water->reloadChangedShaders();
   if (const auto built = change_.takeBuilt(now)) waterChanged(*built, now);

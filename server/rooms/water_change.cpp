@@ -127,7 +127,7 @@ void WaterChange::waterReplaced(bool keeps_steps) {
 WaterChange::Outcome WaterChange::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                              double max_ms) const {
   const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
-  if (room_.load.people_count <= own_count || tick_ms <= std::max(max_ms, room_.tick_cost.tick_ms())) return {};
+  if (room_.load().people_count <= own_count || tick_ms <= std::max(max_ms, room_.tick_cost.tick_ms())) return {};
   return wire::rejection(
       v1::REJECT_REASON_BUSY, field,
       fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
@@ -209,7 +209,7 @@ double WaterChange::loadAt(v1::Fidelity level) const {
   const double per_s_now = room_.time.speed() / room_.water->sim().derived().tick_s;
   const double per_s_then = room_.time.speed() / then->tick_s;
   const double more_ms_per_s = room_.tick_cost.predict_ms(*then) * per_s_then - room_.tick_cost.tick_ms() * per_s_now;
-  return room_.load.thread_share + more_ms_per_s / 1e3;
+  return room_.load().busy_share + more_ms_per_s / 1e3;
 }
 
 // Another layout of the particles

@@ -59,6 +59,7 @@ class RoomTest : public testing::Test {
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     watchEverything();
+    room_->loadFrom([] { return rooms::ServerLoad{.people_count = 1}; });
     room_->start(Clock::now());
   }
   void TearDown() override {
@@ -82,7 +83,7 @@ class RoomTest : public testing::Test {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > deadline) return false;
-      room_->run(Clock::now(), {.people_count = 1});
+      room_->run(Clock::now());
       std::this_thread::sleep_for(1ms);
     }
     return true;

@@ -42,7 +42,7 @@ class WorkBudget {
   Clock::time_point updated_{};
 };
 
-/// Lives on the simulation thread, except for the functions marked "any thread".
+/// Lives on the room's thread, except for the functions marked "any thread".
 class CommandDesk {
  public:
   using TimePoint = CommandQueue::TimePoint;

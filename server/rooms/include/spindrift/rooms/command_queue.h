@@ -16,7 +16,7 @@
 
 namespace spindrift::rooms {
 
-/// Many producers on any thread, one consumer on the simulation thread.
+/// Many producers on any thread, one consumer on the room's thread.
 class CommandQueue {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;

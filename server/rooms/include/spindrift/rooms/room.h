@@ -1,5 +1,5 @@
-// One room: a scene, its water, its clock, its people and their commands. Lives on the simulation thread, except for
-// the functions marked "any thread".
+// One room: a scene, its water, its clock, its people and their commands. Lives on one thread at a time (RoomThread),
+// except for the functions marked "any thread".
 #pragma once
 
 #include <atomic>
@@ -71,17 +71,21 @@ class Room {
   /// Returns what the sessions of the room need of its frames: they change it. Never null.
   [[nodiscard]] const std::shared_ptr<core::DemandTable>& demand() const { return data_.demand; }
 
-  // Simulation thread.
+  // The room's thread.
   void start(TimePoint now) { data_.time.start(now); }
   /// `on_wake` is called on any thread when due() has come nearer, at most once per run(). Set it before other threads
   /// know the room.
   void onWake(std::function<void()> on_wake) { on_wake_ = std::move(on_wake); }
+  /// `load` is called on the room's thread. Without it the room has the server to itself.
+  void loadFrom(std::function<ServerLoad()> load) { data_.load = std::move(load); }
   /// Returns the time of the next needed run(): of the next tick, or for a room that stands still, of what it waits
   /// for.
   [[nodiscard]] TimePoint due() const;
   /// Takes commands, steps unless paused or asleep, requests a frame when one is due and watched, and passes on
-  /// finished frames. At most one tick per call, so that rooms share the thread.
-  void run(TimePoint now, const ServerLoad& load = {});
+  /// finished frames. At most one tick per call.
+  void run(TimePoint now);
+  /// Unbinds the water, so that another thread can run the room.
+  void unbind() { data_.water->release(); }
 
   [[nodiscard]] const sim::WaterSim& water() const { return data_.water->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.

@@ -1,6 +1,7 @@
 // What the parts of a room work on.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -25,10 +26,9 @@
 
 namespace spindrift::rooms {
 
-/// Load of the server, as of this round of a room.
 struct ServerLoad {
   std::size_t people_count = 0;  ///< present ones, in all rooms
-  double thread_share = 0.0;     ///< share of its time that the simulation thread was busy lately
+  double busy_share = 0.0;  ///< share of its time that the room's thread worked lately, or all together of the machine
 };
 
 /// Changes that the clients have not been told about yet.
@@ -45,7 +45,7 @@ struct News {
   std::string fidelity{};                      ///< the same, after the fidelity changed
 };
 
-/// Belongs to a room, and outlives its parts. For the simulation thread, except for name, access, roster and demand.
+/// Belongs to a room, and outlives its parts. For the room's thread, except for name, access, roster and demand.
 struct RoomData {
   const Room& self;  ///< whose data it is
   const std::string name;
@@ -64,7 +64,7 @@ struct RoomData {
   Referee referee{};                  ///< of the game in the room
   std::vector<PlacedGauge> gauges{};  ///< that people have placed, oldest first
   QueryBook queries{};
-  ServerLoad load{};
+  std::function<ServerLoad()> load = [] { return ServerLoad{}; };
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};
 };

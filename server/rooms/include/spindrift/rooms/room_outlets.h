@@ -14,8 +14,8 @@ namespace spindrift::rooms {
 
 class Room;
 
-/// Called on the simulation thread; must not block. Changes are reported once per round, before the answers to the
-/// commands that caused them.
+/// Called on the rooms' threads; must not block. Changes of a room are reported once per round, before the answers to
+/// the commands that caused them.
 class RoomOutlets {
  public:
   virtual ~RoomOutlets() = default;

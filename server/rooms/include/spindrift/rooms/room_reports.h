@@ -35,7 +35,7 @@ class GrowthNews {
   TimePoint next_{};
 };
 
-/// Lives on the simulation thread, except for snapshot() and lesson().
+/// Lives on the room's thread, except for snapshot() and lesson().
 class RoomReports {
  public:
   using TimePoint = RoomTime::TimePoint;

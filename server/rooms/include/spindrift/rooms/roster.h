@@ -1,5 +1,5 @@
 // The people of one room, the owners of its boats, and the lesson with its teams. Thread-safe: sessions come and leave
-// on I/O threads, ownership of boats changes on the simulation thread.
+// on I/O threads, ownership of boats changes on the room's thread.
 #pragma once
 
 #include <chrono>

@@ -75,6 +75,7 @@ class RoomWater {
   }
   /// Makes its GL context current. Call it first whenever another context may be current.
   void bind() { water_->bind(); }
+  void release() { water_->release(); }
   /// gpu::Context::reloadChangedShaders().
   void reloadChangedShaders() { water_->context().reloadChangedShaders(); }
   void step() {
