@@ -133,14 +133,14 @@ class SimulationThread {
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   bool is_woken_ = false;  ///< since the last round: the builder has finished a piece of work
+  mutable std::mutex rooms_mutex_;
+  std::vector<std::unique_ptr<RoomThread>> threads_;  ///< of the open rooms; guarded by rooms_mutex_
   std::unique_ptr<water::WaterBuilder> builder_;
   std::unique_ptr<RoomOpener> opener_;         ///< used by the thread only
   std::vector<RoomOpener::Opening> openings_;  ///< likewise
   /// Never closed: the first of those at the start. In a cluster none begins here, and it may run elsewhere.
   std::string default_room_{core::kDefaultRoom};
-  mutable std::mutex rooms_mutex_;
-  std::vector<std::unique_ptr<RoomThread>> threads_;  ///< of the open rooms; guarded by rooms_mutex_, as the next
-  std::string device_line_;
+  std::string device_line_;  ///< guarded by rooms_mutex_
   std::vector<std::string> summary_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};
