@@ -125,6 +125,7 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   net::ServerOptions out;
   out.allowed_origins = options.origins;
   out.embedding_origins = options.parents;
+  out.serves_foxglove = options.serves_foxglove;
   out.address = options.address;
   out.port = options.port;
   out.thread_count = options.thread_count;

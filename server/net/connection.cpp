@@ -339,7 +339,7 @@ asio::awaitable<void> Connection::upgrade(const Request& request) {
   Refused why = Refused::kFull;
   const std::string max_count = std::to_string(context_.options.max_session_count);
   if (place.is_in_share) {
-    decision = decideUpgrade(request, buffer_.size(),
+    decision = decideUpgrade(request, buffer_.size(), context_.options.serves_foxglove,
                              [this](const std::string& room) { return context_.application.acceptSession(room); });
     why = decision.is_room_refused ? Refused::kRoom : Refused::kHandshake;
   } else if (place.is_free) {
@@ -356,8 +356,9 @@ asio::awaitable<void> Connection::upgrade(const Request& request) {
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  const SessionOpening opening{.room = std::move(decision.room), .peer = peer_, .is_onlooker = decision.is_onlooker};
-  co_await session_->run(request, opening, address_, decision.echo_subprotocol);
+  SessionOpening opening{std::move(decision.room), peer_, decision.is_onlooker, std::move(decision.subprotocol),
+                         std::move(decision.token)};
+  co_await session_->run(request, std::move(opening), address_);
 }
 
 asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsigned version, bool keep_alive) {
