@@ -175,6 +175,7 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
   UpgradeDecision decision;
   decision.room = *std::move(named);
   decision.is_onlooker = !looks->empty() && !is_foxglove;
+  decision.is_foxglove = is_foxglove;
   if (!tokens->empty()) decision.token = std::move(tokens->front());
   // RFC 6455 section 11.3.4: the list may be split over several headers.
   bool is_protocol_offered = false;

@@ -115,6 +115,7 @@ struct UpgradeDecision {
   bool is_room_refused = false;  ///< the refusal is that of `accept_room`
   std::string room{};            ///< "" is the default room
   bool is_onlooker = false;      ///< the address has `?onlooker`
+  bool is_foxglove = false;      ///< the address is below /foxglove
   std::string subprotocol{};     ///< offered by the client, and spoken from now on; "": none was offered
   std::string
       token{};  ///< secret: `access_token` of an address below /foxglove, where clients have no other place for it

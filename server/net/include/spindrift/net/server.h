@@ -254,7 +254,8 @@ struct ServerOptions {
   /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are not browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
-  bool serves_foxglove = false;  ///< /foxglove is a WebSocket as well: Application::translatorFor()
+  /// Sessions at /foxglove at a time: there each one costs the translation of its frames. 0: there is no such address.
+  std::size_t foxglove_session_max_count = 0;
   /// Origins whose pages may show `/?embed` in a frame (checkParentOrigin()). No page may show anything else in one.
   std::vector<std::string> embedding_origins{};
   /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits
