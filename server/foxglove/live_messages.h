@@ -15,7 +15,7 @@ namespace spindrift::foxglove::live {
 
 using Outgoing = core::Translator::Outgoing;
 
-/// Of JSON from clients.
+/// Limit of JSON from clients.
 inline constexpr std::size_t kJsonMaxDepth = 16;
 
 enum class StatusLevel : std::uint8_t { kInfo = 0, kWarning = 1, kError = 2 };
