@@ -262,6 +262,28 @@ describe("channels", () => {
   });
 });
 
+describe("a room that stands still", () => {
+  it("is shown to every new channel, also of a layer that is watched already", async () => {
+    const pause = async (paused) => {
+      const answer = await fetch(`${server.url}api/v1/rooms/other/commands`, {
+        method: "POST",
+        headers: { Authorization: `Bearer ${kOperator}`, "Content-Type": "application/json" },
+        body: JSON.stringify({ set_paused: { paused } }),
+      });
+      expect(answer.status).toBe(200);
+    };
+    await pause(true);
+    const studio = new Studio({ path: "/foxglove/other" });
+    await studio.ready();
+    for (const topic of ["/water/surface", "/layers/surface", "/boats", "/tf", "/water/particles"]) {
+      const channel = studio.subscribe(topic);
+      await channel.next();
+    }
+    await pause(false);
+    await studio.close();
+  });
+});
+
 describe("parameters", () => {
   it("are read, set, and told to who watches them", async () => {
     const studio = new Studio();
