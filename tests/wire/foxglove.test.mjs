@@ -42,8 +42,8 @@ afterAll(async () => {
 
 /** Foxglove's client, with what has come kept until it is read. */
 class Studio {
-  constructor({ path = "/foxglove", token = kOperator, protocols = ["foxglove.sdk.v1", "foxglove.websocket.v1"], port = server.port } = {}) {
-    this.ws = new WebSocket(`ws://127.0.0.1:${port}${path}${token === "" ? "" : `?access_token=${token}`}`, protocols);
+  constructor({ path = "/foxglove", token = kOperator, protocols = ["foxglove.sdk.v1", "foxglove.websocket.v1"], port = server.port, origin } = {}) {
+    this.ws = new WebSocket(`ws://127.0.0.1:${port}${path}${token === "" ? "" : `?access_token=${token}`}`, protocols, origin === undefined ? {} : { origin });
     this.closed = new Promise((resolve) => this.ws.on("close", (code, reason) => resolve({ code, reason: String(reason) })));
     this.refused = new Promise((resolve) => this.ws.on("unexpected-response", (_request, response) => resolve(response.statusCode)));
     this.client = new FoxgloveClient({ ws: this.ws });
@@ -151,6 +151,10 @@ describe("a connection", () => {
     } finally {
       await plain.stop("SIGTERM");
     }
+  });
+
+  it("is refused to pages of other origins", async () => {
+    expect(await new Studio({ origin: "https://elsewhere.example" }).refused).toBe(403);
   });
 
   it("ends with a readable status if its token is unknown", async () => {
