@@ -54,7 +54,10 @@ core::Translator::Incoming LiveSession::open() {
 }
 
 core::Translator::Incoming LiveSession::receive(core::ByteView message, bool is_text) {
-  is_text ? readText(message) : readBinary(message);
+  if (is_text)
+    readText(message);
+  else
+    readBinary(message);
   if (fault_count_ > 1) fault_ += " (and " + std::to_string(fault_count_ - 1) + " more)";
   if (fault_count_ > 0) answer(status(StatusLevel::kError, fault_));
   fault_.clear();
@@ -176,18 +179,18 @@ TopicSet LiveSession::subscribed() const {
 
 // Parameters
 
-std::vector<std::string> LiveSession::namesIn(const json::object& message) const {
-  std::vector<std::string> out;
+std::set<std::string> LiveSession::namesIn(const json::object& message) const {
+  std::set<std::string> out;
   const json::array& names = listIn(message, "parameterNames");
   for (const json::value& name : names) {
-    if (name.is_string() && parameters_.contains(std::string(name.get_string()))) out.emplace_back(name.get_string());
+    if (name.is_string() && parameters_.contains(std::string(name.get_string()))) out.emplace(name.get_string());
   }
   if (names.empty())
-    for (const auto& [name, value] : parameters_) out.push_back(name);
+    for (const auto& [name, value] : parameters_) out.insert(name);
   return out;
 }
 
-std::vector<std::pair<std::string, double>> LiveSession::valuesOf(const std::vector<std::string>& names) const {
+std::vector<std::pair<std::string, double>> LiveSession::valuesOf(const std::set<std::string>& names) const {
   std::vector<std::pair<std::string, double>> out;
   for (const std::string& name : names) {
     if (const auto known = parameters_.find(name); known != parameters_.end()) out.emplace_back(*known);
@@ -219,7 +222,7 @@ void LiveSession::setParameters(const json::object& message) {
       fault("a parameter needs a name");
       continue;
     }
-    change.names.push_back(*name);
+    change.names.insert(*name);
     if (!value || !value->is_number()) {
       fault("parameter " + quoted(*name) + ": the value has to be a number");
     } else if (commands_.size() >= kLiveCommandMaxCount) {

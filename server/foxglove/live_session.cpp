@@ -86,10 +86,7 @@ void LiveSession::greet(const v1::Greeting& greeting, std::vector<Outgoing>& out
   for (const v1::ParameterDescription& parameter : greeting.parameters())
     parameters_[parameter.path()] = parameter.value();
   std::erase_if(watched_parameters_, [&](const std::string& name) { return !parameters_.contains(name); });
-  if (!watched_parameters_.empty()) {
-    out.push_back(parameterValues(
-        valuesOf(std::vector<std::string>(watched_parameters_.begin(), watched_parameters_.end())), std::nullopt));
-  }
+  if (!watched_parameters_.empty()) out.push_back(parameterValues(valuesOf(watched_parameters_), std::nullopt));
   clock_ns_.reset();
 }
 

@@ -39,7 +39,7 @@ class LiveSession final : public core::Translator {
   /// setParameters whose commands are under way.
   struct Change {
     std::optional<std::string> id;
-    std::vector<std::string> names;
+    std::set<std::string> names;
     std::size_t left_count = 0;
   };
 
@@ -59,9 +59,9 @@ class LiveSession final : public core::Translator {
   void fault(std::string why);
   /// Subscribes to the layer as the client's subscriptions need it.
   void watch(v1::Layer layer);
-  /// Returns the names of a request, or all that there are if it has none.
-  std::vector<std::string> namesIn(const boost::json::object& message) const;
-  [[nodiscard]] std::vector<std::pair<std::string, double>> valuesOf(const std::vector<std::string>& names) const;
+  /// Returns the known names of a request, or all that there are if it has none.
+  [[nodiscard]] std::set<std::string> namesIn(const boost::json::object& message) const;
+  [[nodiscard]] std::vector<std::pair<std::string, double>> valuesOf(const std::set<std::string>& names) const;
 
   // To the client.
   void greet(const v1::Greeting& greeting, std::vector<Outgoing>& out);
