@@ -14,6 +14,7 @@
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/service/sessions.h>
+#include <spindrift/service/translators.h>
 
 namespace spindrift::service {
 
@@ -37,6 +38,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
 
   void serverStarts(net::Hub& served) override { sessions_.serve(served); }
   core::Result<void> acceptSession(const std::string& room) override;
+  std::unique_ptr<core::Translator> translatorFor(const net::SessionOpening& opening) override {
+    return translatorOf(opening);
+  }
   void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
   void sessionLevelChanged(net::SessionId session, core::Level level) override {
