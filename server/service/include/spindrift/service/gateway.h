@@ -1,5 +1,5 @@
 // Connects the network to the rooms of this process: their sessions, their requests and their frames. Implements
-// net::Application; called on I/O threads, the simulation thread and the encoder thread.
+// net::Application; called on I/O threads, the rooms' threads and the encoder thread.
 #pragma once
 
 #include <functional>
@@ -52,7 +52,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   // RoomOutlets interface
   /// Sends a new greeting to all sessions of the room; their subscriptions stay valid.
   void sceneChanged(const rooms::Room& room) override;
-  void timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) override;
+  void timeChanged(const rooms::Room& room, const v1::RoomState& state) override;
+  void clockChanged(const rooms::Room& room, const std::string& how, std::uint32_t person_id) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
