@@ -72,6 +72,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kPlaceGauge, {kPlayer, kLight}, &Act::placeGauge, nullptr},
       {C::kRemoveGauge, {kPlayer, kLight}, &Act::removeGauge, nullptr},
       {C::kQuery, {kViewer, kLight}, &Act::ask, nullptr},
+      {C::kMoveBoat, {kPlayer, kLight}, &Act::moveBoat, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action

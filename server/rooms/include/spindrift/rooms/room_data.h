@@ -45,6 +45,9 @@ struct News {
   std::string fidelity{};                      ///< the same, after the fidelity changed
 };
 
+/// By boat: who set its pose last (MoveBoat).
+using Movers = std::map<std::uint32_t, core::Sender>;
+
 /// Belongs to a room, and outlives its parts. For the simulation thread, except for name, access, roster and demand.
 struct RoomData {
   const Room& self;  ///< whose data it is
@@ -64,6 +67,7 @@ struct RoomData {
   Referee referee{};                  ///< of the game in the room
   std::vector<PlacedGauge> gauges{};  ///< that people have placed, oldest first
   QueryBook queries{};
+  Movers movers{};  ///< of boats on the water
   ServerLoad load{};
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};
