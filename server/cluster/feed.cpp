@@ -314,4 +314,12 @@ bool Feed::queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answ
   return sendToNodeOf(sender.session_id, std::move(message));
 }
 
+bool Feed::hullsFelt(const core::Sender& sender, const v1::HullForces& forces) {
+  v1::FromRoom message;
+  v1::HullsFelt& felt = *message.mutable_hulls_felt();
+  felt.set_session(numberAtNode(sender.session_id));
+  *felt.mutable_forces() = forces;
+  return sendToNodeOf(sender.session_id, std::move(message));
+}
+
 }  // namespace spindrift::cluster

@@ -64,6 +64,7 @@ class Feed final : public service::RemoteAudience {
   bool commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
   bool queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer) override;
+  bool hullsFelt(const core::Sender& sender, const v1::HullForces& forces) override;
   void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
 

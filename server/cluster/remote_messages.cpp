@@ -54,6 +54,8 @@ void RemoteRoom::take(const v1::FromRoom& message) {
       return takeOutcome(message.outcome());
     case v1::FromRoom::kQueryAnswered:
       return sessions_.queryAnswered(message.query_answered().session(), message.query_answered().answer());
+    case v1::FromRoom::kHullsFelt:
+      return sessions_.hullsFelt(message.hulls_felt().session(), message.hulls_felt().forces());
     case v1::FromRoom::kDisplacedSession:
       return sessions_.displace(message.displaced_session());
     case v1::FromRoom::kClosed:

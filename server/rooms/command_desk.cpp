@@ -74,6 +74,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kQuery, {kViewer, kLight}, &Act::ask, nullptr},
       {C::kTakeClock, {kPlayer, kLight}, &Act::takeClock, nullptr},
       {C::kReleaseClock, {kPlayer, kLight}, &Act::releaseClock, nullptr},
+      {C::kMoveBoat, {kPlayer, kLight}, &Act::moveBoat, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action

@@ -120,7 +120,7 @@ Room::TimePoint Room::due() const {
   TimePoint next = stands_still ? ran_ + kStandingInterval : data_.time.due();
   const auto no_later_than = [&next](TimePoint when) { next = std::min(next, when); };
   if (const auto change = change_.due(ran_)) no_later_than(*change);
-  const bool awaits_device = data_.water->sim().framesInFlight() > 0 || queries_.isWaiting();
+  const bool awaits_device = data_.water->sim().framesInFlight() > 0 || queries_.isWaiting() || hulls_.isWaiting();
   if (!change_.isLost() && awaits_device) no_later_than(ran_ + kReadbackPollInterval);
   if (!stands_still) return next;
   if (is_woken_ || (data_.time.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
@@ -173,6 +173,7 @@ void Room::run(TimePoint now) {
 void Room::handOver() {
   frames_.handOver();
   queries_.handOver();
+  hulls_.handOver();
 }
 
 void Room::step(TimePoint now) {
@@ -240,6 +241,7 @@ Room::TimePoint Room::timedStep() {
   data_.steps.ticked();
   data_.diary.ticked();
   queries_.sample(QueryBook::Which::kDue);
+  hulls_.ticked();
   return end;
 }
 
@@ -263,6 +265,7 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
     actions_.waterChanged(built.water == Water::kContinues);
     queries_.waterChanged(built.water == Water::kContinues);
     if (built.water != Water::kContinues) actions_.dropSteps("the scene has changed: the steps have ended");
+    hulls_.waterChanged();
     publishVitals(now);
     reports_.sceneChanged();
   }

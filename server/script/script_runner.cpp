@@ -259,6 +259,7 @@ class Runner {
       const auto saved = boats_.find(step.boat());
       if (saved == boats_.end()) return {false, "no boat was saved as \"" + step.boat() + "\""};
       if (command.has_control_boat()) command.mutable_control_boat()->set_boat_id(saved->second);
+      if (command.has_move_boat()) command.mutable_move_boat()->set_boat_id(saved->second);
       if (command.has_take_boat()) command.mutable_take_boat()->set_boat_id(saved->second);
       if (command.has_remove_boat()) command.mutable_remove_boat()->set_boat_id(saved->second);
     }

@@ -151,6 +151,12 @@ void Gateway::queryAnswered(const rooms::Room&, const core::Sender& sender, cons
   sessions_.queryAnswered(sender.session_id, answer);
 }
 
+void Gateway::hullsFelt(const rooms::Room&, const core::Sender& sender, const v1::HullForces& forces) {
+  if (sender.request_id != 0) return;  // a request has had its answer
+  if (cluster_.audience && cluster_.audience->hullsFelt(sender, forces)) return;
+  sessions_.hullsFelt(sender.session_id, forces);
+}
+
 void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
   encoder_->submit(room.name(), room.demand(), std::move(frame));
 }

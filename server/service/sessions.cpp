@@ -386,6 +386,10 @@ void Sessions::queryAnswered(net::SessionId session, const v1::QueryAnswer& answ
   hub().sendState(session, topic::kQueries, wire::queryAnswer(answer));
 }
 
+void Sessions::hullsFelt(net::SessionId session, const v1::HullForces& forces) {
+  hub().sendState(session, topic::kHullForces, wire::hullForces(forces));
+}
+
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {
   counters_.rejected(rejection.reason());
   access_.audit().rejected(command, rejection);

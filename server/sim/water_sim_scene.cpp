@@ -142,7 +142,7 @@ void WaterSim::Parts::pressBodies() {
   if (!wave) return;
   wave->clearPressure();
   uniforms.bindUniform(SIM_UNIFORMS);
-  if (boats) boats->press(wave->pressureHead());
+  if (boats) boats->press(*wave);
   if (floaters) floaters->press(wave->pressureHead());
 }
 

@@ -92,6 +92,8 @@ void WaterSim::recover(const Health& breach) {
   if (parts_->wave) parts_->wave->clearPressure();
   if (parts_->boats) parts_->boats->mend();
   if (parts_->floaters) parts_->floaters->mend();
+  if (parts_->boats && parts_->boats->anyMoved())
+    parts_->pressBodies();  // their next poses take away what they pressed
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
   ++revision_;

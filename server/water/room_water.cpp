@@ -29,6 +29,22 @@ wire::CommandRejection whyNot(const v1::SetParameter& change, core::Scene wanted
   return wire::rejection(reason(), change.path(), message);
 }
 
+sim::HullMotion toMotion(const v1::MoveBoat& move) {
+  return {.boat_id = move.boat_id(),
+          .x_m = move.x_m(),
+          .y_m = move.y_m(),
+          .z_m = move.z_m(),
+          .heading_rad = move.heading_rad(),
+          .pitch_rad = move.pitch_rad(),
+          .roll_rad = move.roll_rad(),
+          .velocity_x_mps = move.velocity_x_mps(),
+          .velocity_y_mps = move.velocity_y_mps(),
+          .velocity_z_mps = move.velocity_z_mps(),
+          .yaw_rate_radps = move.yaw_rate_radps(),
+          .pitch_rate_radps = move.pitch_rate_radps(),
+          .roll_rate_radps = move.roll_rate_radps()};
+}
+
 /// Returns the rejection with `reason`, or BUSY, if the water did not take a command.
 template <typename T>
 RoomWater::Outcome outcomeOf(const core::Result<T>& done, std::string field = "",
@@ -79,6 +95,12 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
         const v1::ControlBoat& control = command.control_boat();
         return outcomeOf(room.sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio()),
                          "control_boat.boat_id", v1::REJECT_REASON_UNKNOWN_BOAT);
+      };
+    case Command::kMoveBoat:
+      return [](RoomWater& room, const Command& command) {
+        const v1::MoveBoat& move = command.move_boat();
+        return outcomeOf(move.ends() ? room.sim().releaseBoat(move.boat_id()) : room.sim().moveBoat(toMotion(move)),
+                         "move_boat.boat_id", v1::REJECT_REASON_UNKNOWN_BOAT);
       };
     case Command::kRemoveBoat:
       return [](RoomWater& room, const Command& command) {

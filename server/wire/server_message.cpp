@@ -87,6 +87,10 @@ core::SharedBytes queryAnswer(const v1::QueryAnswer& answer) {
   return messageWith(&v1::ServerMessage::mutable_query_answer, answer);
 }
 
+core::SharedBytes hullForces(const v1::HullForces& forces) {
+  return messageWith(&v1::ServerMessage::mutable_hull_forces, forces);
+}
+
 core::SharedBytes levelChanged(core::Level level) {
   v1::LevelChanged out;
   out.set_level(codec::toWire(level));

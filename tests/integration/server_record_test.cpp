@@ -57,6 +57,10 @@ class Recorded : public ServerTest {
     ASSERT_TRUE(one.apply(setParameter("wave.depth_m", 1.2)));
     ASSERT_TRUE(one.apply(spawnBoat(-2, 1)));
     ASSERT_TRUE(one.apply(controlBoat(2, 1, 0.3)));
+    v1::Command move;
+    move.mutable_move_boat()->set_boat_id(1);
+    move.mutable_move_boat()->set_velocity_x_mps(0.5);
+    ASSERT_TRUE(one.apply(move));
     ASSERT_TRUE(one.runFor(10));
     ASSERT_TRUE(one.apply(reset()));
     ASSERT_TRUE(one.apply(splash(0.2)));
@@ -74,7 +78,7 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   live();
   const auto outcome = replayed(logFile());
   ASSERT_TRUE(outcome) << outcome.error().message;
-  EXPECT_EQ(outcome->command_count, 7U);
+  EXPECT_EQ(outcome->command_count, 8U);
   EXPECT_GE(outcome->hash_count, 8U);
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
   EXPECT_FALSE(outcome->truncation);

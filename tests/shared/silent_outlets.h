@@ -22,6 +22,7 @@ struct SilentOutlets : rooms::RoomOutlets {
   void commandApplied(const rooms::Command&, const v1::Ack&) override {}
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override {}
   void queryAnswered(const rooms::Room&, const core::Sender&, const v1::QueryAnswer&) override {}
+  void hullsFelt(const rooms::Room&, const core::Sender&, const v1::HullForces&) override {}
   void frameReady(const rooms::Room&, core::FrameView) override {}
 };
 

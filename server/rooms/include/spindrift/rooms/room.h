@@ -18,6 +18,7 @@
 #include <spindrift/rooms/room_actions.h>
 #include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_frames.h>
+#include <spindrift/rooms/room_hulls.h>
 #include <spindrift/rooms/room_keeping.h>
 #include <spindrift/rooms/room_queries.h>
 #include <spindrift/rooms/room_reports.h>
@@ -145,6 +146,7 @@ class Room {
   RoomReports reports_{data_};
   RoomFrames frames_{data_};
   RoomQueries queries_{data_};
+  RoomHulls hulls_{data_};
   WaterChange change_{data_};
   RoomActions actions_{data_};
   CommandDesk desk_{data_, actions_, change_};

@@ -62,6 +62,7 @@ class RoomActions {
   Outcome spawnBoat(const Command& command);
   Outcome controlBoat(const Command& command);
   Outcome removeBoat(const Command& command);
+  Outcome moveBoat(const Command& command);
   Outcome takeBoat(const Command& command);
   Outcome spawnFloater(const Command& command);
   Outcome holdFloater(const Command& command);
@@ -81,6 +82,8 @@ class RoomActions {
 
  private:
   [[nodiscard]] Outcome writeAhead(const Command& command) { return room_.diary.writeAhead(command.message); }
+  /// Rejects a command about a boat of another person, or of nobody unless the sender is an operator.
+  [[nodiscard]] Outcome refuseBoatOfOthers(const Command& command, std::uint32_t boat_id, const char* field) const;
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return room_.water->boatIds().contains(boat_id); }
 
   [[nodiscard]] std::string holderNames() const;

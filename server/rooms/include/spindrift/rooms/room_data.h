@@ -49,6 +49,9 @@ struct News {
   std::uint32_t clock_person_id = 0;           ///< whose command that was; 0: nobody's
 };
 
+/// By boat: who set its pose last (MoveBoat).
+using Movers = std::map<std::uint32_t, core::Sender>;
+
 /// Belongs to a room, and outlives its parts. For the room's thread, except for name, access, roster and demand.
 struct RoomData {
   const Room& self;  ///< whose data it is
@@ -70,6 +73,7 @@ struct RoomData {
   Referee referee{};                  ///< of the game in the room
   std::vector<PlacedGauge> gauges{};  ///< that people have placed, oldest first
   QueryBook queries{};
+  Movers movers{};  ///< of boats on the water
   std::function<ServerLoad()> load = [] { return ServerLoad{}; };
   v1::Fidelity chosen_fidelity = water->scene().fidelity();  ///< or chosen by a person; adapting never goes above it
   News news{};

@@ -52,6 +52,9 @@ class RoomOutlets {
   /// The surface at the points that this sender asks for, at one tick; it belongs to its queries only.
   virtual void queryAnswered(const Room& room, const core::Sender& sender, const v1::QueryAnswer& answer) = 0;
 
+  /// Forces of the water, in a tick, on boats that this sender moves.
+  virtual void hullsFelt(const Room& room, const core::Sender& sender, const v1::HullForces& forces) = 0;
+
   /// A frame that the room's demand() asked for. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;
 };

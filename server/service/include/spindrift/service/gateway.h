@@ -65,6 +65,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void queryAnswered(const rooms::Room& room, const core::Sender& sender, const v1::QueryAnswer& answer) override;
+  void hullsFelt(const rooms::Room& room, const core::Sender& sender, const v1::HullForces& forces) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
   void commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;

@@ -28,6 +28,7 @@ core::SharedBytes people(const v1::People& people);
 core::SharedBytes strokes(const v1::Strokes& strokes);
 core::SharedBytes lesson(const v1::Lesson& lesson);
 core::SharedBytes queryAnswer(const v1::QueryAnswer& answer);
+core::SharedBytes hullForces(const v1::HullForces& forces);
 core::SharedBytes game(const v1::Game& game);
 core::SharedBytes levelChanged(core::Level level);
 core::SharedBytes draining(const v1::Draining& draining);
