@@ -4,7 +4,7 @@
 
 #include <spindrift/foxglove/channels.h>
 
-#include "schema_set.h"
+#include <spindrift/foxglove/schema_set.h>
 
 namespace spindrift::foxglove {
 namespace {

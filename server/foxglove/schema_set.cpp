@@ -1,4 +1,4 @@
-#include "schema_set.h"
+#include <spindrift/foxglove/schema_set.h>
 
 #include <set>
 

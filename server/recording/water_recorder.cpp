@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <spindrift/codec/frame_decoder.h>
+#include <spindrift/foxglove/channels.h>
+#include <spindrift/foxglove/schema_set.h>
 #include <spindrift/recording/water_recorder.h>
-
-#include "descriptor_set.h"
 
 namespace spindrift::recording {
 namespace {
@@ -23,8 +23,19 @@ std::uint64_t nanoseconds(WaterRecorder::WallClock::time_point time) {
 /// Of a time from the wire, which may be anything.
 std::uint64_t nanoseconds(double time_s) {
   constexpr double kMax_s = 1e9;
-  return std::isfinite(time_s) ? static_cast<std::uint64_t>(1e9 * std::clamp(time_s, 0.0, kMax_s)) : 0;
+  return std::isfinite(time_s) ? foxglove::nanoseconds(std::min(time_s, kMax_s)) : 0;
 }
+
+core::SharedBytes shared(const std::string& bytes) {
+  return core::share({bytes.begin(), bytes.end()});
+}
+
+/// All but the layers as they come, which have topics of their own here.
+const foxglove::TopicSet kFoxgloveTopics = [] {
+  foxglove::TopicSet out;
+  for (std::size_t topic = 0; topic <= static_cast<std::size_t>(foxglove::Topic::kDiagnostics); ++topic) out.set(topic);
+  return out;
+}();
 
 std::string topicName(v1::Layer layer) {
   std::string name = v1::Layer_Name(layer).substr(std::string_view("LAYER_").size());
@@ -53,11 +64,13 @@ core::Result<std::unique_ptr<WaterRecorder>> WaterRecorder::begin(RecorderSetup 
 WaterRecorder::WaterRecorder(RecorderSetup setup, WallClock::time_point now, RecordingFiles files)
     : setup_(std::move(setup)), begin_(now), files_(std::move(files)) {
   const auto& message = *v1::ServerMessage::descriptor();
-  const auto topic = [&, set = core::share(descriptorSetOf(message))](std::string name) {
+  const auto topic = [&, set = shared(foxglove::schemaSetOf(message))](std::string name) {
     return Topic{.name = std::move(name), .schema_name = message.full_name(), .descriptor_set = set};
   };
   for (int layer = 0; layer < v1::Layer_ARRAYSIZE; ++layer)
     layer_topics_.push_back(topic(v1::Layer_IsValid(layer) ? topicName(static_cast<v1::Layer>(layer)) : ""));
+  for (const foxglove::Channel& channel : foxglove::allChannels())
+    foxglove_topics_.push_back({std::string(channel.name), channel.schema_name, shared(channel.schema)});
   greeting_topic_ = topic("/spindrift/greeting");
   state_topic_ = topic("/spindrift/state");
 }
@@ -90,6 +103,7 @@ void WaterRecorder::keep(const v1::ServerMessage& message, core::ByteView bytes)
     case v1::ServerMessage::kGreeting:
       greeting_ = std::move(copy);
       metadata_ = describeGreeting(message.greeting());
+      converter_.take(message.greeting().boat_list());
       return states_.clear();  // a greeting includes them
     case v1::ServerMessage::kParameterChanged:
       replaces = "parameter " + message.parameter_changed().path();
@@ -99,6 +113,7 @@ void WaterRecorder::keep(const v1::ServerMessage& message, core::ByteView bytes)
       break;
     case v1::ServerMessage::kBoatList:
       replaces = "boats";
+      converter_.take(message.boat_list());
       break;
     default:  // an event has passed
       return;
@@ -128,13 +143,25 @@ core::Result<void> WaterRecorder::take(core::ByteView bytes, WallClock::time_poi
                     .log_time_ns = log_time_ns_,
                     .publish_time_ns = publish_time_ns_});
   keep(*message, bytes);
-  if (!added || !setup_.conversion || end_) return added;
-  for (const ConvertedMessage& one : setup_.conversion(*message)) {
-    auto converted =
-        add({.topic = *one.topic, .data = one.data, .log_time_ns = log_time_ns_, .publish_time_ns = publish_time_ns_});
-    if (!converted) return converted;
+  return added && !end_ && setup_.is_for_foxglove ? convert(*message) : added;
+}
+
+core::Result<void> WaterRecorder::convert(const v1::ServerMessage& message) {
+  core::Result<std::vector<foxglove::Message>> made = std::vector<foxglove::Message>();
+  if (message.has_frame()) made = converter_.convert(message.frame(), kFoxgloveTopics);
+  if (message.has_diagnostics()) made = converter_.convert(message.diagnostics(), kFoxgloveTopics);
+  if (!made) {
+    ++counts_.skipped_count;
+    return {};
   }
-  return added;
+  for (const foxglove::Message& one : *made) {
+    auto added = add({.topic = foxglove_topics_[static_cast<std::size_t>(one.topic)],
+                      .data = core::viewOf(one.bytes),
+                      .log_time_ns = log_time_ns_,
+                      .publish_time_ns = one.time_ns});
+    if (!added || end_) return added;
+  }
+  return {};
 }
 
 core::Result<void> WaterRecorder::describe(std::uint64_t log_time_ns) {

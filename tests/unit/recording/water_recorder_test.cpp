@@ -10,11 +10,11 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 
 struct WaterRecorderTest : testing::Test {
-  std::unique_ptr<WaterRecorder> begin(Conversion conversion = {}) {
+  std::unique_ptr<WaterRecorder> begin(bool is_for_foxglove = false) {
     auto recorder =
         WaterRecorder::begin({.files = {.folder = "/", .name = "run", .file_max_bytes = kMiB, .max_bytes = 10 * kMiB},
                               .max_duration = std::chrono::seconds(60),
-                              .conversion = std::move(conversion)},
+                              .is_for_foxglove = is_for_foxglove},
                              now, disk.opener());
     EXPECT_TRUE(recorder);
     return *std::move(recorder);
@@ -104,18 +104,19 @@ TEST_F(WaterRecorderTest, TimesOfTheWireMayBeAnything) {
   EXPECT_EQ(recorder->counts().message_count, 4u);
 }
 
-TEST_F(WaterRecorderTest, ConvertedMessagesHaveTheirOwnTopics) {
-  const Topic topic{.name = "/extra", .schema_name = "x.Y", .descriptor_set = core::share({1})};
-  const auto recorder = begin([&](const v1::ServerMessage& message) {
-    std::vector<ConvertedMessage> out;
-    if (message.has_frame()) out.push_back({&topic, {1, 2, 3}});
-    return out;
-  });
+TEST_F(WaterRecorderTest, FoxglovesSchemasAreAddedOnRequest) {
+  const auto recorder = begin(true);
   ASSERT_TRUE(recorder->take(*greeting(), now));
-  ASSERT_TRUE(recorder->take(*frame(v1::LAYER_BODIES, 1, true), now));
-  EXPECT_EQ(recorder->counts().message_count, 3u);
+  v1::ServerMessage diagnostics;
+  diagnostics.mutable_diagnostics()->set_gauges_time_s(2.0);
+  diagnostics.mutable_diagnostics()->add_gauges()->set_name("pier");
+  ASSERT_TRUE(recorder->take(*codec::serialized(diagnostics), now));
+  EXPECT_EQ(recorder->counts().message_count, 4u) << "greeting, diagnostics, the same and a gauge for Foxglove";
+  ASSERT_TRUE(recorder->take(*frame(v1::LAYER_SURFACE, 1, true), now));
+  EXPECT_EQ(recorder->counts().message_count, 5u);
+  EXPECT_EQ(recorder->counts().skipped_count, 1u) << "a layer that is damaged";
   ASSERT_TRUE(recorder->finish());
-  EXPECT_TRUE(disk.contains("run_0001.mcap", "/extra"));
+  EXPECT_TRUE(disk.contains("run_0001.mcap", "spindrift.v1.GaugeReading"));
 }
 
 }  // namespace

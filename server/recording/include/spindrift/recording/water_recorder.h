@@ -4,31 +4,25 @@
 
 #include <chrono>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <spindrift/core/bytes.h>
 #include <spindrift/core/result.h>
+#include <spindrift/foxglove/converter.h>
 #include <spindrift/recording/recording_files.h>
 #include <spindrift/v1/wire.pb.h>
 
 namespace spindrift::recording {
 
-/// Further messages that are made from one of the wire. The topics outlive the recorder.
-struct ConvertedMessage {
-  const Topic* topic = nullptr;
-  core::Bytes data;
-};
-using Conversion = std::function<std::vector<ConvertedMessage>(const v1::ServerMessage&)>;
-
 struct RecorderSetup {
   FilesSetup files;
   std::chrono::milliseconds max_duration{};  ///< by the wall clock
-  Conversion conversion{};                   ///< empty: none
+  bool is_for_foxglove = false;              ///< also records messages of Foxglove's schemas; takes plain layers
 };
 
 /// One thread at a time.
@@ -54,7 +48,7 @@ class WaterRecorder {
 
   struct Counts {
     std::uint64_t message_count = 0;
-    std::uint64_t skipped_count = 0;    ///< Outcome::kSkipped
+    std::uint64_t skipped_count = 0;    ///< Outcome::kSkipped, or not to be converted
     std::uint64_t malformed_count = 0;  ///< messages that could not be parsed
     std::uint64_t written_bytes = 0;
   };
@@ -66,6 +60,8 @@ class WaterRecorder {
   core::Result<void> add(const Entry& entry);
   /// Writes what each file begins with: metadata, and the messages that describe the room now.
   core::Result<void> describe(std::uint64_t log_time_ns);
+  /// Adds the messages of Foxglove's schemas that are made from this one.
+  core::Result<void> convert(const v1::ServerMessage& message);
   /// Keeps a message that describes the room until another one replaces it.
   void keep(const v1::ServerMessage& message, core::ByteView bytes);
   [[nodiscard]] const Topic* topicOf(const v1::ServerMessage& message) const;
@@ -74,8 +70,10 @@ class WaterRecorder {
   const WallClock::time_point begin_;
   RecordingFiles files_;
   std::vector<Topic> layer_topics_;  ///< by v1::Layer
+  std::vector<Topic> foxglove_topics_;  ///< by foxglove::Topic
   Topic greeting_topic_;
   Topic state_topic_;
+  foxglove::Converter converter_;
   std::map<std::string, std::string> metadata_;  ///< of the newest greeting
   core::Bytes greeting_;                         ///< the newest; empty: none has come
   std::map<std::string, core::Bytes> states_;    ///< since then, by what they replace; at most kStateMaxCount
