@@ -3,7 +3,6 @@
 #include <foxglove/schemas.pb.h>
 
 #include <spindrift/foxglove/channels.h>
-
 #include <spindrift/foxglove/schema_set.h>
 
 namespace spindrift::foxglove {

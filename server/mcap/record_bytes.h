@@ -27,7 +27,7 @@ enum class Opcode : std::uint8_t {
   kDataEnd = 0x0f,
 };
 
-/// Of a record before its content: opcode and length.
+/// Size of a record's opcode and length, before its content.
 inline constexpr std::size_t kRecordHeadBytes = 9;
 /// First and last bytes of a file.
 inline constexpr std::string_view kMagic{"\x89MCAP0\r\n", 8};

@@ -25,7 +25,7 @@ inline constexpr std::size_t kNameMaxBytes = 64;
 /// Returns whether this is the name of a recording: 1 to kNameMaxBytes letters, digits, '_' or '-', and so no path.
 bool isRecordingName(std::string_view name);
 
-/// Where the files are, and their bounds.
+/// Folder, name and bounds of the files.
 struct FilesSetup {
   std::filesystem::path folder;
   std::string name;  ///< without its ending

@@ -69,7 +69,7 @@ class WaterRecorder {
   const RecorderSetup setup_;
   const WallClock::time_point begin_;
   RecordingFiles files_;
-  std::vector<Topic> layer_topics_;  ///< by v1::Layer
+  std::vector<Topic> layer_topics_;     ///< by v1::Layer
   std::vector<Topic> foxglove_topics_;  ///< by foxglove::Topic
   Topic greeting_topic_;
   Topic state_topic_;
