@@ -12,6 +12,7 @@ namespace spindrift::script {
 namespace {
 
 constexpr std::chrono::milliseconds kReviewInterval{100};
+constexpr std::chrono::milliseconds kGoodbye{500};
 constexpr double kRate_hz = 60.0;
 
 v1::ScriptClient setupOf(const RecordRoomOptions& options) {
@@ -65,6 +66,7 @@ core::Result<RecordRoomReport> recordRoom(const RecordRoomOptions& options, cons
     }
   }
   client.disconnect(false);
+  pool->runFor(kGoodbye, [&] { return client.end().has_value(); });
   if (recorder) {
     auto finished = recorder->finish();
     if (result) result = finished;

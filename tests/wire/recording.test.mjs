@@ -1,6 +1,6 @@
 // Recordings that other programs open, read by @mcap/core: what is in them, their bounds, and how they end.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync } from "node:fs";
+import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
@@ -19,6 +19,16 @@ import { Client } from "./client.mjs";
 const kPatienceMs = 60_000;
 const kMiB = 1 << 20;
 const kScene = ["--scene", `${repository}/tests/browser/scene.textproto`];
+/** A scene with every layer. */
+const kAllLayers = `
+  name: "all_layers"
+  wave { resolution_count: 96 side_m: 16 depth_m: 1.5 damping_per_s: 0.2 }
+  particles { count: 1024 layers_count: 2 boundary_x: BOUNDARY_WALL boundary_z: BOUNDARY_WALL }
+  coupling {}
+  foam { surface: true }
+  boats { capacity_count: 4 }
+  floaters { capacity_count: 8 }
+  stream { frame_rate_hz: 20 }`;
 const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 
 const folder = mkdtempSync(join(tmpdir(), "spindrift-recording-"));
@@ -71,7 +81,8 @@ function keyOf(bytes) {
 describe("a recording by a request", () => {
   let server;
   beforeAll(async () => {
-    server = await startServer(0, [...kScene, "--room", `marina=${repository}/tests/browser/marina.textproto`, "--recordings", join(folder, "server")]);
+    writeFileSync(join(folder, "all_layers.textproto"), kAllLayers);
+    server = await startServer(0, ["--scene", join(folder, "all_layers.textproto"), "--room", `marina=${repository}/tests/browser/marina.textproto`, "--recordings", join(folder, "server")]);
   });
   afterAll(() => server?.stop("SIGTERM"));
   const pathOf = (name) => join(folder, "server", name);
@@ -84,13 +95,15 @@ describe("a recording by a request", () => {
       if (key) received.set(key, Buffer.from(data));
     });
     await client.nextOf("greeting");
-    client.hello();
+    client.send({ case: "hello", value: { version: { major: 1, minor: 11 }, client: "ws" } }); // older ones get plain floaters
     for (const layer of [Layer.SURFACE, Layer.PARTICLES, Layer.BODIES, Layer.FOAM, Layer.DIAGNOSTICS, Layer.FLOATERS]) client.subscribe(layer, Packing.PACKED);
     await client.nextOf("packedSurface");
     const { status, body } = await ask(server.port, "POST", { name: "run" });
     expect(status, JSON.stringify(body)).toBe(201);
     expect(body.recordings[0]).toMatchObject({ name: "run", room: "main", running: true, files: ["run_0001.mcap"] });
     client.command(1n, { case: "splash", value: { depthM: 0.3 } });
+    client.command(2n, { case: "spawnBoat", value: { boat: { xM: 2, zM: 2 } } });
+    client.command(3n, { case: "spawnFloater", value: { floater: { xM: -2, zM: -2 } } });
     await new Promise((resolve) => setTimeout(resolve, 3000));
     const ended = await ask(server.port, "DELETE");
     expect(ended.body.recordings[0]).toMatchObject({ running: false, failed: false, ended: "it was stopped", dropped_count: "0", skipped_count: "0" });
@@ -111,7 +124,7 @@ describe("a recording by a request", () => {
       expect(received.get(key).equals(Buffer.from(data)), `${topic}, ${key}`).toBe(true);
       counts[topic] = (counts[topic] ?? 0) + 1;
     }
-    for (const topic of ["surface", "particles", "foam", "diagnostics"]) expect(counts[`/spindrift/${topic}`], topic).toBeGreaterThan(2);
+    for (const topic of ["surface", "particles", "bodies", "foam", "floaters", "diagnostics"]) expect(counts[`/spindrift/${topic}`], topic).toBeGreaterThan(2);
 
     // A reader without the proto files.
     const [schema] = reader.schemasById.values();
@@ -154,7 +167,7 @@ describe("a recording by a request", () => {
 
   it("refuses what it may not do, with the reason", async () => {
     for (const name of ["", "../x", "a/b", ".hidden", "x".repeat(65)]) expect((await ask(server.port, "POST", { name })).status, name).toBe(422);
-    expect(readdirSync(folder).length).toBe(1);
+    expect(readdirSync(folder).sort()).toEqual(["all_layers.textproto", "server"]);
     const refusals = [
       [{ name: "run" }, 422, "run_0001.mcap exists already"],
       [{ name: "b", max_s: 1e9 }, 422, "max_s"],
@@ -309,7 +322,7 @@ describe("spindrift record", () => {
   });
 
   it("keeps packed layers decodable from file to file", async () => {
-    const { child, ended } = record("packed.mcap", "--file-mib", "1", "--layers", "surface,foam,particles");
+    const { child, ended } = record("packed.mcap", "--file-mib", "1", "--max-mib", "100", "--layers", "surface,foam,particles");
     await until("two files", async () => {
       await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body: '{"splash":{"depth_m":0.4,"radius_m":2}}' });
       return existsSync(join(folder, "packed_0002.mcap")) && statSync(join(folder, "packed_0002.mcap")).size > 100_000;
