@@ -100,9 +100,14 @@ core::Result<void> Recordings::start(const std::shared_ptr<rooms::Room>& room, c
   if (!recorder) return recorder.error();
   spdlog::info("room {}: is recorded as {} in {}", room->name(), wanted.name(), rules_.folder.string());
   const auto described = room->snapshot();
-  auto recording = std::make_shared<RoomRecording>(
-      RoomRecordingSetup{.name = wanted.name(), .streams = *streams, .level = *level, .max_bytes = max_bytes}, *room,
-      *std::move(recorder), greeting_(room));
+  auto recording = std::make_shared<RoomRecording>(RoomRecordingSetup{.name = wanted.name(),
+                                                                      .room = room->name(),
+                                                                      .demand = room->demand(),
+                                                                      .streams = *streams,
+                                                                      .level = *level,
+                                                                      .max_bytes = max_bytes},
+                                                   *std::move(recorder), greeting_(room));
+  room->wake();
   std::vector<std::shared_ptr<RoomRecording>> forgotten;  // destroyed without the lock
   {
     const std::lock_guard lock(mutex_);

@@ -16,18 +16,17 @@ constexpr std::chrono::milliseconds kReviewInterval{100};
 
 }  // namespace
 
-RoomRecording::RoomRecording(RoomRecordingSetup setup, rooms::Room& room,
-                             std::unique_ptr<recording::WaterRecorder> recorder, core::SharedBytes greeting)
-    : setup_(std::move(setup)), room_(room.name()), demand_(room.demand()), recorder_(std::move(recorder)) {
+RoomRecording::RoomRecording(RoomRecordingSetup setup, std::unique_ptr<recording::WaterRecorder> recorder,
+                             const core::SharedBytes& greeting)
+    : setup_(std::move(setup)), recorder_(std::move(recorder)) {
   for (const codec::Stream stream : setup_.streams) slots_.push_back({.stream = stream});
   state_.set_name(setup_.name);
-  state_.set_room(room_);
+  state_.set_room(setup_.room);
   state_.set_running(true);
   setCounts();
   push(greeting);
-  demand_->addSessions(1);  // the room stays awake
+  setup_.demand->addSessions(1);  // the room stays awake
   for (const Slot& slot : slots_) tellNeed(slot);
-  room.wake();
   thread_ = std::thread([this] { loop(); });
 }
 
@@ -50,7 +49,10 @@ void RoomRecording::end(const std::string& why, std::function<void()> done) {
   {
     const std::lock_guard lock(mutex_);
     if (state_.running()) {
-      if (!end_) end_ = why;
+      if (!end_) {
+        end_ = why;
+        end_by_ = std::chrono::steady_clock::now() + kEndMax;
+      }
       if (done) done_.push_back(std::exchange(done, nullptr));
     }
   }
@@ -101,7 +103,7 @@ void RoomRecording::tellNeed(const Slot& slot) {
   core::DemandTable::Need need{.level = setup_.level};
   const bool has_room = waiting_bytes_ < kWaitingMaxBytes / 2 && waiting_.size() < kWaitingMaxCount / 2;
   if ((!slot.follows || slot.wants_keyframe) && has_room) need.keyframe_from = core::DemandTable::TimePoint{};
-  demand_->set(codec::indexOf(slot.stream), &slot, need);
+  setup_.demand->set(codec::indexOf(slot.stream), &slot, need);
 }
 
 // The thread
@@ -122,7 +124,10 @@ core::Result<std::string> RoomRecording::record() {
     {
       std::unique_lock lock(mutex_);
       wake_.wait_until(lock, next_review, [&] { return end_ || !waiting_.empty(); });
-      if (waiting_.empty() && end_) return *end_;
+      if (end_ && (waiting_.empty() || std::chrono::steady_clock::now() >= end_by_)) {
+        state_.set_dropped_count(state_.dropped_count() + waiting_.size());
+        return *end_;
+      }
       if (!waiting_.empty()) {
         message = std::move(waiting_.front());
         waiting_.pop_front();
@@ -161,16 +166,16 @@ void RoomRecording::loop() {
     state_.set_ended(why);
     state_.set_failed(failed);
     setCounts();
-    for (const Slot& slot : slots_) demand_->set(codec::indexOf(slot.stream), &slot, std::nullopt);
-    demand_->addSessions(-1);
+    for (const Slot& slot : slots_) setup_.demand->set(codec::indexOf(slot.stream), &slot, std::nullopt);
+    setup_.demand->addSessions(-1);
     waiting_.clear();
     waiting_bytes_ = 0;
     done = std::move(done_);
   }
   const v1::Recording now = state();
   spdlog::log(failed ? spdlog::level::err : spdlog::level::info,
-              "room {}: the recording {} has ended: {}; {} messages, {} bytes, {} files, {} dropped", room_, now.name(),
-              why, now.message_count(), now.written_bytes(), now.files_size(), now.dropped_count());
+              "room {}: the recording {} has ended: {}; {} messages, {} bytes, {} files, {} dropped", setup_.room,
+              now.name(), why, now.message_count(), now.written_bytes(), now.files_size(), now.dropped_count());
   for (const auto& call : done) call();
 }
 

@@ -2,7 +2,7 @@
 // of its own.
 #pragma once
 
-#include <array>
+#include <chrono>
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
@@ -17,13 +17,14 @@
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/demand_table.h>
 #include <spindrift/recording/water_recorder.h>
-#include <spindrift/rooms/room.h>
 #include <spindrift/v1/api.pb.h>
 
 namespace spindrift::service {
 
 struct RoomRecordingSetup {
   std::string name;
+  std::string room;
+  std::shared_ptr<core::DemandTable> demand;  ///< of the room
   std::vector<codec::Stream> streams;
   core::Level level = core::Level::kFull;
   std::uint64_t max_bytes = 0;  ///< of the recorder
@@ -35,15 +36,18 @@ class RoomRecording {
  public:
   static constexpr std::size_t kWaitingMaxBytes = 64u << 20;
   static constexpr std::size_t kWaitingMaxCount = 4096;
+  /// After end(), messages that wait are written for this time; the rest is dropped.
+  static constexpr std::chrono::seconds kEndMax{5};
 
-  RoomRecording(RoomRecordingSetup setup, rooms::Room& room, std::unique_ptr<recording::WaterRecorder> recorder,
-                core::SharedBytes greeting);
+  /// Says in the demand of the room what it needs; the caller wakes the room then.
+  RoomRecording(RoomRecordingSetup setup, std::unique_ptr<recording::WaterRecorder> recorder,
+                const core::SharedBytes& greeting);
   /// Ends it and waits for the files.
   ~RoomRecording();
   RoomRecording(const RoomRecording&) = delete;
   RoomRecording& operator=(const RoomRecording&) = delete;
 
-  [[nodiscard]] const std::string& room() const { return room_; }
+  [[nodiscard]] const std::string& room() const { return setup_.room; }
   [[nodiscard]] std::uint64_t maxBytes() const { return setup_.max_bytes; }
   [[nodiscard]] bool isRunning() const;
   [[nodiscard]] v1::Recording state() const;
@@ -70,8 +74,6 @@ class RoomRecording {
   void setCounts();
 
   const RoomRecordingSetup setup_;
-  const std::string room_;
-  const std::shared_ptr<core::DemandTable> demand_;
   const std::unique_ptr<recording::WaterRecorder> recorder_;  ///< used by the thread only
 
   mutable std::mutex mutex_;
@@ -80,6 +82,7 @@ class RoomRecording {
   std::deque<core::SharedBytes> waiting_;
   std::size_t waiting_bytes_ = 0;
   std::optional<std::string> end_;  ///< asked for
+  std::chrono::steady_clock::time_point end_by_{};
   std::vector<std::function<void()>> done_;
   v1::Recording state_;
   std::thread thread_;
