@@ -163,6 +163,7 @@ core::Result<void> RecordingFiles::finishPrevious() {
   previous_.reset();
   auto finished = file.writer->finish();
   finished_bytes_ += file.writer->writtenBytes();
+  finished_message_count_ += file.writer->messageCount();
   return finished;
 }
 
@@ -186,6 +187,11 @@ core::Result<void> RecordingFiles::finish() {
   core::Result<void> previous = previous_ ? finishPrevious() : core::Result<void>();
   auto current = current_.writer->finish();
   return previous ? current : previous;
+}
+
+std::uint64_t RecordingFiles::messageCount() const {
+  return finished_message_count_ + current_.writer->messageCount() +
+         (previous_ ? previous_->writer->messageCount() : 0);
 }
 
 std::uint64_t RecordingFiles::writtenBytes() const {

@@ -185,7 +185,6 @@ core::Result<void> WaterRecorder::add(const Entry& entry) {
     outcome = files_.add(entry);
   }
   if (!outcome) return outcome.error();
-  if (*outcome == Outcome::kWritten) ++counts_.message_count;
   if (*outcome == Outcome::kSkipped) ++counts_.skipped_count;
   if (*outcome == Outcome::kFull)
     end_ = fmt::format("the recording has reached its bound of {} bytes", setup_.files.max_bytes);
@@ -201,6 +200,7 @@ core::Result<void> WaterRecorder::review(WallClock::time_point now) {
 
 WaterRecorder::Counts WaterRecorder::counts() const {
   Counts out = counts_;
+  out.message_count = files_.messageCount();
   out.written_bytes = files_.writtenBytes();
   return out;
 }

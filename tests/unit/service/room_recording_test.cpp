@@ -149,6 +149,7 @@ TEST_F(RoomRecordingTest, BrokenDiskEndsItWithTheReason) {
   ASSERT_TRUE(until([&] { return !recorded->isRunning(); }));
   EXPECT_TRUE(recorded->state().failed());
   EXPECT_EQ(recorded->state().ended(), "the disk is full");
+  EXPECT_EQ(recorded->state().message_count(), 0u) << "they were in the chunk that was lost";
   EXPECT_EQ(demand->sessionCount(), 0u);
   bool is_done = false;
   recorded->end("it was stopped", [&] { is_done = true; });

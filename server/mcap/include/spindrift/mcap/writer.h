@@ -74,7 +74,8 @@ class Writer {
   /// Writes the open chunk and the summary; the last call. After an earlier error: the summary of what is in the file.
   core::Result<void> finish();
 
-  [[nodiscard]] std::uint64_t messageCount() const { return message_count_; }
+  /// Returns the messages in the file and in the open chunk; a chunk that could not be written does not count.
+  [[nodiscard]] std::uint64_t messageCount() const { return message_count_ + chunk_.message_count; }
   /// Returns the bytes that the file has now, without the open chunk.
   [[nodiscard]] std::uint64_t writtenBytes() const { return written_bytes_; }
   /// Returns a bound for the size of the file if it were finished after one more message of this many bytes.

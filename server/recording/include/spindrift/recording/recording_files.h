@@ -83,6 +83,8 @@ class RecordingFiles {
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   [[nodiscard]] std::uint64_t writtenBytes() const;
+  /// Returns mcap::Writer::messageCount() of all files.
+  [[nodiscard]] std::uint64_t messageCount() const;
 
  private:
   struct File {
@@ -109,6 +111,7 @@ class RecordingFiles {
   std::optional<File> previous_;
   std::uint64_t handover_begin_ns_ = 0;
   std::uint64_t finished_bytes_ = 0;
+  std::uint64_t finished_message_count_ = 0;
   std::map<std::string, TopicState> topics_;
   std::vector<std::string> names_;
 };
