@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # The fuzz targets of tests/fuzz: built separately with clang and sanitizers. Sourced by ./dev.
 
-readonly fuzz_targets=(access client_message cluster forwarded frame http scene state_files tls)
+readonly fuzz_targets=(access client_message cluster forwarded foxglove frame http scene state_files tls)
 
 # build_fuzz: builds the targets as build/fuzz/tests/fuzz_TARGET.
 build_fuzz() {
@@ -24,7 +24,7 @@ fuzz_one() {
 command_fuzz() {
   if wants_help "$@"; then
     cat <<'TEXT'
-usage: ./dev fuzz [access|client_message|cluster|forwarded|frame|http|scene|state_files|tls] [SECONDS]
+usage: ./dev fuzz [access|client_message|cluster|forwarded|foxglove|frame|http|scene|state_files|tls] [SECONDS]
 
 Builds the fuzz targets with clang and sanitizers and runs one, or each in turn, for SECONDS (60 s each by default).
 Inputs that reach new code stay in build/fuzz/found, where the next run begins; a failing input is kept in

@@ -63,6 +63,7 @@ v1::Tool toolOf(const v1::Command& command) {
     case C::kTakeBoat:
     case C::kControlBoat:
     case C::kRemoveBoat:
+    case C::kMoveBoat:
       return v1::TOOL_BOAT;
     default:
       return v1::TOOL_UNSPECIFIED;

@@ -24,6 +24,8 @@ namespace {
 
 using core::ErrorCode;
 
+constexpr std::size_t kFoxgloveSessionMaxCount = 16;
+
 void reload(const FrontOptions& options, const RunningServer& server) {
   server.network.reloadCertificate();
   if (access::AuditFile* const audit = server.access.audit().file()) audit->reopen();
@@ -126,6 +128,7 @@ net::ServerOptions networkOptions(const FrontOptions& options) {
   net::ServerOptions out;
   out.allowed_origins = options.origins;
   out.embedding_origins = options.parents;
+  if (options.serves_foxglove) out.foxglove_session_max_count = kFoxgloveSessionMaxCount;
   out.address = options.address;
   out.port = options.port;
   out.thread_count = options.thread_count;

@@ -87,6 +87,8 @@ void addFrontOptions(CLI::App& command, FrontOptions& options) {
           "',', or repeated")
       ->transform(isOrigin())
       ->delimiter(',');
+  command.add_flag("--foxglove", options.serves_foxglove,
+                   "Serve the rooms to Foxglove as well, at ws://…/foxglove or /foxglove/ROOM");
   command
       .add_option("--embed", options.parents,
                   "Origin of pages that may show the water in a frame, https://HOST; several with ',', or repeated "

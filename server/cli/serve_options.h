@@ -38,6 +38,7 @@ struct FrontOptions {
   std::string jwt_audience;           ///< empty: not checked
   double person_commands_per_s = 200.0;
   std::string audit_file;            ///< empty: no audit log
+  bool serves_foxglove = false;      ///< /foxglove
   std::vector<std::string> origins;  ///< additional allowed Origins; "*" = any
   std::vector<std::string> parents;  ///< Origins of pages that may embed the water
   std::string nats_url;              ///< empty: the process is alone

@@ -112,6 +112,7 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   *view.mutable_scene() = snapshot->scene;
   view.set_paused(snapshot->paused);
   view.set_speed(snapshot->speed);
+  for (const std::uint32_t person_id : snapshot->clock_person_ids) view.add_clock_person_ids(person_id);
   *view.mutable_boats() = snapshot->boats;
   view.set_device(room.device);
   for (const std::string& scene : room.scenes) view.add_scenes(scene);
@@ -310,6 +311,14 @@ bool Feed::queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answ
   v1::QueryAnswered& answered = *message.mutable_query_answered();
   answered.set_session(numberAtNode(sender.session_id));
   *answered.mutable_answer() = answer;
+  return sendToNodeOf(sender.session_id, std::move(message));
+}
+
+bool Feed::hullsFelt(const core::Sender& sender, const v1::HullForces& forces) {
+  v1::FromRoom message;
+  v1::HullsFelt& felt = *message.mutable_hulls_felt();
+  felt.set_session(numberAtNode(sender.session_id));
+  *felt.mutable_forces() = forces;
   return sendToNodeOf(sender.session_id, std::move(message));
 }
 

@@ -24,13 +24,13 @@
 namespace spindrift::cluster {
 
 /// Version of cluster.proto, the frames' head and the numbers of streams.
-inline constexpr std::uint32_t kClusterVersion = 4;
+inline constexpr std::uint32_t kClusterVersion = 5;
 /// A link whose other end was silent for so long is dead.
 inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.
 inline constexpr std::chrono::milliseconds kPulseInterval{200};
 
-/// Thread-safe: called by the simulation thread, the encoder thread, the bus and the thread of the node.
+/// Thread-safe: called by the rooms' threads, the encoder thread, the bus and the thread of the node.
 class Feed final : public service::RemoteAudience {
  public:
   using Clock = std::chrono::steady_clock;
@@ -64,6 +64,7 @@ class Feed final : public service::RemoteAudience {
   bool commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;
   bool queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer) override;
+  bool hullsFelt(const core::Sender& sender, const v1::HullForces& forces) override;
   void publish(const std::string& name, codec::Stream stream, const codec::EncodedFrame& frame,
                const core::FrameLevels& levels) override;
 

@@ -1,5 +1,5 @@
 // A server in a cluster: its claims of rooms, its pulse, and sessions that come through edges. Longer than 400 lines,
-// because one mutex guards what the bus's thread and the simulation thread share.
+// because one mutex guards what the bus's thread and the rooms' threads share.
 #include <atomic>
 #include <condition_variable>
 #include <map>

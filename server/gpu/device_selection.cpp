@@ -162,8 +162,9 @@ core::Result<egl::Attempt> selectDevice(const std::vector<egl::Candidate>& candi
       info.advice = adviceAfter(info, choice.kind, hardware_count, machine);
       return attempt;
     }
-    if (!failures.empty()) failures += ", ";
-    failures += label(info) + ": " + info.problem;
+    const std::string failure = label(info) + ": " + info.problem;
+    if (failures.find(failure) != std::string::npos) continue;  // another display of the same rasteriser
+    failures += (failures.empty() ? "" : ", ") + failure;
   }
   const std::string variables = variableAdvice(machine);
   return core::Error{core::ErrorCode::kNoDevice,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
+#include <cstdlib>
 #include <mutex>
 #include <string_view>
 #include <utility>
@@ -46,16 +48,33 @@ std::string eglErrorText() {
   return "EGL error " + std::to_string(code);
 }
 
-/// Returns the core entry point of EGL 1.5, otherwise the extension's. Both must be queried before any display exists.
-EGLDisplay platformDisplay(EGLenum platform, void* native) {
+/// Displays of the software rasteriser: the device's and the surfaceless platform's, twice each. Mesa carries out one
+/// dispatch at a time per display where the rasteriser computes on the calling thread.
+constexpr int kLaneCount = 4;
+/// Contexts that exist in each.
+std::array<std::atomic<int>, kLaneCount> lane_context_counts{};
+
+/// The displays of the lanes from here on are asked for with an empty list of attributes instead of none: other
+/// displays for Mesa, and for another EGL perhaps the same.
+constexpr int kEmptyListLane = 2;
+
+/// Uses the core entry point of EGL 1.5, otherwise the extension's. Both must be queried before any display exists.
+EGLDisplay platformDisplay(EGLenum platform, void* native, int lane) {
+  static constexpr EGLAttrib kEmptyList[] = {EGL_NONE};
+  const EGLAttrib* attributes = lane >= kEmptyListLane ? kEmptyList : nullptr;
   if (const auto get = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYPROC>(eglGetProcAddress("eglGetPlatformDisplay"))) {
-    if (EGLDisplay display = get(platform, native, nullptr); display != EGL_NO_DISPLAY) return display;
+    if (EGLDisplay display = get(platform, native, attributes); display != EGL_NO_DISPLAY) return display;
   }
   if (const auto get =
           reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(eglGetProcAddress("eglGetPlatformDisplayEXT"))) {
     if (EGLDisplay display = get(platform, native, nullptr); display != EGL_NO_DISPLAY) return display;
   }
   return EGL_NO_DISPLAY;
+}
+
+EGLDisplay displayOf(const Candidate& candidate) {
+  return candidate.device ? platformDisplay(EGL_PLATFORM_DEVICE_EXT, candidate.device, candidate.lane)
+                          : platformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr, candidate.lane);
 }
 
 /// Loads the OpenGL functions once, since they are the same for every context of the process. A context must be
@@ -132,6 +151,22 @@ std::string olderVersion(EGLDisplay display) {
   return out;
 }
 
+/// Returns the software candidates once per display that they lead to, those with the fewest contexts first.
+std::vector<Candidate> lanesOf(const std::vector<Candidate>& software) {
+  std::vector<std::pair<int, Candidate>> lanes;
+  for (const int first_lane : {0, kEmptyListLane}) {
+    for (int k = 0; k < std::min<int>(kEmptyListLane, static_cast<int>(software.size())); ++k) {
+      Candidate candidate = software[static_cast<std::size_t>(k)];
+      candidate.lane = first_lane + k;
+      lanes.emplace_back(lane_context_counts[static_cast<std::size_t>(candidate.lane)], candidate);
+    }
+  }
+  std::ranges::stable_sort(lanes, {}, &std::pair<int, Candidate>::first);
+  std::vector<Candidate> out;
+  for (auto& [count, candidate] : lanes) out.push_back(std::move(candidate));
+  return out;
+}
+
 }  // namespace
 
 std::vector<Candidate> candidates() {
@@ -162,6 +197,7 @@ std::vector<Candidate> candidates() {
   Candidate surfaceless;
   surfaceless.is_software = true;
   software.push_back(surfaceless);
+  software = lanesOf(software);
   hardware.insert(hardware.end(), software.begin(), software.end());
   mergeDuplicates(hardware);
   return hardware;
@@ -182,8 +218,7 @@ Attempt open(const Candidate& candidate) {
   };
 
   Handles handles;
-  handles.display = candidate.device ? platformDisplay(EGL_PLATFORM_DEVICE_EXT, candidate.device)
-                                     : platformDisplay(EGL_PLATFORM_SURFACELESS_MESA, nullptr);
+  handles.display = displayOf(candidate);
   if (handles.display == EGL_NO_DISPLAY) return fail("EGL has no display for it");
   if (!eglInitialize(handles.display, nullptr, nullptr)) {
     return fail("its EGL display does not initialise (" + eglErrorText() + ")");
@@ -193,11 +228,13 @@ Attempt open(const Candidate& candidate) {
   if (!eglBindAPI(EGL_OPENGL_API)) return fail("its EGL driver knows no desktop OpenGL");
 
   handles.context = createContext(handles.display, info.tells_of_resets);
+  handles.lane = candidate.lane;
   if (handles.context == EGL_NO_CONTEXT) {
     const std::string error = eglErrorText();
     const std::string older = olderVersion(handles.display);
     return fail("no OpenGL 4.5 core context (" + error + (older.empty() ? ")" : "; it has " + older + ")"));
   }
+  if (handles.lane >= 0) ++lane_context_counts[static_cast<std::size_t>(handles.lane)];
   if (!makeCurrent(handles)) {
     const std::string error = eglErrorText();
     close(handles);
@@ -222,6 +259,7 @@ Attempt open(const Candidate& candidate) {
 void close(const Handles& handles) {
   if (eglGetCurrentContext() == handles.context) makeCurrent({handles.display, EGL_NO_CONTEXT});
   eglDestroyContext(handles.display, handles.context);
+  if (handles.lane >= 0) --lane_context_counts[static_cast<std::size_t>(handles.lane)];
 }
 
 bool makeCurrent(const Handles& handles) {
@@ -241,3 +279,18 @@ CurrentGuard::~CurrentGuard() {
 }
 
 }  // namespace spindrift::gpu::egl
+
+namespace spindrift::gpu {
+
+void prepareSoftwareDisplays(unsigned processor_count) {
+  constexpr const char* kThreadCount = "LP_NUM_THREADS";  // Mesa reads it when it initialises a display
+  if (std::getenv(kThreadCount)) return;
+  if (processor_count > 2) {
+    for (const egl::Candidate& candidate : egl::candidates()) {
+      if (candidate.lane == 0) (void)eglInitialize(egl::displayOf(candidate), nullptr, nullptr);
+    }
+  }
+  ::setenv(kThreadCount, "0", 0);
+}
+
+}  // namespace spindrift::gpu

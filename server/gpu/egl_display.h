@@ -15,6 +15,7 @@ namespace spindrift::gpu::egl {
 struct Candidate {
   void* device = nullptr;  ///< EGLDeviceEXT; null: Mesa's surfaceless platform, which picks a driver by itself
   bool is_software = false;
+  int lane = -1;            ///< of software: which of its displays, 0 and up
   int index = -1;           ///< position among the hardware devices, -1 for software
   std::string drm_file;     ///< empty when EGL does not report it
   std::string render_file;  ///< the same
@@ -25,6 +26,7 @@ struct Candidate {
 struct Handles {
   EGLDisplay display = EGL_NO_DISPLAY;
   EGLContext context = EGL_NO_CONTEXT;
+  int lane = -1;  ///< as Candidate::lane
 };
 
 /// Result of trying a candidate. Without handles, `info.problem` holds the reason.
@@ -33,8 +35,8 @@ struct Attempt {
   std::optional<Handles> handles;
 };
 
-/// Returns hardware devices in EGL's order, then the candidates for software rendering, best first. Candidates for the
-/// same hardware have the same index.
+/// Returns hardware devices in EGL's order, then the candidates for software rendering: its displays, those with the
+/// fewest contexts first. Candidates for the same hardware have the same index.
 std::vector<Candidate> candidates();
 
 /// Opens the display, makes an OpenGL 4.5 core context, makes it current on this thread, loads the OpenGL functions and

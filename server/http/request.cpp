@@ -134,7 +134,7 @@ bool isKey(std::string_view key) {
 
 }  // namespace
 
-UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count,
+UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count, bool serves_foxglove,
                               const std::function<core::Result<void>(const std::string& room)>& accept_room) {
   // RFC 6455 section 4.1: the client waits for the answer. Bytes sent earlier would be lost between the two protocols.
   if (more_bytes_count > 0) {
@@ -152,10 +152,14 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
     return {textReply(400, "An upgrade needs a Sec-WebSocket-Key of 16 bytes in base64.")};
   }
   auto named = roomOfPath(target->path);
+  const bool is_foxglove = !named && serves_foxglove;
+  if (is_foxglove) named = foxgloveRoomOfPath(target->path);
   if (!named) return {textReply(404, "There is no WebSocket at " + printable(target->path) + ": use /ws or /ws/ROOM.")};
 
-  // A query ends up in logs and browser histories, so tokens are refused there.
-  if (target->query.find("token") != std::string::npos) {
+  // A query ends up in logs and browser histories, so tokens are refused there where clients can send them otherwise.
+  auto tokens = queryValues(target->query, "access_token");
+  if (!tokens || tokens->size() > 1) return {textReply(400, "The address has a broken access_token, or two of them.")};
+  if (!is_foxglove && target->query.find("token") != std::string::npos) {
     return {textReply(400, "A token in the address is refused: send it in Hello.token.")};
   }
 
@@ -170,17 +174,26 @@ UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_cou
 
   UpgradeDecision decision;
   decision.room = *std::move(named);
-  decision.is_onlooker = !looks->empty();
+  decision.is_onlooker = !looks->empty() && !is_foxglove;
+  decision.is_foxglove = is_foxglove;
+  if (!tokens->empty()) decision.token = std::move(tokens->front());
   // RFC 6455 section 11.3.4: the list may be split over several headers.
   bool is_protocol_offered = false;
+  const auto isKnown = [is_foxglove](std::string_view name) {
+    return is_foxglove ? std::ranges::find(kFoxgloveSubprotocols, name) != kFoxgloveSubprotocols.end()
+                       : name == kSubprotocol;
+  };
   const auto [first, end] = request.equal_range(http::field::sec_websocket_protocol);
   for (auto offered = first; offered != end; ++offered) {
     is_protocol_offered = is_protocol_offered || !offered->value().empty();
-    for (const auto& protocol : http::token_list(offered->value()))
-      decision.echo_subprotocol |= protocol == kSubprotocol;
+    for (const auto& protocol : http::token_list(offered->value())) {
+      const std::string_view name(protocol.data(), protocol.size());
+      if (decision.subprotocol.empty() && isKnown(name)) decision.subprotocol = name;
+    }
   }
-  if (is_protocol_offered && !decision.echo_subprotocol) {
-    return {textReply(400, std::string("No offered subprotocol is known here: offer ") + kSubprotocol + ".")};
+  if ((is_protocol_offered || is_foxglove) && decision.subprotocol.empty()) {
+    return {textReply(400, std::string("No offered subprotocol is known here: offer ") +
+                               (is_foxglove ? std::string(kFoxgloveSubprotocols.front()) : kSubprotocol) + ".")};
   }
   try {
     const core::Result<void> accepted = accept_room(decision.room);

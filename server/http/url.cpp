@@ -68,11 +68,24 @@ std::string printable(std::string_view text) {
   return out;
 }
 
+namespace {
+
+/// Returns what follows `root` and a slash; nullopt for a path outside of the root.
+std::optional<std::string> nameBelow(std::string_view root, std::string_view path) {
+  if (!path.starts_with(root)) return std::nullopt;
+  path.remove_prefix(root.size());
+  if (path.empty()) return std::string();
+  return path.front() == '/' ? std::optional(std::string(path.substr(1))) : std::nullopt;
+}
+
+}  // namespace
+
 std::optional<std::string> roomOfPath(std::string_view path) {
-  if (path == "/ws") return std::string();
-  constexpr std::string_view kPrefix = "/ws/";
-  if (path.starts_with(kPrefix)) return std::string(path.substr(kPrefix.size()));
-  return std::nullopt;
+  return nameBelow("/ws", path);
+}
+
+std::optional<std::string> foxgloveRoomOfPath(std::string_view path) {
+  return nameBelow("/foxglove", path);
 }
 
 }  // namespace spindrift::net

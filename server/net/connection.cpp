@@ -20,6 +20,7 @@
 #include <spindrift/http/network_text.h>
 
 #include "pending_answer.h"
+#include "session_place.h"
 
 namespace spindrift::net {
 namespace {
@@ -310,39 +311,27 @@ asio::awaitable<Reply> Connection::ask(const HttpRequest& request) {
 }
 
 asio::awaitable<void> Connection::upgrade(const Request& request) {
-  // Reserved before the handshake, so that many simultaneous handshakes cannot exceed the limit.
-  struct Place {
-    ServerContext& context;
-    const std::string& address;
-    const bool is_free;      ///< below max_session_count
-    const bool is_in_share;  ///< below the address's limit
-    Place(ServerContext& shared, const std::string& of)
-        : context(shared),
-          address(of),
-          is_free(++shared.reserved_session_count <= shared.options.max_session_count),
-          is_in_share(is_free && shared.addresses.takeSession(of)) {}
-    Place(const Place&) = delete;
-    Place& operator=(const Place&) = delete;
-    ~Place() {
-      if (is_in_share) context.addresses.releaseSession(address);
-      --context.reserved_session_count;
-    }
-  };
   if (const std::int64_t retry_after_s = context_.retry_after_s; retry_after_s > 0) {
     context_.counters.refused(Refused::kDraining);
     const std::string line = "The server is about to end: try again in " + std::to_string(retry_after_s) + " s.";
     co_await sendLast(retryReply(503, line, retry_after_s), false);
     co_return;
   }
-  const Place place(context_, address_);
+  SessionPlace place(context_, address_);
   UpgradeDecision decision;
   Refused why = Refused::kFull;
   const std::string max_count = std::to_string(context_.options.max_session_count);
-  if (place.is_in_share) {
-    decision = decideUpgrade(request, buffer_.size(),
+  if (place.isInShare()) {
+    decision = decideUpgrade(request, buffer_.size(), context_.options.foxglove_session_max_count > 0,
                              [this](const std::string& room) { return context_.application.acceptSession(room); });
     why = decision.is_room_refused ? Refused::kRoom : Refused::kHandshake;
-  } else if (place.is_free) {
+    if (decision.is_foxglove && !decision.refusal && !place.takeFoxglove()) {
+      why = Refused::kFull;
+      decision.refusal =
+          textReply(503, "The server has " + std::to_string(context_.options.foxglove_session_max_count) +
+                             " sessions of Foxglove open, their limit: close one, or try again later.");
+    }
+  } else if (place.isFree()) {
     decision.refusal = textReply(503, "Your address has " + std::to_string(context_.addresses.sessionMaxCount()) +
                                           " of this server's " + max_count +
                                           " sessions open, the limit of one address: close one, or try again later.");
@@ -356,8 +345,9 @@ asio::awaitable<void> Connection::upgrade(const Request& request) {
   }
   session_ = std::make_shared<Session>(std::move(stream_), context_);
   if (stopping_) session_->close(CloseCode::kGoingAway, "server is shutting down");
-  const SessionOpening opening{.room = std::move(decision.room), .peer = peer_, .is_onlooker = decision.is_onlooker};
-  co_await session_->run(request, opening, address_, decision.echo_subprotocol);
+  SessionOpening opening{std::move(decision.room), peer_, decision.is_onlooker, std::move(decision.subprotocol),
+                         std::move(decision.token)};
+  co_await session_->run(request, std::move(opening), address_);
 }
 
 asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsigned version, bool keep_alive) {

@@ -88,7 +88,7 @@ void MessageStream::beginFrames(std::function<bool(std::uint64_t)> on_fragments)
   shared_->on_fragments = std::move(on_fragments);
 }
 
-asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::SharedBytes> messages) {
+asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::SharedBytes> messages, bool are_text) {
   using Turn = Shared::Turn;
   const std::shared_ptr<Shared> shared = shared_;
   while (shared->turn != Turn::kFree) (void)co_await shared->turn_ends.async_wait(kToken);
@@ -96,7 +96,7 @@ asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::S
   boost::container::static_vector<FrameHeader, kMessageMaxCount> headers;
   boost::container::static_vector<asio::const_buffer, 2 * kMessageMaxCount> parts;
   for (const core::SharedBytes& message : messages) {
-    headers.push_back(frameHeader(message->size()));
+    headers.push_back(frameHeader(message->size(), are_text));
     parts.emplace_back(headers.back().data(), headers.back().size());
     parts.emplace_back(message->data(), message->size());
   }

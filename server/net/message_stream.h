@@ -41,10 +41,11 @@ class MessageStream : public Transport {
   /// Most messages of one write.
   static constexpr std::size_t kMessageMaxCount = 16;
 
-  /// Writes each message as one binary frame, all of them in one kernel call if the kernel has room. At most
+  /// Writes each message as one frame, binary or text, all of them in one kernel call if the kernel has room. At most
   /// kMessageMaxCount, which must stay valid until the write is done. One write at a time. After a close frame, the
   /// write ends when the connection does, with an error.
-  boost::asio::awaitable<boost::system::error_code> writeMessages(std::span<const core::SharedBytes> messages);
+  boost::asio::awaitable<boost::system::error_code> writeMessages(std::span<const core::SharedBytes> messages,
+                                                                  bool are_text = false);
 
   /// Replaces the next frame that Beast writes, a close frame, by one with code 1002 (protocol error) and no reason.
   void closeAsProtocolError();

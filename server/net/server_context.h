@@ -64,6 +64,7 @@ struct ServerContext {
   std::atomic<std::uint64_t> last_session_id{0};
   /// Sessions open or in their handshake; at most max_session_count.
   std::atomic<std::size_t> reserved_session_count{0};
+  std::atomic<std::size_t> foxglove_session_count{0};  ///< among them
 };
 
 }  // namespace spindrift::net

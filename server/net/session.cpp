@@ -1,6 +1,8 @@
 #include "session.h"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include <boost/asio/experimental/awaitable_operators.hpp>
@@ -59,11 +61,10 @@ Session::Session(Transport stream, ServerContext& context)
       end_timer_(strand_),
       end_of_delay_(strand_) {}
 
-asio::awaitable<void> Session::run(const Request& request, SessionOpening opening, std::string address,
-                                   bool echo_subprotocol) {
+asio::awaitable<void> Session::run(const Request& request, SessionOpening opening, std::string address) {
   using asio::experimental::awaitable_operators::operator&&;
   address_ = std::move(address);
-  configure(echo_subprotocol);
+  configure(opening.subprotocol);
   const auto [accept_error] = co_await ws_.async_accept(request, kToken);
   if (accept_error) {
     spdlog::debug("{}: the WebSocket handshake failed: {}", opening.peer, accept_error.message());
@@ -77,7 +78,11 @@ asio::awaitable<void> Session::run(const Request& request, SessionOpening openin
   context_.counters.add(&ServerStats::open_session_count);
   spdlog::debug("session {} opened by {}", id_, opening.peer);
   context_.hub.add(id_, shared_from_this());
-  callApplication("sessionOpened", [&] { context_.application.sessionOpened(id_, opening); });
+  callApplication("sessionOpened", [&] {
+    translator_ = context_.application.translatorFor(opening);
+    context_.application.sessionOpened(id_, opening);
+    if (translator_) take(translator_->open());
+  });
 
   co_await (readLoop() && writeLoop());
 
@@ -94,14 +99,14 @@ asio::awaitable<void> Session::run(const Request& request, SessionOpening openin
   callApplication("sessionClosed", [&] { context_.application.sessionClosed(id_, end); });
 }
 
-void Session::configure(bool echo_subprotocol) {
+void Session::configure(const std::string& subprotocol) {
   beast::get_lowest_layer(ws_).expires_never();  // the WebSocket layer has its own timeouts
   const auto& options = context_.options;
   ws_.set_option(websocket::stream_base::timeout{options.handshake_timeout, options.idle_timeout, true});
-  ws_.set_option(websocket::stream_base::decorator([echo_subprotocol](websocket::response_type& response) {
+  ws_.set_option(websocket::stream_base::decorator([subprotocol](websocket::response_type& response) {
     response.set(beast::http::field::server, "Spindrift");
     for (const auto& [name, value] : securityHeaders()) response.set(name, value);
-    if (echo_subprotocol) response.set(beast::http::field::sec_websocket_protocol, kSubprotocol);
+    if (!subprotocol.empty()) response.set(beast::http::field::sec_websocket_protocol, subprotocol);
   }));
   ws_.read_message_max(options.read_message_max_bytes);
   // Each ping costs a pong, so pings count as messages. A peer that sends a close frame gets a deadline to disconnect.
@@ -151,7 +156,7 @@ asio::awaitable<void> Session::readLoop() {
       co_return;
     }
     if (outbox_.closing()) co_return;
-    if (ws_.got_text()) {
+    if (ws_.got_text() && !translator_) {
       close(CloseCode::kUnsupportedData, "text messages are not understood: send binary ones");
       co_return;
     }
@@ -167,9 +172,21 @@ asio::awaitable<void> Session::readLoop() {
       if (outbox_.closing()) co_return;
     }
     const core::ByteView message(static_cast<const std::uint8_t*>(read_buffer_.data().data()), bytes_count);
-    callApplication("sessionMessage", [&] { context_.application.sessionMessage(id_, message); });
+    receive(message, ws_.got_text());
     read_buffer_.consume(read_buffer_.size());
   }
+}
+
+void Session::receive(core::ByteView message, bool is_text) {
+  callApplication("sessionMessage", [&] {
+    if (!translator_) return context_.application.sessionMessage(id_, message);
+    take(translator_->receive(message, is_text));
+  });
+}
+
+void Session::take(core::Translator::Incoming incoming) {
+  for (core::SharedBytes& answer : incoming.answers) sendAnswer(std::move(answer));
+  for (const core::Bytes& message : incoming.messages) context_.application.sessionMessage(id_, message);
 }
 
 asio::awaitable<void> Session::waitUntilAnswersAreTaken() {
@@ -227,19 +244,47 @@ void Session::gather(Outbox::Next first) {
 }
 
 asio::awaitable<bool> Session::writeGathered() {
+  const Gathered gathered = std::exchange(gathered_, {});  // holds no frames while the session waits
+  bool is_written = false;
+  if (translator_) {
+    is_written = co_await writeTranslated(gathered.messages);
+  } else {
+    is_written = co_await write(gathered.messages, false);
+  }
+  if (is_written) context_.counters.add(&ServerStats::sent_frame_count, gathered.frame_count);
+  co_return is_written;
+}
+
+asio::awaitable<bool> Session::writeTranslated(std::span<const core::SharedBytes> messages) {
+  std::vector<core::Translator::Outgoing> out;
+  for (const core::SharedBytes& message : messages)
+    callApplication("translation", [&] { std::ranges::move(translator_->send(*message), std::back_inserter(out)); });
+  std::vector<core::SharedBytes> run;  // of messages of one kind
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    run.push_back(std::move(out[i].bytes));
+    const bool is_last = i + 1 == out.size() || out[i + 1].is_text != out[i].is_text;
+    if (!is_last && run.size() < MessageStream::kMessageMaxCount) continue;
+    const bool is_written = co_await write(run, out[i].is_text);
+    if (!is_written) co_return false;
+    run.clear();
+  }
+  co_return true;
+}
+
+asio::awaitable<bool> Session::write(std::span<const core::SharedBytes> messages, bool are_text) {
   write_deadline_ = Clock::now() + context_.options.write_stall_timeout;
   if (!watches_writes_) watchWrites();
-  const boost::system::error_code error = co_await ws_.next_layer().writeMessages(gathered_.messages);
+  const boost::system::error_code error = co_await ws_.next_layer().writeMessages(messages, are_text);
   write_deadline_.reset();
   if (error) {
     noteEnd(0, error.message());
-  } else {
-    context_.counters.add(&ServerStats::sent_bytes_count, gathered_.bytes_count);
-    context_.counters.add(&ServerStats::sent_frame_count, gathered_.frame_count);
-    context_.counters.add(&ServerStats::write_count);
+    co_return false;
   }
-  gathered_ = {};  // drops the references to the frames while the session waits
-  co_return !error;
+  std::uint64_t bytes_count = 0;
+  for (const core::SharedBytes& message : messages) bytes_count += message->size();
+  context_.counters.add(&ServerStats::sent_bytes_count, static_cast<std::int64_t>(bytes_count));
+  context_.counters.add(&ServerStats::write_count);
+  co_return true;
 }
 
 void Session::watchWrites() {

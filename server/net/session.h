@@ -28,8 +28,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   /// Answers the upgrade, serves until the connection is gone, then returns. Calls sessionOpened first and
   /// sessionClosed last; neither if the handshake fails. Call it on the strand.
-  boost::asio::awaitable<void> run(const Request& request, SessionOpening opening, std::string address,
-                                   bool echo_subprotocol);
+  boost::asio::awaitable<void> run(const Request& request, SessionOpening opening, std::string address);
 
   void sendAnswer(core::SharedBytes message) override;
   void sendState(const StateTopic& topic, core::SharedBytes message) override;
@@ -53,18 +52,26 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
     std::size_t frame_count = 0;
   };
 
-  void configure(bool echo_subprotocol);
+  void configure(const std::string& subprotocol);
   /// Takes message tokens for fragments; false if there are too few, and the session closes.
   bool takeFragments(std::uint64_t count);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
+  /// Hands a message of the client to the application.
+  void receive(core::ByteView message, bool is_text);
+  /// Hands over what a translator made of one.
+  void take(core::Translator::Incoming incoming);
   /// Returns once fewer than answer_pause_count answers wait, or the connection is gone. Meanwhile the session reads
   /// nothing: a client that does not read its answers is slowed down by TCP.
   boost::asio::awaitable<void> waitUntilAnswersAreTaken();
   /// Takes the first message and those from the outbox that can be written with it.
   void gather(Outbox::Next first);
-  /// Writes the gathered messages; returns false if the connection is gone.
+  /// Writes the gathered messages, translated if the session has a translator; returns false if the connection is gone,
+  /// as the next two.
   boost::asio::awaitable<bool> writeGathered();
+  boost::asio::awaitable<bool> writeTranslated(std::span<const core::SharedBytes> messages);
+  /// Writes messages of one kind.
+  boost::asio::awaitable<bool> write(std::span<const core::SharedBytes> messages, bool are_text);
   /// Called after each write: evaluates whether the link can carry its level.
   void reviewLevel();
   /// Closes the socket when a write passes its deadline. One timer runs across writes and is not set again for each.
@@ -84,6 +91,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   const SessionId id_;
   boost::beast::websocket::stream<MessageStream, false> ws_;  ///< without permessage-deflate
   const boost::asio::any_io_executor strand_;
+  std::unique_ptr<core::Translator> translator_;  ///< null: the client speaks the application's protocol
   Outbox outbox_;
   Gathered gathered_;
   TokenBucket message_tokens_;

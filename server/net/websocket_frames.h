@@ -15,12 +15,13 @@ namespace spindrift::net {
 
 using FrameHeader = boost::container::static_vector<std::uint8_t, 10>;
 
-/// Returns the header of a whole binary message of a server, which is not masked, with the shortest length that fits.
-inline FrameHeader frameHeader(std::uint64_t payload_bytes_count) {
-  constexpr std::uint8_t kFinalBinary = 0x82, kTwoBytesFollow = 126, kEightBytesFollow = 127;
-  if (payload_bytes_count < kTwoBytesFollow) return {kFinalBinary, static_cast<std::uint8_t>(payload_bytes_count)};
+/// Returns the header of a whole message of a server, which is not masked, with the shortest length that fits.
+inline FrameHeader frameHeader(std::uint64_t payload_bytes_count, bool is_text = false) {
+  constexpr std::uint8_t kFinalText = 0x81, kFinalBinary = 0x82, kTwoBytesFollow = 126, kEightBytesFollow = 127;
+  const std::uint8_t first = is_text ? kFinalText : kFinalBinary;
+  if (payload_bytes_count < kTwoBytesFollow) return {first, static_cast<std::uint8_t>(payload_bytes_count)};
   const bool is_short = payload_bytes_count <= 0xffff;
-  FrameHeader out{kFinalBinary, is_short ? kTwoBytesFollow : kEightBytesFollow};
+  FrameHeader out{first, is_short ? kTwoBytesFollow : kEightBytesFollow};
   for (int shift = is_short ? 8 : 56; shift >= 0; shift -= 8)
     out.push_back(static_cast<std::uint8_t>(payload_bytes_count >> shift));
   return out;

@@ -8,9 +8,6 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Limit of waiting ticks of Step: that of one command.
-constexpr std::uint32_t kPendingTickMaxCount = 600;
-
 /// The rejection for a boat that belongs to another person or to none.
 wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
   return wire::rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
@@ -35,6 +32,7 @@ void RoomActions::boatsChanged() {
   const std::set<std::uint32_t> on_the_water = room_.water->boatIds();
   room_.roster.keepOnly(on_the_water);
   std::erase_if(levers_, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
+  std::erase_if(room_.movers, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
   std::erase_if(grid_, [&](const auto& entry) { return !on_the_water.contains(entry.first); });
   room_.news.boats = true;
 }
@@ -52,45 +50,11 @@ RoomActions::Outcome RoomActions::reset(const Command& command) {
   levers_.clear();
   room_.schedule.restart();
   room_.schedule.setIdleDue({});
-  room_.time.setSteps(0);
+  dropSteps("the scene began again: the steps have ended");
+  if (command.message.reset().has_seed()) room_.roster.keepOnly({});  // other boats have the numbers now
   room_.news.reset = true;
   room_.news.reset_person_id = command.sender.person_id;
   boatsChanged();
-  return {};
-}
-
-// Time
-
-RoomActions::Outcome RoomActions::setPaused(const Command& command) {
-  if (auto refused = writeAhead(command)) return refused;
-  room_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
-  room_.news.state = true;
-  room_.news.state_person_id = command.sender.person_id;
-  return {};
-}
-
-RoomActions::Outcome RoomActions::setSpeed(const Command& command) {
-  if (auto refused = writeAhead(command)) return refused;
-  room_.time.setSpeed(command.message.set_speed().speed());
-  room_.news.state = true;
-  room_.news.state_person_id = command.sender.person_id;
-  return {};
-}
-
-RoomActions::Outcome RoomActions::advance(const Command& command) {
-  const std::uint32_t tick_count = command.message.step().tick_count();
-  RoomTime& time = room_.time;
-  if (!time.isPaused()) {
-    return wire::rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
-  }
-  if (time.stepsToCome() + tick_count > kPendingTickMaxCount) {
-    return wire::rejection(
-        v1::REJECT_REASON_BUSY, "step.tick_count",
-        fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done", tick_count,
-                    time.stepsToCome(), kPendingTickMaxCount));
-  }
-  if (auto refused = writeAhead(command)) return refused;
-  time.setSteps(time.stepsToCome() + tick_count);
   return {};
 }
 
@@ -129,14 +93,18 @@ RoomActions::Outcome RoomActions::spawnBoat(const Command& command) {
   return {};
 }
 
-RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
-  const std::uint32_t boat_id = command.message.control_boat().boat_id();
+RoomActions::Outcome RoomActions::refuseBoatOfOthers(const Command& command, std::uint32_t boat_id,
+                                                     const char* field) const {
   const std::uint32_t owner_id = room_.roster.ownerOf(boat_id);
   const bool is_free_to_operators = owner_id == 0 && command.sender.role >= core::Role::kOperator;
   const bool is_own = owner_id != 0 && owner_id == command.sender.person_id;
-  if (!is_own && !is_free_to_operators && isOnTheWater(boat_id)) {
-    return notYours("control_boat.boat_id", boat_id, owner_id);
-  }
+  if (is_own || is_free_to_operators || !isOnTheWater(boat_id)) return {};
+  return notYours(field, boat_id, owner_id);
+}
+
+RoomActions::Outcome RoomActions::controlBoat(const Command& command) {
+  const std::uint32_t boat_id = command.message.control_boat().boat_id();
+  if (auto refused = refuseBoatOfOthers(command, boat_id, "control_boat.boat_id")) return refused;
   Command control = command;
   if (isHeld(command)) control.message.mutable_control_boat()->set_throttle_ratio(0.0);
   if (auto rejected = applyToWater(control)) return rejected;
@@ -153,6 +121,21 @@ RoomActions::Outcome RoomActions::removeBoat(const Command& command) {
   }
   if (auto rejected = applyToWater(command)) return rejected;
   boatsChanged();
+  return {};
+}
+
+RoomActions::Outcome RoomActions::moveBoat(const Command& command) {
+  const v1::MoveBoat& move = command.message.move_boat();
+  if (auto refused = refuseBoatOfOthers(command, move.boat_id(), "move_boat.boat_id")) return refused;
+  if (!move.ends() && room_.referee.phase() != v1::GAME_PHASE_UNSPECIFIED &&
+      command.sender.role < core::Role::kOperator) {
+    return wire::rejection(v1::REJECT_REASON_NOT_NOW, "move_boat",
+                           "boats are driven while there is a game; move yours when it is over");
+  }
+  if (auto rejected = applyToWater(command)) return rejected;
+  if (move.ends()) return {};
+  room_.movers[move.boat_id()] = command.sender;
+  levers_.erase(move.boat_id());  // it has no throttle from now on
   return {};
 }
 

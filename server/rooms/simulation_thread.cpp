@@ -18,29 +18,8 @@ using core::ErrorCode;
 
 /// Limit of waiting openings and closings.
 constexpr std::size_t kChangeMaxCount = 16;
-/// A room that opens repeats what happened after its snapshot for at most so long at a time.
+/// A room that opens repeats what happened after its snapshot for at most so long before another opening gets its turn.
 constexpr std::chrono::milliseconds kRestoringSlice{20};
-
-/// Share of its time that a thread works, over the last window that is complete.
-class BusyShare {
- public:
-  using Clock = std::chrono::steady_clock;
-  explicit BusyShare(Clock::time_point now) : begin_(now) {}
-  void waited(Clock::time_point from, Clock::time_point to) {
-    waited_ += to - from;
-    if (to - begin_ < kWindow) return;
-    share_ = 1.0 - std::chrono::duration<double>(waited_) / std::chrono::duration<double>(to - begin_);
-    begin_ = to;
-    waited_ = {};
-  }
-  [[nodiscard]] double value() const { return share_; }
-
- private:
-  static constexpr std::chrono::seconds kWindow{2};
-  Clock::time_point begin_;
-  Clock::duration waited_{};
-  double share_ = 0.0;
-};
 
 }  // namespace
 
@@ -59,7 +38,7 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
   self->thread_ = std::thread([raw = self.get(), &built, setups = std::move(setups)]() mutable {
     auto result = raw->build(std::move(setups));
     const bool ok = static_cast<bool>(result);
-    if (!ok) raw->rooms_.clear();
+    if (!ok) raw->threads_.clear();
     built.set_value(std::move(result));
     if (ok) raw->loop();
   });
@@ -145,6 +124,8 @@ void SimulationThread::wake() {
     is_woken_ = true;
   }
   wake_.notify_one();
+  const std::lock_guard lock(rooms_mutex_);
+  for (const auto& thread : threads_) thread->wake();
 }
 
 void SimulationThread::stop() {
@@ -159,14 +140,16 @@ void SimulationThread::stop() {
 
 std::vector<std::shared_ptr<Room>> SimulationThread::rooms() const {
   const std::lock_guard lock(rooms_mutex_);
-  return rooms_;
+  std::vector<std::shared_ptr<Room>> out;
+  for (const auto& thread : threads_) out.push_back(thread->room());
+  return out;
 }
 
 std::shared_ptr<Room> SimulationThread::find(const std::string& name) const {
   const std::lock_guard lock(rooms_mutex_);
-  if (name.empty()) return rooms_.empty() ? nullptr : rooms_.front();
-  const auto it = std::ranges::find_if(rooms_, [&](const auto& room) { return room->name() == name; });
-  return it == rooms_.end() ? nullptr : *it;
+  const auto it = std::ranges::find_if(
+      threads_, [&](const auto& thread) { return name.empty() || thread->room()->name() == name; });
+  return it == threads_.end() ? nullptr : (*it)->room();
 }
 
 std::string SimulationThread::deviceLine() const {
@@ -175,8 +158,27 @@ std::string SimulationThread::deviceLine() const {
 }
 
 double SimulationThread::sinceLastRound_s() const {
-  const std::lock_guard lock(mutex_);
-  return std::chrono::duration<double>(std::chrono::steady_clock::now() - last_round_).count();
+  double since_s = 0.0;
+  {
+    const std::lock_guard lock(mutex_);
+    since_s = std::chrono::duration<double>(Clock::now() - last_round_).count();
+  }
+  const std::lock_guard lock(rooms_mutex_);
+  for (const auto& thread : threads_) since_s = std::max(since_s, thread->roundTime_s());
+  return since_s;
+}
+
+double SimulationThread::busyShare() const {
+  double sum = 0.0;
+  const std::lock_guard lock(rooms_mutex_);
+  for (const auto& thread : threads_) sum += thread->busyShare();
+  return sum / std::max(1u, std::thread::hardware_concurrency());
+}
+
+ServerLoad SimulationThread::loadOf(const RoomThread& thread) const {
+  ServerLoad load{.busy_share = std::max(thread.busyShare(), busyShare())};
+  for (const auto& room : rooms()) load.people_count += room->roster().presentCount();
+  return load;
 }
 
 // Opening and closing
@@ -247,20 +249,18 @@ void SimulationThread::advanceOpenings() {
 }
 
 core::Result<bool> SimulationThread::advance(RoomOpener::Opening& opening) {
-  // The rooms that run come first; the one that opens makes a tick between theirs at least.
-  const auto now = std::chrono::steady_clock::now();
-  auto deadline = now + kRestoringSlice;
-  for (const auto& room : rooms_) deadline = std::min(deadline, room->due());
-  auto restored = opener_->restore(opening, deadline);
+  const auto now = Clock::now();
+  auto restored = opener_->restore(opening, now + kRestoringSlice);
   return restored && *restored ? opening.room->isOnDisk(now) : restored;
 }
 
 void SimulationThread::add(std::shared_ptr<Room> room) {
-  room->start(std::chrono::steady_clock::now());
-  room->onWake([this] { wake(); });
+  room->unbind();
+  auto thread = std::make_unique<RoomThread>(room);
+  room->loadFrom([this, own = thread.get()] { return loadOf(*own); });
   const std::lock_guard lock(rooms_mutex_);
   device_line_ = opener_->deviceLine();
-  rooms_.push_back(std::move(room));
+  threads_.push_back(std::move(thread));
 }
 
 core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
@@ -274,10 +274,14 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
 }
 
 void SimulationThread::end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before) {
+  std::unique_ptr<RoomThread> thread;
   {
     const std::lock_guard lock(rooms_mutex_);
-    std::erase(rooms_, room);
+    const auto found = std::ranges::find_if(threads_, [&](const auto& one) { return one->room() == room; });
+    thread = std::move(*found);
+    threads_.erase(found);
   }
+  thread->stop();
   before(*room);
   room->abandonCommands();
   summary_.push_back(room->summary(std::chrono::steady_clock::now()));
@@ -288,8 +292,10 @@ void SimulationThread::end(const std::shared_ptr<Room>& room, const std::functio
 void SimulationThread::loop() {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [&] { return stopping_ || running_; });
-  for (const auto& room : rooms_) room->start(Clock::now());
-  BusyShare busy(Clock::now());
+  const auto startThreads = [this] {
+    const std::lock_guard rooms_lock(rooms_mutex_);
+    for (const auto& thread : threads_) thread->start();
+  };
   while (!stopping_) {
     last_round_ = Clock::now();
     if (const auto step = clock_watch_.step(std::chrono::system_clock::now(), last_round_)) {
@@ -304,20 +310,12 @@ void SimulationThread::loop() {
     lock.unlock();
     for (const Change& change : changes) change.run();
     advanceOpenings();
+    startThreads();
     auto due = Clock::now() + std::chrono::milliseconds(100);
     if (std::ranges::any_of(openings_, [](const auto& opening) { return opening.room != nullptr; }))
       due = Clock::now() + std::chrono::milliseconds(1);
-    ServerLoad load{.thread_share = busy.value()};
-    for (const auto& room : rooms_) load.people_count += room->roster().presentCount();
-    for (const auto& room : rooms_) {
-      if (const auto now = Clock::now(); room->due() <= now) room->run(now, load);
-    }
-    for (const auto& room : rooms_) due = std::min(due, room->due());
     lock.lock();
-    const auto idle_since = Clock::now();
     wake_.wait_until(lock, due, [&] { return stopping_ || !changes_.empty() || std::exchange(is_woken_, false); });
-    busy.waited(idle_since, Clock::now());
-    busy_share_ = busy.value();
   }
   const auto changes = std::exchange(changes_, {});
   lock.unlock();
@@ -327,8 +325,10 @@ void SimulationThread::loop() {
     opener_->giveUp(opening);
     opening.done(shut_down);
   }
+  for (const auto& thread : threads_) thread->end();
+  for (const auto& thread : threads_) thread->stop();
   const auto saved_until = Clock::now() + rules_.disk_patience;
-  for (const auto& room : rooms_) {
+  for (const auto& room : rooms()) {
     if (auto kept = room->saveUntil(saved_until); !kept)
       spdlog::error("room {}: it ends without a last snapshot: {}; it continues from the one before and its log",
                     room->name(), kept.error().message);

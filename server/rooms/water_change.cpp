@@ -68,7 +68,8 @@ std::optional<WaterChange::Outcome> WaterChange::beginScene(const Command& comma
     return wire::rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kSceneField,
                            "there is no scene '" + wanted.name() + "'; the greeting lists what there is");
   }
-  if (Clock::now() < next_scene_change_) {
+  // With a held clock the outcome does not depend on how fast the ticks before were.
+  if (Clock::now() < next_scene_change_ && !room_.clock.isHeld()) {
     return wire::rejection(v1::REJECT_REASON_BUSY, kSceneField,
                            "the scene was changed a moment ago; try again in a second");
   }
@@ -127,7 +128,7 @@ void WaterChange::waterReplaced(bool keeps_steps) {
 WaterChange::Outcome WaterChange::refuseSlow(const core::Sender& sender, const std::string& field, double tick_ms,
                                              double max_ms) const {
   const std::size_t own_count = sender.session_id != 0 ? 1 : 0;
-  if (room_.load.people_count <= own_count || tick_ms <= std::max(max_ms, room_.tick_cost.tick_ms())) return {};
+  if (room_.load().people_count <= own_count || tick_ms <= std::max(max_ms, room_.tick_cost.tick_ms())) return {};
   return wire::rejection(
       v1::REJECT_REASON_BUSY, field,
       fmt::format("a tick would take about {:.0f} ms on this device, {:.0f} ms are the most while others are "
@@ -191,6 +192,8 @@ WaterChange::Built WaterChange::takeAdapted(TimePoint now, const Build& build, w
     return Built{};
   };
   if (!water) return fail(core::firstLine(water.error().message));
+  // Its time is not that of the holders' ticks.
+  if (room_.clock.isHeld() && !is_lost_) return fail("somebody holds the room's clock");
   if (is_lost_) return takeRebuilt(now, std::move(water));
   // It ran for the first time: a device that works beside this thread shows what it costs only now.
   const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / room_.time.speed();
@@ -209,7 +212,7 @@ double WaterChange::loadAt(v1::Fidelity level) const {
   const double per_s_now = room_.time.speed() / room_.water->sim().derived().tick_s;
   const double per_s_then = room_.time.speed() / then->tick_s;
   const double more_ms_per_s = room_.tick_cost.predict_ms(*then) * per_s_then - room_.tick_cost.tick_ms() * per_s_now;
-  return room_.load.thread_share + more_ms_per_s / 1e3;
+  return room_.load().busy_share + more_ms_per_s / 1e3;
 }
 
 // Another layout of the particles

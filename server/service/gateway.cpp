@@ -104,8 +104,12 @@ void Gateway::sceneChanged(const rooms::Room& room) {
   if (cluster_.audience) cluster_.audience->sceneChanged(room);
 }
 
-void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) {
-  tell(room, topic::kRoomState, wire::roomState(paused, speed, person_id));
+void Gateway::timeChanged(const rooms::Room& room, const v1::RoomState& state) {
+  tell(room, topic::kRoomState, wire::roomState(state));
+}
+
+void Gateway::clockChanged(const rooms::Room& room, const std::string& how, std::uint32_t person_id) {
+  tell(room, topic::kClock, wire::roomEvent(v1::ROOM_EVENT_KIND_CLOCK, room.tick(), how, person_id));
 }
 
 void Gateway::parameterChanged(const rooms::Room& room, const std::string& path, double value) {
@@ -155,6 +159,12 @@ void Gateway::queryAnswered(const rooms::Room&, const core::Sender& sender, cons
   if (sender.request_id != 0) return rest_.queryAnswered(sender, answer);
   if (cluster_.audience && cluster_.audience->queryAnswered(sender, answer)) return;
   sessions_.queryAnswered(sender.session_id, answer);
+}
+
+void Gateway::hullsFelt(const rooms::Room&, const core::Sender& sender, const v1::HullForces& forces) {
+  if (sender.request_id != 0) return;  // a request has had its answer
+  if (cluster_.audience && cluster_.audience->hullsFelt(sender, forces)) return;
+  sessions_.hullsFelt(sender.session_id, forces);
 }
 
 void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {

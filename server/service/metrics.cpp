@@ -58,7 +58,7 @@ struct RoomSample {
 };
 
 void writeTickTimes(Page& page, const std::vector<RoomSample>& rooms) {
-  page.head("room_tick_seconds", "histogram", "Times of the ticks on the simulation thread.");
+  page.head("room_tick_seconds", "histogram", "Times of the ticks on the room's thread.");
   for (const RoomSample& room : rooms) {
     const rooms::TickTimes& times = room.vitals->tick_times;
     std::uint64_t count = 0;
@@ -118,7 +118,7 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->asleep ? 1 : 0; });
   each("room_lost", "gauge", "1 while the device has failed and the water is built again.",
        [](Sample r) { return r.vitals->lost ? 1 : 0; });
-  each("room_step_seconds", "gauge", "Time of a tick on the simulation thread, mean of the last quarter second.",
+  each("room_step_seconds", "gauge", "Time of a tick on the room's thread, mean of the last quarter second.",
        [](Sample r) { return r.vitals->diagnostics.step_ms / 1e3; });
   each("room_substeps", "gauge", "Substeps per tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
   each("room_particles", "gauge", "Particles now.", [](Sample r) { return r.vitals->diagnostics.particle_count; });

@@ -83,6 +83,8 @@ core::SharedBytes Sessions::greetingOf(const Venue& venue, const VenueView& view
   greeting.set_server_time_s(core::monotonic_s() + view.clock_offset_s);
   greeting.mutable_room_state()->set_paused(room.paused);
   greeting.mutable_room_state()->set_speed(room.speed);
+  for (const std::uint32_t person_id : room.clock_person_ids)
+    greeting.mutable_room_state()->add_clock_person_ids(person_id);
   *greeting.mutable_boat_list() = room.boats;
   for (const std::string& scene : view.scenes) greeting.add_scenes(scene);
   if (view.levels.levels_size() > 0) *greeting.mutable_fidelity_levels() = view.levels;
@@ -386,6 +388,10 @@ void Sessions::queryAnswered(net::SessionId session, const v1::QueryAnswer& answ
   if (std::ranges::any_of(answer.results(), &v1::QueryResult::last))
     return hub().sendAnswer(session, wire::queryAnswer(answer));
   hub().sendState(session, topic::kQueries, wire::queryAnswer(answer));
+}
+
+void Sessions::hullsFelt(net::SessionId session, const v1::HullForces& forces) {
+  hub().sendState(session, topic::kHullForces, wire::hullForces(forces));
 }
 
 void Sessions::commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) {

@@ -16,6 +16,8 @@ using core::Error;
 using core::ErrorCode;
 
 constexpr float kNobody = -1.0f;
+/// The number of a boat's state that tells whether another program moves it.
+constexpr std::size_t kMovedFloat = 22;
 /// The device stores ids as 32-bit floats, which are exact for whole numbers up to this one.
 constexpr std::uint32_t kBoatIdMax = 1u << 24;
 
@@ -78,6 +80,7 @@ void Boats::reset(const core::Scene& scene) {
   next_id_ = std::max(next_id_, boat_id);
   state_.upload(states);
   uploadControls();
+  countMoved();
 }
 
 void Boats::takeOver(const CarriedBoats& carried) {
@@ -85,6 +88,7 @@ void Boats::takeOver(const CarriedBoats& carried) {
   first_id_ = carried.first_id;
   next_id_ = carried.next_id;
   uploadControls();
+  countMoved();
 }
 
 core::Result<std::size_t> Boats::find(std::uint32_t boat_id) const {
@@ -126,7 +130,97 @@ core::Result<void> Boats::remove(std::uint32_t boat_id) {
   places_[*at] = {};
   state_.uploadValue(kNobody, *at * sizeof(State) + 6 * sizeof(float));
   uploadControls();
+  countMoved();
   return {};
+}
+
+// Boats that another program moves
+
+core::Result<void> Boats::prepareMoved(Creation& create) {
+  if (moved_) return {};
+  auto made = std::make_unique<MovedHulls>(create, slot_count_);
+  if (!create.error()) moved_ = std::move(made);
+  return create.result();
+}
+
+core::Result<void> Boats::place(const HullMotion& motion, Wave& wave) {
+  const auto at = find(motion.boat_id);
+  if (!at) return at.error();
+  pressOne(*at, -1, wave);
+  const auto f = [](double v) { return static_cast<float>(v); };
+  const double forward_x = std::cos(motion.heading_rad), forward_z = std::sin(motion.heading_rad);
+  const std::size_t begin = *at * sizeof(State);
+  state_.upload(std::array<float, 6>{f(motion.x_m), f(motion.y_m), f(motion.z_m),
+                                     f(std::remainder(motion.heading_rad, 2 * std::numbers::pi)), f(motion.pitch_rad),
+                                     f(motion.roll_rad)},
+                begin);
+  state_.upload(std::array<float, 6>{f(motion.velocity_x_mps * forward_x + motion.velocity_z_mps * forward_z),
+                                     f(motion.velocity_z_mps * forward_x - motion.velocity_x_mps * forward_z),
+                                     f(motion.velocity_y_mps), f(motion.yaw_rate_radps), f(motion.pitch_rate_radps),
+                                     f(motion.roll_rate_radps)},
+                begin + 8 * sizeof(float));
+  core::Boat& boat = places_[*at].boat;
+  if (boat.throttle_ratio != 0.0 || boat.rudder_ratio != 0.0) {
+    boat.throttle_ratio = boat.rudder_ratio = 0.0;
+    uploadControls();
+  }
+  setMoved(*at, kMovedFor_s);
+  pressOne(*at, 1, wave);
+  return {};
+}
+
+core::Result<void> Boats::release(std::uint32_t boat_id, Wave& wave) {
+  const auto at = find(boat_id);
+  if (!at) return at.error();
+  if (places_[*at].moved_left_s == 0.0) return {};
+  pressOne(*at, -1, wave);
+  setMoved(*at, 0.0);
+  pressOne(*at, 1, wave);
+  return {};
+}
+
+void Boats::setMoved(std::size_t at, double left_s) {
+  const bool was_moved = places_[at].moved_left_s > 0.0;
+  places_[at].moved_left_s = left_s;
+  if (was_moved != (left_s > 0.0))
+    state_.uploadValue(left_s > 0.0 ? 1.0f : 0.0f, at * sizeof(State) + kMovedFloat * sizeof(float));
+  countMoved();
+}
+
+void Boats::countMoved() {
+  moved_count_ =
+      static_cast<std::size_t>(std::ranges::count_if(places_, [](const BoatPlace& p) { return p.moved_left_s > 0.0; }));
+}
+
+void Boats::pressOne(std::size_t at, int sign, Wave& wave) {
+  bind();
+  wave.bindTerrain();
+  wave.pressureHead().bindStorage(PRESSURE_HEAD);
+  moved_->press.setUniform("first_place", static_cast<std::int32_t>(at));
+  moved_->press.setUniform("head_sign", std::int32_t{sign});
+  moved_->press.run(pressedCells(), pressedCells(), 1);
+}
+
+void Boats::feel(Wave& wave, bool begins) {
+  if (!anyMoved()) return;
+  if (begins) moved_->begin();
+  bind();
+  moved_->feel(wave, controls_.place_count);
+}
+
+void Boats::endMovedTick(Wave& wave, std::uint64_t tick, double tick_s, double water_kgpm3) {
+  if (!anyMoved()) return;
+  bind();
+  moved_->drag(wave);
+  std::vector<std::uint32_t> boat_ids(controls_.place_count);
+  for (std::size_t at = 0; at < boat_ids.size(); ++at)
+    if (places_[at].moved_left_s > 0.0) boat_ids[at] = places_[at].boat_id;
+  moved_->submit(tick, std::move(boat_ids), water_kgpm3);
+  for (std::size_t at = 0; at < places_.size(); ++at) {
+    if (places_[at].moved_left_s == 0.0) continue;
+    const double left_s = places_[at].moved_left_s - tick_s;
+    setMoved(at, left_s > 0.5 * tick_s ? left_s : 0.0);
+  }
 }
 
 void Boats::uploadControls() {
@@ -147,7 +241,9 @@ void Boats::mend() {
     const auto own = std::span(states).subspan(at * BOAT_TEXELS * 4, BOAT_TEXELS * 4);
     if (std::ranges::all_of(own, [](float x) { return std::isfinite(x); })) continue;
     state_.upload(startingState(places_[at].boat, places_[at].boat_id), at * sizeof(State));
+    places_[at].moved_left_s = 0.0;
   }
+  countMoved();
 }
 
 void Boats::bind() const {
@@ -164,13 +260,13 @@ void Boats::move(const Wave* wave) {
   bind();
   state_.bindStorage(BOATS);
   if (push_) bindPush();
-  drift_.runGroups(1);
+  if (anyMoved()) moved_->bindForces();
+  (anyMoved() ? moved_->drift : drift_).runGroups(1);
   if (push_) push_.clear();
-  kick_.runGroups(controls_.place_count);
+  (anyMoved() ? moved_->kick : kick_).runGroups(controls_.place_count);
 }
 
-void Boats::press(const gpu::TexelBuffer& pressure_head) {
-  if (controls_.place_count == 0) return;
+std::uint32_t Boats::pressedCells() const {
   double reach_m = 0.0;
   for (const BoatPlace& place : places_) {
     if (place.boat_id == 0) continue;
@@ -178,10 +274,20 @@ void Boats::press(const gpu::TexelBuffer& pressure_head) {
         reach_m, HULL_REACH * 0.5 *
                      std::hypot(std::max(place.boat.length_m, 3 * cell_m_), std::max(place.boat.beam_m, 3 * cell_m_)));
   }
-  const auto across = static_cast<std::uint32_t>(2 * std::ceil(reach_m / cell_m_)) + 3;
+  return static_cast<std::uint32_t>(2 * std::ceil(reach_m / cell_m_)) + 3;
+}
+
+void Boats::press(Wave& wave) {
+  if (controls_.place_count == 0) return;
   bind();
-  pressure_head.bindStorage(PRESSURE_HEAD);
-  press_.run(across, across, controls_.place_count);
+  wave.pressureHead().bindStorage(PRESSURE_HEAD);
+  Pass& pass = anyMoved() ? moved_->press : press_;
+  if (anyMoved()) {
+    wave.bindTerrain();
+    pass.setUniform("first_place", std::int32_t{0});
+    pass.setUniform("head_sign", std::int32_t{1});
+  }
+  pass.run(pressedCells(), pressedCells(), controls_.place_count);
 }
 
 std::vector<BoatRecord> Boats::records() const {

@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include <shared/bindings.h>
 #include <shared/boats.h>
 
+#include <spindrift/sim/hull_forces.h>
 #include <spindrift/sim_state/carried_state.h>
 
 #include "creation.h"
+#include "moved_hulls.h"
 #include "wave.h"
 
 namespace spindrift::sim {
@@ -38,6 +41,23 @@ class Boats {
   core::Result<void> control(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> remove(std::uint32_t boat_id);
 
+  /// Sets the pose and the velocities of a boat, for the next kMovedFor_s: until then only place() moves it further.
+  /// What it presses with in the next tick is that of its new pose. kInvalidInput for an unknown boat.
+  core::Result<void> place(const HullMotion& motion, Wave& wave);
+  /// The water moves the boat again. kInvalidInput for an unknown boat.
+  core::Result<void> release(std::uint32_t boat_id, Wave& wave);
+  /// Returns whether somebody moves a boat.
+  [[nodiscard]] bool anyMoved() const { return moved_count_ > 0; }
+  /// Makes the passes for moved boats; call it before place(), and after takeOver() if anyMoved().
+  core::Result<void> prepareMoved(Creation& create);
+  /// Adds the pressure on moved hulls in the wave step to come; `begins`: the first of a tick.
+  void feel(Wave& wave, bool begins);
+  /// Ends the tick of moved boats: reads the forces on them back, and lets go of those whose time is over. `tick`:
+  /// after it. Call it between move() and press().
+  void endMovedTick(Wave& wave, std::uint64_t tick, double tick_s, double water_kgpm3);
+  std::vector<HullForces> takeForces() { return moved_ ? moved_->poll() : std::vector<HullForces>(); }
+  [[nodiscard]] std::size_t forcesInFlight() const { return moved_ ? moved_->inFlightCount() : 0; }
+
   /// For recovery: puts boats whose state is not finite back to their starting positions. Waits for the device.
   void mend();
 
@@ -45,7 +65,7 @@ class Boats {
   /// level and act on particles only.
   void move(const Wave* wave);
   /// Adds the pressure of the hulls to the pressure head.
-  void press(const gpu::TexelBuffer& pressure_head);
+  void press(Wave& wave);
   /// Binds BOATS and their controls for passes that read hulls.
   void bind() const;
   /// Binds BOAT_PUSH, to which floaters add before move(). Only in scenes with floaters.
@@ -57,6 +77,12 @@ class Boats {
  private:
   core::Result<std::size_t> find(std::uint32_t boat_id) const;
   void uploadControls();
+  /// Cells along each axis that every hull's pressure fits into.
+  [[nodiscard]] std::uint32_t pressedCells() const;
+  /// Adds the pressure of one boat to the head, or takes it away.
+  void pressOne(std::size_t at, int sign, Wave& wave);
+  void setMoved(std::size_t at, double left_s);
+  void countMoved();
 
   double cell_m_;
   std::vector<BoatPlace> places_;  ///< BoatsScene.capacity_count
@@ -68,6 +94,8 @@ class Boats {
   gpu::Buffer control_uniforms_;
   gpu::Buffer push_;  ///< of floaters; zero but between their move and that of the boats. Empty in scenes without
   Pass drift_, kick_, press_;
+  std::unique_ptr<MovedHulls> moved_;  ///< from the first moved boat on
+  std::size_t moved_count_ = 0;
 };
 
 }  // namespace spindrift::sim

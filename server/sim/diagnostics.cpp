@@ -83,6 +83,10 @@ std::size_t Diagnostics::gaugeOffset() const {
   return poolOffset() + (is_pooled_ ? POOL_WORDS * sizeof(std::uint32_t) : 0);
 }
 
+double waterDensity_kgpm3(const core::Scene& scene) {
+  return scene.particles ? scene.particles->rest_density_kgpm3 : kWaterDensity_kgpm3;
+}
+
 Diagnostics::Diagnostics(Creation& create, const core::Scene& scene, const Derived& derived) : ctx_(create.context()) {
   if (derived.particles) {
     is_pooled_ = derived.uniforms.pool_capacity_count > 0;
@@ -150,8 +154,7 @@ void Diagnostics::measure(std::uint64_t tick, const core::Scene& scene, const De
                           Wave* wave, Breakers* breakers, const Boats* boats, const Floaters* floaters) {
   auto slot = ring_->begin();
   if (!slot) return;
-  Scale scale{.tick = tick, .gravity_mps2 = scene.gravity_mps2, .density_kgpm3 = kWaterDensity_kgpm3};
-  if (scene.particles) scale.density_kgpm3 = scene.particles->rest_density_kgpm3;
+  Scale scale{.tick = tick, .gravity_mps2 = scene.gravity_mps2, .density_kgpm3 = waterDensity_kgpm3(scene)};
   if (derived.particles) scale.particle_mass_kg = derived.particles->mass_kg;
   if (derived.wave) scale.cell_area_m2 = derived.wave->cell_m * derived.wave->cell_m;
   scale.droplet_units = derived.uniforms.droplet_units;

@@ -24,6 +24,9 @@
 
 namespace spindrift::sim {
 
+/// Density that weights of water are told with.
+[[nodiscard]] double waterDensity_kgpm3(const core::Scene& scene);
+
 class Diagnostics {
  public:
   Diagnostics(Creation& create, const core::Scene& scene, const Derived& derived);

@@ -43,6 +43,7 @@ void WaterSim::advanceWave() {
   for (std::uint32_t k = 0; k < derived_.wave->substeps_count; ++k) {
     const double begin_s = time_s() + k * derived_.wave->dt_s;
     const double end_s = time_s() + (k + 1) * derived_.wave->dt_s;
+    if (parts_->boats) parts_->boats->feel(*parts_->wave, k == 0);
     parts_->wave->advance(parts_->breakers ? &parts_->breakers->state() : nullptr,
                           parts_->effects.advance(end_s, domainOf(*derived_.wave)), advanceSea(k),
                           begin_s + 0.5 * derived_.wave->dt_s);
@@ -82,6 +83,8 @@ void WaterSim::moveBodies() {
   if (parts_->floaters) parts_->floaters->move(derived_.tick_s, *parts_->wave, parts_->boats.get());
   if (parts_->boats) parts_->boats->move(parts_->wave.get());
   if (parts_->floaters) parts_->floaters->feel(derived_.tick_s, *parts_->wave);
+  if (parts_->boats && parts_->wave)
+    parts_->boats->endMovedTick(*parts_->wave, tick_ + 1, derived_.tick_s, waterDensity_kgpm3(scene_));
   parts_->pressBodies();  // particles that fall in this tick add to it
 }
 

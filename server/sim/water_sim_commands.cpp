@@ -1,9 +1,11 @@
 // WaterSim: commands of clients and events of the scene.
+#include <shared/bindings.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/effects/scheduled_effects.h>
 #include <spindrift/sim_setup/ground.h>
 
+#include "shader_defines.h"
 #include "water_sim_parts.h"
 
 namespace spindrift::sim {
@@ -49,6 +51,32 @@ core::Result<void> WaterSim::controlBoat(std::uint32_t boat_id, double throttle_
 core::Result<void> WaterSim::removeBoat(std::uint32_t boat_id) {
   if (!parts_->boats) return core::invalid("this scene has no boats");
   return parts_->boats->remove(boat_id);
+}
+
+core::Result<void> WaterSim::moveBoat(const HullMotion& motion) {
+  if (!parts_->boats || !parts_->wave) return core::invalid("this scene has no boats on a wave: no boat can be moved");
+  if (auto ready = prepareMovedBoats(); !ready) return ready;
+  return parts_->boats->place(motion, *parts_->wave);
+}
+
+core::Result<void> WaterSim::releaseBoat(std::uint32_t boat_id) {
+  if (!parts_->boats || !parts_->wave) return core::invalid("this scene has no boats on a wave: no boat is moved");
+  if (auto ready = prepareMovedBoats(); !ready) return ready;
+  return parts_->boats->release(boat_id, *parts_->wave);
+}
+
+core::Result<void> WaterSim::prepareMovedBoats() {
+  parts_->uniforms.bindUniform(SIM_UNIFORMS);
+  Creation create(ctx_, shaderDefines(scene_));
+  return parts_->boats->prepareMoved(create);
+}
+
+std::vector<HullForces> WaterSim::takeHullForces() {
+  return parts_->boats ? parts_->boats->takeForces() : std::vector<HullForces>();
+}
+
+std::size_t WaterSim::hullForcesInFlight() const {
+  return parts_->boats ? parts_->boats->forcesInFlight() : 0;
 }
 
 std::vector<BoatRecord> WaterSim::boats() const {

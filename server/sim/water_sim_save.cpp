@@ -147,7 +147,12 @@ core::Result<void> WaterSim::takeOver(const CarriedState& carried) {
 
 void WaterSim::continueWith(const HostState& host, std::uint64_t run_tick) {
   parts_->effects = host.effects;
-  if (parts_->boats) parts_->boats->takeOver(host.boats);
+  if (parts_->boats) {
+    parts_->boats->takeOver(host.boats);
+    if (parts_->boats->anyMoved()) {
+      if (auto ready = prepareMovedBoats(); !ready) device_error_ = ready.error();
+    }
+  }
   first_boat_id_ = host.boats.first_id;
   if (parts_->floaters) parts_->floaters->takeOver(host.floaters);
   if (parts_->wind_sea) parts_->wind_sea->takeOver(host.sea);

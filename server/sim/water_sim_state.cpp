@@ -59,6 +59,11 @@ void WaterSim::watchHealth() {
   if (is_careful_ && tick_ >= careful_until_tick_) setCareful(false);
 }
 
+void WaterSim::takeHealth() {
+  ctx_.finish();
+  watchHealth();
+}
+
 void WaterSim::recordGauges(const Health& health) {
   const double time_s = static_cast<double>(health.tick - start_tick_) * derived_.tick_s;
   if (gauges_) gauges_->add(time_s, health.gauges);
@@ -87,6 +92,8 @@ void WaterSim::recover(const Health& breach) {
   if (parts_->wave) parts_->wave->clearPressure();
   if (parts_->boats) parts_->boats->mend();
   if (parts_->floaters) parts_->floaters->mend();
+  if (parts_->boats && parts_->boats->anyMoved())
+    parts_->pressBodies();  // their next poses take away what they pressed
   parts_->effects.clear();
   abandoned_until_tick_ = tick_;
   ++revision_;

@@ -58,6 +58,7 @@ class Wave {
 
   void declareState(StateBuffers& out);
 
+  [[nodiscard]] core::CellCounts cellCounts() const { return count_; }
   [[nodiscard]] gpu::TexelBuffer& elevation() { return elevation_; }  ///< nx x nz [units]
   /// nx x nz x 2 (9-point: 4) [m^2/s]. Nonlinear bulk: nx x nz x 4, velocities toward +x and +z [m/s], then the water
   /// that they moved [m^2/s].

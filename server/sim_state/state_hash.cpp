@@ -27,6 +27,7 @@ class Hash {
   static bool omits(const Stroke& stroke, std::size_t field) {
     return stroke.tool == StrokeTool::kFinger && field == 2;
   }
+  static bool omits(const BoatPlace& place, std::size_t field) { return place.moved_left_s == 0.0 && field == 2; }
   static bool omits(const HostState& host, std::size_t field) { return !everHadFloaters(host) && field == 2; }
 
  public:

@@ -29,6 +29,22 @@ wire::CommandRejection whyNot(const v1::SetParameter& change, core::Scene wanted
   return wire::rejection(reason(), change.path(), message);
 }
 
+sim::HullMotion toMotion(const v1::MoveBoat& move) {
+  return {.boat_id = move.boat_id(),
+          .x_m = move.x_m(),
+          .y_m = move.y_m(),
+          .z_m = move.z_m(),
+          .heading_rad = move.heading_rad(),
+          .pitch_rad = move.pitch_rad(),
+          .roll_rad = move.roll_rad(),
+          .velocity_x_mps = move.velocity_x_mps(),
+          .velocity_y_mps = move.velocity_y_mps(),
+          .velocity_z_mps = move.velocity_z_mps(),
+          .yaw_rate_radps = move.yaw_rate_radps(),
+          .pitch_rate_radps = move.pitch_rate_radps(),
+          .roll_rate_radps = move.roll_rate_radps()};
+}
+
 /// Returns the rejection with `reason`, or BUSY, if the water did not take a command.
 template <typename T>
 RoomWater::Outcome outcomeOf(const core::Result<T>& done, std::string field = "",
@@ -69,10 +85,7 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
     case Command::kSetParameter:
       return [](RoomWater& room, const Command& command) { return room.setParameter(command.set_parameter()); };
     case Command::kReset:
-      return [](RoomWater& room, const Command&) {
-        room.sim().reset();
-        return Outcome();
-      };
+      return [](RoomWater& room, const Command& command) { return room.reset(command.reset()); };
     case Command::kSpawnBoat:
       return [](RoomWater& room, const Command& command) {
         return room.spawned(room.sim().spawnBoat(scene::toCore(command.spawn_boat().boat())), "spawn_boat");
@@ -82,6 +95,12 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
         const v1::ControlBoat& control = command.control_boat();
         return outcomeOf(room.sim().controlBoat(control.boat_id(), control.throttle_ratio(), control.rudder_ratio()),
                          "control_boat.boat_id", v1::REJECT_REASON_UNKNOWN_BOAT);
+      };
+    case Command::kMoveBoat:
+      return [](RoomWater& room, const Command& command) {
+        const v1::MoveBoat& move = command.move_boat();
+        return outcomeOf(move.ends() ? room.sim().releaseBoat(move.boat_id()) : room.sim().moveBoat(toMotion(move)),
+                         "move_boat.boat_id", v1::REJECT_REASON_UNKNOWN_BOAT);
       };
     case Command::kRemoveBoat:
       return [](RoomWater& room, const Command& command) {
@@ -121,6 +140,19 @@ RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
   return outcome;
 }
 
+RoomWater::Outcome RoomWater::reset(const v1::Reset& reset) {
+  if (!reset.has_seed()) {
+    sim().reset();
+    return {};
+  }
+  sim().resetWith(reset.seed());
+  if (reset.seed() == 0) return {};
+  v1::Scene seeded = scene();
+  seeded.set_seed(reset.seed());
+  setScene(std::move(seeded));
+  return {};
+}
+
 RoomWater::Outcome RoomWater::setParameter(const v1::SetParameter& change) {
   v1::Scene changed = scene();
   if (auto error = scene::setParameter(changed, change.path(), change.value())) {
@@ -149,6 +181,12 @@ RoomWater::Outcome RoomWater::adopt(Relayout relayout, core::Result<sim::Prepare
   setScene(std::move(relayout.changed));
   ++state_id_;
   return {};
+}
+
+void RoomWater::takeHealth() {
+  const std::uint64_t before = sim().recoveredCount();
+  sim().takeHealth();
+  if (sim().recoveredCount() != before) ++state_id_;
 }
 
 TickWork RoomWater::work() const {
@@ -181,6 +219,7 @@ core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
   // Values may have changed since the building began.
   v1::Scene wanted = next->scene();
   scene::keepParameters(scene(), wanted);
+  wanted.set_seed(scene().seed());
   next->bind();
   auto done = next->sim().setScene(scene::toCore(wanted));
   if (done) done = next->sim().takeOver(carried);

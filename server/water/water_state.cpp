@@ -214,6 +214,7 @@ v1::WaterState toMessage(const sim::SavedState& state) {
     v1::BoatPlace& message = *out.add_boats();
     message.set_boat_id(place.boat_id);
     write(*message.mutable_boat(), place.boat, kBoatNumbers);
+    message.set_moved_left_s(place.moved_left_s);
   }
   out.set_first_boat_id(state.host.boats.first_id);
   out.set_next_boat_id(state.host.boats.next_id);
@@ -261,7 +262,7 @@ core::Result<sim::SavedState> toSavedState(const v1::WaterState& message) {
   for (const v1::ActiveStroke& stroke : message.strokes()) strokes.push_back(toStroke(stroke));
   if (!host.effects.strokes().resume(std::move(strokes))) return invalid("it has more strokes than there can be");
   for (const v1::BoatPlace& place : message.boats())
-    host.boats.places.push_back({place.boat_id(), scene::toCore(place.boat())});
+    host.boats.places.push_back({place.boat_id(), scene::toCore(place.boat()), place.moved_left_s()});
   host.boats.first_id = message.first_boat_id();
   host.boats.next_id = message.next_boat_id();
   if (message.floaters_size() > static_cast<int>(core::kMaxFloaters))

@@ -25,6 +25,8 @@ constexpr std::size_t kPathMaxBytes = 128;
 constexpr std::size_t kNameEchoMaxBytes = 64;
 constexpr const char* kNoBoats = "this scene has no boats; choose a scene that has";
 constexpr const char* kNoWave = "this scene has no wave to measure; choose a scene that has";
+constexpr const char* kNoWaveForHulls =
+    "this scene has particles only, whose forces on hulls are not measured; choose a scene with a wave";
 constexpr const char* kNoFloaters = "this scene has no floaters; choose a scene that has";
 
 CommandRejection rejectionOf(std::uint64_t command_id, scene::FieldIssue issue) {
@@ -296,6 +298,12 @@ std::optional<CommandRejection> checkAgainstScene(const v1::Command& command, co
       break;
     case v1::Command::kRemoveBoat:
       needBoats("remove_boat");
+      break;
+    case v1::Command::kMoveBoat:
+      needBoats("move_boat");
+      if (issues.empty() && !scene.has_wave()) scene::addAbsent(issues, "move_boat", kNoWaveForHulls);
+      if (issues.empty() && !command.move_boat().ends())
+        issues = scene::checkPlace(command.move_boat().x_m(), command.move_boat().z_m(), scene, "move_boat.");
       break;
     case v1::Command::kTakeBoat:
       needBoats("take_boat");

@@ -45,12 +45,8 @@ core::SharedBytes parameterChanged(std::string_view path, double value, std::uin
   return messageWith(&v1::ServerMessage::mutable_parameter_changed, std::move(out));
 }
 
-core::SharedBytes roomState(bool paused, double speed, std::uint32_t person_id) {
-  v1::RoomState out;
-  out.set_paused(paused);
-  out.set_speed(speed);
-  out.set_person_id(person_id);
-  return messageWith(&v1::ServerMessage::mutable_room_state, std::move(out));
+core::SharedBytes roomState(const v1::RoomState& state) {
+  return messageWith(&v1::ServerMessage::mutable_room_state, state);
 }
 
 core::SharedBytes boatList(const v1::BoatList& boats) {
@@ -89,6 +85,10 @@ core::SharedBytes game(const v1::Game& game) {
 
 core::SharedBytes queryAnswer(const v1::QueryAnswer& answer) {
   return messageWith(&v1::ServerMessage::mutable_query_answer, answer);
+}
+
+core::SharedBytes hullForces(const v1::HullForces& forces) {
+  return messageWith(&v1::ServerMessage::mutable_hull_forces, forces);
 }
 
 core::SharedBytes levelChanged(core::Level level) {

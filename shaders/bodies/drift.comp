@@ -3,6 +3,7 @@
 // Updates BOATS; reads TERRAIN, BOAT_PUSH. The second half is bodies/kick.comp, which says how both are second order.
 // Contacts: three circles along each hull against other boats, obstacles, shallow ground and sides. Each boat moves by half
 // of the overlap and loses its approaching speed.
+// MOVED: a boat that another program moves continues as it is; others bounce off it.
 // Invariant: boats stay inside the domain and out of obstacles; nothing depends on the order of invocations.
 #include "bodies/boat.glsl"
 #if PUSHED
@@ -63,7 +64,11 @@ void meetBoats(BoatState b, uint own, inout vec2 shift_m, inout vec2 velocity_mp
       }
     }
     if (deepest_m <= 0.0) continue;
+#if MOVED
+    const float share = o.is_moved ? 1.0 : o.hull_m.x * o.hull_m.y / (b.hull_m.x * b.hull_m.y + o.hull_m.x * o.hull_m.y);
+#else
     const float share = o.hull_m.x * o.hull_m.y / (b.hull_m.x * b.hull_m.y + o.hull_m.x * o.hull_m.y);
+#endif
     pushBack(shift_m, velocity_mps, normal, share * deepest_m, share * dot(velocityOf(o) - velocityOf(b), normal));
   }
 }
@@ -108,6 +113,20 @@ void meetSides(BoatState b, inout vec2 shift_m, inout vec2 velocity_mps) {
   }
 }
 
+#if MOVED
+/// Centre of a boat that is moved from outside, kept over the water: there is a wave, or no boat is moved.
+vec2 movedCentre(vec2 centre_m) {
+  const vec2 inside_m = waveHalf_m();
+#if !WAVE_PERIODIC_X
+  centre_m.x = clamp(centre_m.x, -inside_m.x, inside_m.x);
+#endif
+#if !WAVE_PERIODIC_Z
+  centre_m.y = clamp(centre_m.y, -inside_m.y, inside_m.y);
+#endif
+  return acrossSides(centre_m);
+}
+#endif
+
 void main() {
   const uint own = gl_LocalInvocationID.x;
   BoatState b = boatAt(min(own, boat_place_count - 1u));  // the buffer may end after the last one
@@ -120,13 +139,21 @@ void main() {
     const vec2 push_mps = vec2(boat_push[2u * own], boat_push[2u * own + 1u]) / PUSH_UNITS;
     velocity_mps += push_mps * min(1.0, kPushMax_mps / max(length(push_mps), 1e-6));
 #endif
-    meetBoats(b, own, shift_m, velocity_mps);
-#if VARIED
-    meetGround(b, shift_m, velocity_mps);
+#if MOVED
+    if (b.is_moved) b.centre_m.xz = movedCentre(b.centre_m.xz);
+    const bool is_free = !b.is_moved;
+#else
+    const bool is_free = true;
 #endif
-    meetSides(b, shift_m, velocity_mps);
-    b.centre_m.xz = acrossSides(b.centre_m.xz + shift_m);
-    setVelocity(b, velocity_mps);
+    if (is_free) {
+      meetBoats(b, own, shift_m, velocity_mps);
+#if VARIED
+      meetGround(b, shift_m, velocity_mps);
+#endif
+      meetSides(b, shift_m, velocity_mps);
+      b.centre_m.xz = acrossSides(b.centre_m.xz + shift_m);
+      setVelocity(b, velocity_mps);
+    }
   }
   // Barrier: all invocations have read the boats before any writes them.
   memoryBarrierBuffer();

@@ -14,20 +14,23 @@
 // of about two lengths. A boat thrown up by waves falls freely: forces but buoyancy are multiplied by min(1, 2 s), s
 // being the share of its weight that the water carries.
 // NONLINEAR: ground under the keel carries, too, and holds the hull by friction: boats run aground and float off.
+// MOVED: a boat that another program moves keeps its velocities. Of the forces on it, the resistance comes from here, in
+// HULL_FORCES; bodies/hull_forces.comp has those of the pressure.
 #include "bodies/boat.glsl"
 #include "wave/wave_cell.glsl"
 #if WAVE
 layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 #endif
-#if VARIED
-#include "common/terrain_texels.glsl"
-#endif
+#include "bodies/hull_cells.glsl"
 
 const uint kGroup = 64u;
 layout(local_size_x = kGroup) in;
 
 layout(std430, binding = BOATS) restrict buffer Boats { vec4 boats[]; };
+#if MOVED
+layout(std430, binding = HULL_FORCES) restrict buffer HullForces { vec4 hull_forces[]; };
+#endif
 
 const float kHeaveDamping = 0.3;      // of critical
 const float kTiltDamping = 0.25;      // of critical
@@ -60,29 +63,6 @@ shared vec3 share_push[kGroup];
 shared float share_ground[kGroup];
 #endif
 
-vec2 inHull(BoatState b, vec2 d) { return vec2(dot(d, forwardOf(b.heading)), dot(d, starboardOf(b.heading))); }
-
-/// Index of a cell, or -1 if it is outside or never holds water.
-int wetCell(ivec2 cell) {
-#if WAVE
-  const ivec2 n = waveCounts();
-#if WAVE_PERIODIC_X
-  cell.x = wrapped(cell.x, n.x);
-#endif
-#if WAVE_PERIODIC_Z
-  cell.y = wrapped(cell.y, n.y);
-#endif
-  if (any(lessThan(cell, ivec2(0))) || any(greaterThanEqual(cell, n))) return -1;
-  const int i = cell.x + n.x * cell.y;
-#if VARIED && !NONLINEAR
-  if (texelFetch(terrain, i).w <= 0.0) return -1;
-#endif
-  return i;
-#else
-  return 0;
-#endif
-}
-
 /// The surface without the hull's own dent. Without a wave, boats float at the resting level. [m]
 float levelAt(int i, float own_head_m) {
 #if WAVE
@@ -113,7 +93,11 @@ void add(inout HullSums sums, BoatState b, BoatState before, vec2 half_m, float 
   const vec2 d = waveCellCentre(cell) - b.centre_m.xz;
   const vec2 at_m = inHull(b, d);
   const float w = hullShape(half_m, at_m);
+#if MOVED
+  const float level_m = levelAt(i, b.is_moved ? movedHead(b, half_m, at_m, depthAt(i)) : peak_m * w);
+#else
   const float level_m = levelAt(i, peak_m * w);
+#endif
   const float keel_m = b.centre_m.y - 0.5 * b.hull_m.z + at_m.x * b.tilt.x - at_m.y * b.tilt.y;
 #if NONLINEAR
   const float ground_m = -texelFetch(terrain, i).w;
@@ -266,6 +250,35 @@ void kick(inout BoatState b, HullSums sums, float duration_s) {
   push(b, forces, 0.5 * duration_s);
 }
 
+#if MOVED
+/// Resistance of the moving water against a boat that is moved from outside, with the coefficients of the others, for the mass of
+/// the water that it displaces. Also sets what others see of the boat.
+void resist(BoatState b, HullSums sums, uint place) {
+  const float weight = max(sums.lift.x, 1e-6);
+  const float cell_m2 = sim.wave_cell_m * sim.wave_cell_m;
+#if NONLINEAR
+  const float lift = (sums.lift.y - sums.ground) / weight;
+#else
+  const float lift = sums.lift.y / weight;
+#endif
+  const float volume_m3 = hullFullness(b, hullHalf(b)) * lift * weight * cell_m2;
+  const vec3 water_mps = sums.water.yzw / max(sums.water.x, 1e-6);
+  const vec2 relative_mps = b.speed_mps.xy - inHull(b, water_mps.xy);
+  const vec2 slowed_mps2 =
+      -relative_mps * vec2(kDragPerLength / b.hull_m.x * abs(relative_mps.x), kSwayDrag_per_s + abs(relative_mps.y) / b.hull_m.y);
+  const vec2 force = volume_m3 * (forwardOf(b.heading) * slowed_mps2.x + starboardOf(b.heading) * slowed_mps2.y);
+  const vec2 middle_m = sums.spread.xy / weight;
+  const vec2 spread_m2 = sums.spread.zw / weight - middle_m * middle_m;
+  const uint out_at = place * HULL_FORCE_TEXELS;
+  hull_forces[out_at + 4u] = vec4(force.x, 0.0, force.y, 1.0 / (weight * cell_m2));
+  hull_forces[out_at + 5u] = vec4(0.0, 0.0, -volume_m3 * (spread_m2.x + spread_m2.y) * kYawRate_per_s * b.yaw_rate, 0.0);
+  const uint at = place * BOAT_TEXELS;
+  boats[at + 3u] = vec4(b.tilt_rate, vec2(0.0));
+  boats[at + 5u] = vec4(b.full_speed_mps, 1.0 - clamp(2.0 * lift / b.hull_m.w, 0.0, 1.0), 1.0, 0.0);
+  boats[at + 6u] = vec4(water_mps, 0.0);
+}
+#endif
+
 void main() {
   const uint place = gl_WorkGroupID.x;
   vec4 t[BOAT_TEXELS];
@@ -275,6 +288,12 @@ void main() {
   const vec2 half_m = hullHalf(b);
   const HullSums sums = totalOf(shareOf(b, half_m, hullPeak(b, half_m)));
   if (gl_LocalInvocationID.x > 0u) return;
+#if MOVED
+  if (b.is_moved) {
+    resist(b, sums, place);
+    return;
+  }
+#endif
   b.control = boat_control[place].xy;
   // A new boat's velocities are those of its launch, a tick ago and not half a tick.
   kick(b, sums, b.age_s <= sim.tick_s ? 1.5 * sim.tick_s : sim.tick_s);

@@ -105,6 +105,9 @@
 // Boats; shared/boats.h. Their controls are a uniform block.
 #define BOATS 27
 #define BOAT_CONTROLS 2
+// Forces on hulls that another program moves; shared/boats.h. The number is that of the grid; only passes over boats use
+// this buffer.
+#define HULL_FORCES 8
 // Floaters; shared/floaters.h. What contacts and particles change in a step; what each can touch in a tick; floaters in each tile;
 // centre and reach of each [m]. The numbers are those of the grid; only passes over floaters, and those of particles after the grid, use
 // these buffers. Push of floaters on boats; the number is that of particles, no pass has both.

@@ -14,6 +14,7 @@
 #include <spindrift/bench/fanout.h>
 #include <spindrift/bench/load.h>
 #include <spindrift/bench/queries.h>
+#include <spindrift/bench/rooms.h>
 #include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
 #include <spindrift/codec/stream.h>
@@ -32,7 +33,7 @@ namespace {
 constexpr double kFloaterSizesApart = 2.2;
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, fanout, load, query, soak; all: step and codec
+  std::string suite = "all";  ///< step, codec, fanout, load, query, rooms, soak; all: step and codec
   std::string scene = "harbor";
   std::string fidelity;  ///< as in ServeOptions
   std::string device = "auto";
@@ -87,11 +88,20 @@ int benchQueries(const BenchOptions& options, const gpu::DeviceChoice& device, c
   return 0;
 }
 
+int benchRooms(const BenchOptions& options, const gpu::DeviceChoice& device) {
+  gpu::prepareSoftwareDisplays(std::thread::hardware_concurrency());
+  auto result = bench::measureRooms(device, options.seconds, options.json_file == "-" ? stderr : stdout);
+  if (!result) return fail(result.error());
+  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
+  return 0;
+}
+
 int bench(const BenchOptions& options) {
   if (options.suite == "load") return benchLoad(options);
   if (options.suite == "soak") return benchSoak(options);
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
+  if (options.suite == "rooms") return benchRooms(options, *device);
   auto file = core::findScene(options.scene);
   if (!file) return fail(file.error());
   auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
@@ -130,7 +140,7 @@ int bench(const BenchOptions& options) {
 std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<BenchOptions>();
   program.add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "query", "soak"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "query", "rooms", "soak"}))
       ->capture_default_str();
   program.add_option("--scene", options->scene, "Scene file or name of a shipped scene")
       ->check(isNotEmpty())

@@ -101,7 +101,7 @@ bool serveOne(boost::beast::flat_buffer& buffer, More more, Site& site) {
   const net::Request& request = parser.get();
   must(request.count(boost::beast::http::field::transfer_encoding) == 0, "only its length divides a request");
   if (boost::beast::websocket::is_upgrade(request)) {
-    const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), acceptRoom);
+    const net::UpgradeDecision decision = net::decideUpgrade(request, buffer.size(), true, acceptRoom);
     if (decision.refusal) {
       must(decision.refusal->status >= 400, "a refusal is an error");
       checkReply(*decision.refusal);

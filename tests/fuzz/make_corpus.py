@@ -425,6 +425,19 @@ def tls():
     }
 
 
+FOXGLOVE = {
+    "subscribe": (b't{"op":"subscribe","subscriptions":[{"id":1,"channelId":1},{"id":2,"channelId":4}]}', "surface_16", "bodies_2",
+                  b't{"op":"unsubscribe","subscriptionIds":[1]}'),
+    "layers": (b't{"op":"subscribe","subscriptions":[{"id":1,"channelId":9},{"id":2,"channelId":3},{"id":3,"channelId":7}]}', "particles_5", "diagnostics_gauges"),
+    "parameters": (b't{"op":"subscribeParameterUpdates","parameterNames":[]}', b't{"op":"getParameters","parameterNames":["wave.depth_m"],"id":"a"}',
+                   b't{"op":"setParameters","id":"b","parameters":[{"name":"wave.depth_m","value":3.5},{"name":"x","value":true}]}', "ack"),
+    "splash": (b'b\2\1\0\0\0\7\0\0\0\4\0\0\0json{"x_m":1.5,"radius_m":2}', "ack"),
+    "reset": (b"b\2\2\0\0\0\7\0\0\0\4\0\0\0json", "reject"),
+    "greeted_again": (b't{"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]}', "greeting"),
+    "garbage": (b"t{", b"t[]", b"b", b"b\1\0\0\0\0", b't{"op":"advertise","channels":[]}', b"b\2\1\0\0\0\1\0\0\0\xff\xff\xff\xff"),
+}
+
+
 def encoded(text):
     command = ["protoc", f"--proto_path={PROTO}", "--encode=spindrift.v1.ClientMessage", "spindrift/v1/wire.proto"]
     return subprocess.run(command, input=text.encode(), stdout=subprocess.PIPE, check=True).stdout
@@ -444,6 +457,9 @@ def main():
     messages = {name: encoded(text) for name, text in CLIENT_MESSAGES.items()}
     write("client_message", messages | {name: text.encode() for name, text in JSON_MESSAGES.items()})
     write("frame", {name: MARK.join((golden / file).read_bytes() for file in row) for name, row in FRAME_ROWS.items()})
+    # Names are golden messages of the server.
+    write("foxglove", {name: MARK.join(part if isinstance(part, bytes) else b"s" + (golden / f"{part}.bin").read_bytes() for part in row)
+                       for name, row in FOXGLOVE.items()})
     # The first byte is the size of the pieces in which a request arrives.
     pieces = (b"\xff", b"\x00", b"\x03")
     write("http", {name: pieces[i % 3] + text.encode("latin-1") for i, (name, text) in enumerate(REQUESTS.items())})

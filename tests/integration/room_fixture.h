@@ -23,6 +23,7 @@ struct RecordingOutlets final : SilentOutlets {
   std::vector<core::LevelSet> ready_levels;  ///< of each frame
   std::vector<std::uint64_t> applied;
   std::vector<v1::QueryAnswer> query_answers;
+  std::vector<v1::HullForces> hull_forces;
   std::vector<std::string> rejected;
   std::vector<std::string> fidelity_news;
   std::vector<std::uint64_t> rejected_ids;
@@ -37,6 +38,9 @@ struct RecordingOutlets final : SilentOutlets {
   }
   void queryAnswered(const rooms::Room&, const core::Sender&, const v1::QueryAnswer& answer) override {
     query_answers.push_back(answer);
+  }
+  void hullsFelt(const rooms::Room&, const core::Sender&, const v1::HullForces& forces) override {
+    hull_forces.push_back(forces);
   }
   void frameReady(const rooms::Room&, core::FrameView frame) override {
     ++frame_count;
@@ -59,6 +63,7 @@ class RoomTest : public testing::Test {
     ASSERT_TRUE(room);
     room_ = *std::move(room);
     watchEverything();
+    room_->loadFrom([] { return rooms::ServerLoad{.people_count = 1}; });
     room_->start(Clock::now());
   }
   void TearDown() override {
@@ -82,7 +87,7 @@ class RoomTest : public testing::Test {
     const auto deadline = Clock::now() + kPatience;
     while (!holds()) {
       if (Clock::now() > deadline) return false;
-      room_->run(Clock::now(), {.people_count = 1});
+      room_->run(Clock::now());
       std::this_thread::sleep_for(1ms);
     }
     return true;

@@ -57,6 +57,10 @@ class Recorded : public ServerTest {
     ASSERT_TRUE(one.apply(setParameter("wave.depth_m", 1.2)));
     ASSERT_TRUE(one.apply(spawnBoat(-2, 1)));
     ASSERT_TRUE(one.apply(controlBoat(2, 1, 0.3)));
+    v1::Command move;
+    move.mutable_move_boat()->set_boat_id(1);
+    move.mutable_move_boat()->set_velocity_x_mps(0.5);
+    ASSERT_TRUE(one.apply(move));
     ASSERT_TRUE(one.runFor(10));
     ASSERT_TRUE(one.apply(reset()));
     ASSERT_TRUE(one.apply(splash(0.2)));
@@ -74,11 +78,33 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   live();
   const auto outcome = replayed(logFile());
   ASSERT_TRUE(outcome) << outcome.error().message;
-  EXPECT_EQ(outcome->command_count, 7U);
+  EXPECT_EQ(outcome->command_count, 8U);
   EXPECT_GE(outcome->hash_count, 8U);
   EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
   EXPECT_FALSE(outcome->truncation);
   EXPECT_FALSE(outcome->device_difference) << *outcome->device_difference;
+}
+
+TEST_F(Recorded, AHeldClockAndASeedAreReplayedBitForBit) {
+  {
+    ScriptedClient one = client();
+    ASSERT_TRUE(one.apply(takeClock()));
+    ASSERT_TRUE(one.apply(splash(0.3)));
+    ASSERT_TRUE(one.ask(waitingStep(20)).has_ack());
+    ASSERT_TRUE(one.apply(spawnBoat(-2, 1)));
+    ASSERT_TRUE(one.apply(seededReset(99)));
+    EXPECT_EQ(one.ask(spawnBoat(-2, 1)).ack().boat_id(), 2u) << "after the scene's boat";
+    ASSERT_TRUE(one.apply(splash(0.2)));
+    ASSERT_TRUE(one.ask(waitingStep(20)).has_ack());
+    ASSERT_TRUE(one.apply(releaseClock()));
+    ASSERT_TRUE(one.runFor(10));
+    server().stop();
+  }
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->command_count, 5U);
+  EXPECT_GE(outcome->hash_count, 8U);
+  EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
 }
 
 /// Particles whose number may change while the room runs.

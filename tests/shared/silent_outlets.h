@@ -7,7 +7,8 @@ namespace spindrift::test {
 
 struct SilentOutlets : rooms::RoomOutlets {
   void sceneChanged(const rooms::Room&) override {}
-  void timeChanged(const rooms::Room&, bool, double, std::uint32_t) override {}
+  void timeChanged(const rooms::Room&, const v1::RoomState&) override {}
+  void clockChanged(const rooms::Room&, const std::string&, std::uint32_t) override {}
   void parameterChanged(const rooms::Room&, const std::string&, double) override {}
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}
@@ -21,6 +22,7 @@ struct SilentOutlets : rooms::RoomOutlets {
   void commandApplied(const rooms::Command&, const v1::Ack&) override {}
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override {}
   void queryAnswered(const rooms::Room&, const core::Sender&, const v1::QueryAnswer&) override {}
+  void hullsFelt(const rooms::Room&, const core::Sender&, const v1::HullForces&) override {}
   void frameReady(const rooms::Room&, core::FrameView) override {}
 };
 

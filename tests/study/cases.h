@@ -102,6 +102,11 @@ Outcome floatingBody(gpu::Context& ctx, bool quick);
 Outcome machWedge(gpu::Context& ctx, bool quick);
 Outcome boatResistance(gpu::Context& ctx, bool quick);
 
+// hull_force_cases.cpp
+Outcome hullBuoyancy(gpu::Context& ctx, bool quick);
+Outcome hullHeave(gpu::Context& ctx, bool quick);
+Outcome hullInWaves(gpu::Context& ctx, bool quick);
+
 // floater_cases.cpp
 Outcome floatingObjects(gpu::Context& ctx, bool quick);
 Outcome floaterMotion(gpu::Context& ctx, bool quick);

@@ -6,7 +6,7 @@ import { leadsToFront } from "./front/entrance";
 import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
 import { requestRooms } from "../client/rest/rooms";
 import { roomOf } from "./net/room_address";
-import { socketUrl } from "./net/water_client";
+import { prepareWorker, socketUrl } from "./net/water_client";
 import { translation } from "./net/translation";
 import { languageNow } from "./ui/language";
 
@@ -38,6 +38,7 @@ async function openRoomOrFront(): Promise<void> {
     return openFront();
   }
   void showPoster();
+  prepareWorker();
   const { openWaterPage } = await (water ?? load());
   openWaterPage();
 }

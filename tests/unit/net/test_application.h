@@ -73,6 +73,8 @@ class TestApplication final : public net::Application {
   };
 
   net::Hub* hub = nullptr;
+  /// Set it before a session that uses it.
+  std::function<std::unique_ptr<core::Translator>(const net::SessionOpening&)> make_translator;
   DemandTables demands;
 
   void serverStarts(net::Hub& served_by) override { hub = &served_by; }
@@ -82,6 +84,10 @@ class TestApplication final : public net::Application {
     if (room.empty() || room == "pool") return {};
     if (room == "later") return core::Error{core::ErrorCode::kUnavailable, "the room cannot be reached now"};
     return core::Error{core::ErrorCode::kInvalidInput, "there is no room \"" + room + "\""};
+  }
+
+  std::unique_ptr<core::Translator> translatorFor(const net::SessionOpening& opening) override {
+    return make_translator ? make_translator(opening) : nullptr;
   }
 
   void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override {

@@ -51,6 +51,7 @@ TEST(EmptyCommands, ArePermittedInEveryShippedScene) {
         const bool has_part = action == "start_game"         ? scene->course().marks_size() > 0
                               : action == "place_gauge"      ? scene->has_wave()
                               : action == "query"            ? scene->has_wave()
+                              : action == "move_boat"        ? scene->has_boats() && scene->has_wave()
                               : action.ends_with("_floater") ? scene->has_floaters()
                                                              : scene->has_boats();
         EXPECT_FALSE(has_part) << rejection->message();

@@ -5,9 +5,16 @@ import type { Frame, GroundAnswer, PageEvent, PageEventHandlers, PageWishes, Ses
 import type { RoomWish } from "../../client/rest/rooms";
 import { roomOf } from "./room_address";
 
-/** Starts the worker; the page calls it once. */
+let worker: Worker | undefined;
+
+/** Starts the worker, so that it is loaded while the page makes its WebGL context: in software that takes as long. */
+export function prepareWorker(): Worker {
+  return (worker ??= new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+}
+
+/** The page calls it once. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
-  return new WaterClient(new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }), handlers);
+  return new WaterClient(prepareWorker(), handlers);
 }
 
 export class WaterClient {

@@ -55,9 +55,10 @@ export function makeLace(side: number): Uint8Array<ArrayBuffer> {
       raw[k * side + i] = 0.6 * walls + 0.55 * clouds;
     }
   // Rank instead of value: uniformly distributed.
-  const order = Array.from(raw.keys()).sort((a, b) => raw[a]! - raw[b]!);
+  // Numbers without a comparison of our own sort ten times as fast: the value, and behind it the index.
+  const order = Float64Array.from(raw, (value, at) => Math.floor(value * 2 ** 32) * raw.length + at).sort();
   const lace = new Uint8Array(side * side);
-  order.forEach((at, rank) => (lace[at] = Math.floor((256 * rank) / raw.length)));
+  order.forEach((key, rank) => (lace[key % raw.length] = Math.floor((256 * rank) / raw.length)));
   return lace;
 }
 

@@ -31,7 +31,7 @@ export function makeRenderer(canvas: HTMLCanvasElement): MadeRenderer | undefine
     // Targets are cleared to zero in all channels.
     renderer.setClearColor(0x000000, 0);
     // SwiftShader converts every half float that it samples: the water of the harbor took 45 instead of 34 ms.
-    const texelType = isSoftwareRenderer && renderer.extensions.has("OES_texture_float_linear") ? FloatType : HalfFloatType;
+    const texelType = isSoftwareRenderer && ["OES_texture_float_linear", "EXT_float_blend"].every((name) => renderer.extensions.has(name)) ? FloatType : HalfFloatType;
     return { renderer, isSoftwareRenderer, texelType };
   } catch {
     // three has logged the reason.

@@ -21,7 +21,7 @@ import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
 
 /** Share of the ratio of water_optics.ts that counts here: with all of it a tank of particles is opaque. */
-const kClearness = 0.45;
+const kClearness = 0.7;
 
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {
@@ -32,11 +32,11 @@ interface FluidPasses {
 }
 
 /** `field` undefined: no wave around the particles. In a wave a sparing quality draws only drops. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, fluid: quality }: Pick<Quality, "fluid" | "sparing">): FluidPasses {
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, fluid: quality }: Pick<Quality, "fluid" | "sparing" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
   if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
-  const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing);
+  const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
   const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : kClearness * tankColourRatio(size), quality);

@@ -33,7 +33,7 @@ export class FluidSurfacePass implements Pass {
   private readonly small: { target: WebGLRenderTarget; material: RawShaderMaterial } | undefined;
 
   /** `hasWave`: the liquid is one body with the wave, whose textures are in `particleUniforms`. `colourRatio`: water_optics.ts. */
-  constructor({ tiles, volume, solids, sky, noise, particleUniforms }: FluidSurfaceInputs, hasWave: boolean, colourRatio: number, { scale }: FluidQuality) {
+  constructor({ tiles, volume, solids, sky, noise, particleUniforms }: FluidSurfaceInputs, hasWave: boolean, colourRatio: number, { scale, partsCount, halvingsCount }: FluidQuality) {
     this.tiles = tiles;
     this.solids = solids;
     this.scale = scale;
@@ -56,7 +56,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: hasWave ? { WAVE: 1 } : {}, transparent: true },
+      { defines: { PARTS: partsCount, HALVINGS: halvingsCount, ...(hasWave && { WAVE: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

@@ -1,8 +1,9 @@
 // The density of the particles in cells: a volume, as horizontal slices side by side in one texture. Reads the particles. Writes density
 // over that at rest, and the white share of it.
-import { AddEquation, CustomBlending, HalfFloatType, LinearFilter, OneFactor, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { AddEquation, CustomBlending, LinearFilter, OneFactor, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
+import type { TexelType } from "../drawing/quality";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { volumeShape, type VolumeShape } from "./volume_shape";
@@ -18,7 +19,7 @@ export class FluidVolumePass implements Pass {
   readonly writes = ["fluidVolume"] as const;
   /** For the shaders that include fluid_volume.glsl. */
   readonly uniforms: Uniforms;
-  private readonly target = new WebGLRenderTarget(1, 1, { format: RGFormat, type: HalfFloatType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
+  private readonly target: WebGLRenderTarget;
   private readonly material: RawShaderMaterial;
 
   /** `size`: of the water, m. `surroundings`: with the floor of a tank; undefined in a wave. */
@@ -27,7 +28,9 @@ export class FluidVolumePass implements Pass {
     private readonly size: { sideM: number; widthM: number },
     private readonly surroundings: { readonly floorM: number } | undefined,
     private readonly cellsPerSpacing: number,
+    texelType: TexelType,
   ) {
+    this.target = new WebGLRenderTarget(1, 1, { format: RGFormat, type: texelType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
     this.uniforms = {
       u_volume: { value: this.target.texture },
       u_volume_min_m: { value: new Vector3() },

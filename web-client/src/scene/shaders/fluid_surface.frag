@@ -3,7 +3,7 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass.
+// volume is a tank with walls of glass. PARTS: of the ray in the liquid, between reflections; HALVINGS: of a step, to find the surface.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -33,12 +33,17 @@ const float kStepCells = 0.85;
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
-const float kTorn = 0.16;
+const float kTorn = 0.3;
+#ifdef WAVE
+const float kAiry = 0.3;  // white water over a wave is mostly air: what is left of a clump are its drops
+#else
+const float kAiry = 0.0;
+#endif
 const float kLaceRadii = 31.0;
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
-const float kMist = 0.6;
+const float kMist = 0.25;
 // Light that white water scatters over one particle radius.
-const float kWhiteness = 0.3;
+const float kWhiteness = 0.14;
 #ifndef WAVE
 const float kTankGlow = 1.1;  // a pale floor and walls light the water from all sides
 #endif
@@ -84,7 +89,7 @@ vec2 liquidAt(vec3 at_m) {
   float white = density.g / max(density.r, 1e-3);
   if (density.r > 0.6 * kSurface && white > 0.05) {
     vec3 at = at_m / (kLaceRadii * u_radius_m);
-    density.r -= kTorn * white * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5);
+    density.r -= white * (kAiry + kTorn * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5));
   }
   return vec2(density.r - kSurface, white);
 }
@@ -92,7 +97,7 @@ vec2 liquidAt(vec3 at_m) {
 // Where the ray crosses the surface between two lengths of which one lies in the liquid.
 float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
   bool is_end_inside = liquidAt(from + ray * b_m).x > 0.0;
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < HALVINGS; ++i) {
     float middle_m = 0.5 * (a_m + b_m);
     if ((liquidAt(from + ray * middle_m).x > 0.0) == is_end_inside) b_m = middle_m;
     else a_m = middle_m;
@@ -164,10 +169,10 @@ void main() {
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
 
-  // Through the liquid to where the ray leaves it, at most two times reflected.
+  // Through the liquid to where the ray leaves it, reflected less than PARTS times.
   vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
-  for (int part = 0; part < 3; ++part) {
+  for (int part = 0; part < PARTS; ++part) {
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
     bool is_side = true;

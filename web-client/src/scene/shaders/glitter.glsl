@@ -41,7 +41,7 @@ vec3 mirroredSun(vec3 ray, vec2 slopes, vec2 pixel_slopes, float variance, float
   float glints = mirroredShare(missing + sqrt(kDrawnShare * variance) * pixel_slopes, (1.0 - kDrawnShare) * variance + 4e-5);
   float steep = halfway.y * halfway.y;
   vec2 share = vec2(glints, gleam) * (waterFresnel(max(-dot(halfway, ray), 0.0)) / (4.0 * max(facing, 0.06) * steep * steep));
-  // Brighter than white is only white.
-  share /= 1.0 + 0.3 * share;
+  // Brighter than white is only white: glints keep a middle and a rim.
+  share /= 1.0 + 0.85 * share;
   return u_sun_light * (1.25 * mix(share.x, share.y, kGleam));
 }

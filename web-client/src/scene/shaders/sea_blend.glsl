@@ -14,3 +14,6 @@ float simulatedShare(vec2 at, vec2 extent_m) {
 
 // Distance from the simulated water; 0 inside.
 float awayFromWater(vec2 at, vec2 extent_m) { return length(max(abs(at) - 0.5 * extent_m, 0.0)); }
+
+// Foam of crests that curl over (curvature in 1/m), where the server sends none.
+float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.7, 2.4, -curvature); }

@@ -149,7 +149,7 @@ void main() {
 #endif
 #ifdef RIPPLES
   vec2 width_m = fwidth(v_world.xz);
-  variance = 0.2 * kFinestVariance + u_slope_variances.y * smoothstep(0.01, 0.12, max(width_m.x, width_m.y) / u_tiles_m.y);
+  variance = 0.8 * kFinestVariance + u_slope_variances.y * smoothstep(0.01, 0.12, max(width_m.x, width_m.y) / u_tiles_m.y);
   field.gb += rippleSlopes(v_world.xz);
 #endif
 #ifdef RAIN
@@ -303,6 +303,8 @@ void main() {
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
+#elif defined(OPEN_SEA)
+    foam = max(foam, crestFoam(v_top_m, field.a));
 #endif
 #ifdef OPEN_SEA
     foam *= v_share_away.x;
@@ -318,25 +320,27 @@ void main() {
 #endif
   if (foam > 0.01) {
     vec2 at = v_world.xz - 0.6 * field.gb;
-    float lace = texture(u_noise, at / u_lace_m).r;
-    lace = clamp(0.54 * lace + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
+    float wide = texture(u_noise, at / u_lace_m).r;
+    float lace = clamp(0.54 * wide + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
     // Patches, not an even veil with straight edges.
-    foam *= 0.55 + 0.9 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
+    foam *= 0.4 + 1.05 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
     // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
     // water that has just broken is nearly closed.
-    float strength = min(1.1 * foam * sqrt(foam) + 0.1, 0.92);
+    float strength = min(1.25 * foam * sqrt(foam) + 0.1, 0.8);
     // Far away the lace is finer than a pixel, and its edges would be dots.
     vec2 at_step = fwidth(at);
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
-    float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.26 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
+    float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.14 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
     // Bubbles below the surface first, then froth on it.
     float clouded = 0.45 * foam * foam;
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif
     water = mix(water, u_bubbly * u_water_light, clouded);
+    // It lies thicker where the lace is brighter, and shades itself.
+    float relief = (wide - texture(u_noise, at / u_lace_m + 0.02 * u_sun_direction.xz).r) * (1.0 - smoothstep(0.0, 0.2, blur));
     float sunlit = sunlit_share * clamp(dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.66 + 0.42 * lace);
+    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.55 + 0.5 * lace + 0.8 * relief);
     water = mix(water, froth, 0.94 * white);
   }
 #endif

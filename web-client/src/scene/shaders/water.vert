@@ -56,7 +56,7 @@ void main() {
 #ifdef SKIRT
   v_side_normal = normal;
 #elif defined(VERTEX_LIT)
-  preparePlain(field.gb, depth_m);
+  preparePlain(field.gb, field.a, depth_m);
 #endif
   vec4 view = viewMatrix * vec4(v_world, 1.0);
   v_view_z = view.z;

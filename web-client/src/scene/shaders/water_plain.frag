@@ -58,6 +58,8 @@ void main() {
   float fresnel = 0.8 * waterFresnel(clamp(-dot(v_side_normal, ray), 0.0, 1.0));
   float rim = smoothstep(min(0.07, 0.1 * u_depth_m), 0.0, v_top_m - v_world.y);
   vec3 mirrored = reflect(ray, v_side_normal);
+  // Each colour's own share of what the water hides.
+  scattered *= (1.0 - passed) / max(1.0 - seen, 0.02);
   vec3 light = mix(scattered, textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 0.0).rgb, fresnel) + rim * vec3(0.10, 0.20, 0.23) * u_water_light;
   float cover = 1.0 - seen * (1.0 - fresnel) * (1.0 - 0.5 * rim);
   color = vec4(toDisplay(light) * cover, cover);

@@ -30,8 +30,8 @@ out vec2 v_at;          // on the still water (m)
 // exp(-x) for x >= 0.
 vec3 fading(vec3 x) { return 1.0 / (1.0 + x * (1.0 + x * (0.5 + x * 0.1667))); }
 
-// `slope` of the simulated water; `bed_m`: depth of the bed below the still water.
-void preparePlain(vec2 slope, float bed_m) {
+// `slope` and `curvature` of the simulated water; `bed_m`: depth of the bed below the still water.
+void preparePlain(vec2 slope, float curvature, float bed_m) {
   vec2 at = v_world.xz;
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
@@ -45,12 +45,16 @@ void preparePlain(vec2 slope, float bed_m) {
   vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
 #ifdef FOAM
   foam_shade.r = max(foam_shade.r, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
+#elif defined(OPEN_SEA)
+  foam_shade.r = max(foam_shade.r, crestFoam(v_top_m, curvature));
 #endif
 #ifdef OPEN_SEA
   // Waves smaller than a pixel widen the reflection instead of tilting it.
   float side_m = max(u_extent_m.x, u_extent_m.y);
   float pixel_m = distance_m * distance_m * 2.0 / (projectionMatrix[1][1] * u_resolution.y * max(u_camera_m.y - v_world.y, 0.1));
   vec2 seen = 1.0 - smoothstep(vec2(0.004, 0.01), vec2(0.05, 0.08), vec2(pixel_m) / u_tiles_m);
+  // Far out the grid's cells are longer than the swell: its slopes at the vertices would be streaks.
+  seen.x *= 1.0 - smoothstep(0.1, 0.6, v_share_away.y / side_m);
   float variance = dot(u_slope_variances, (1.0 - seen) * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * smoothstep(0.5, 6.0, length(at) / side_m) + 0.0006;
   float rough = sqrt(variance);
   v_slopes = vec4(mix(seen.x * textureLod(u_swell, at / u_tiles_m.x, 0.0).gb, slope, v_share_away.x), seen.y, 1.6 * rough);

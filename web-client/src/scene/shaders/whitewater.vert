@@ -24,6 +24,7 @@ const int kKind = 2;
 const float kMistRadiusM = 0.05;  // larger drops are puffs of mist
 const float kExposureS = 0.02;    // drops are drawn as long as they fly in this time
 const float kLeastPx = 1.5;
+const float kMostShare = 0.004;   // drops near the eye are not larger than this share of their distance: they would be flakes
 
 float hash(uint n) {
   n = (n ^ 61u) ^ (n >> 16u);
@@ -52,7 +53,7 @@ void main() {
   vec3 center_m = (viewMatrix * vec4(position.xyz, 1.0)).xyz;
   float radius_m = a_motion.w;
   bool is_mist = radius_m > kMistRadiusM;
-  if (is_mist) radius_m *= 1.0 + 2.5 * age;
+  radius_m = is_mist ? radius_m * (1.0 + 2.5 * age) : min(radius_m, kMostShare * -center_m.z);
   if (-center_m.z < 2.0 * radius_m) return;
   float px_per_m = 0.5 * projectionMatrix[1][1] * u_target_px.y / -center_m.z;
   float width_px = 2.0 * radius_m * px_per_m;
@@ -64,7 +65,8 @@ void main() {
     length_px += speed_mps * kExposureS * px_per_m;
     v_flight.xy = flight / speed_mps;
   }
-  v_strength = is_mist ? 0.16 * (1.0 - age) * smoothstep(0.0, 0.08, age) : 0.85 * (1.0 - age * age);
+  // Mist that hangs in the air is too thin to be seen.
+  v_strength = is_mist ? 0.17 * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.4, 2.5, length(a_motion.xyz)) : 0.85 * (1.0 - age * age);
 #else
   v_strength = 1.0;
 #endif
@@ -78,6 +80,10 @@ void main() {
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   v_flight.z = width_px / length_px;
+#ifdef SPRAY
+  // What flies covers each place for a part of the time.
+  v_strength *= sqrt(v_flight.z);
+#endif
   gl_Position = projectionMatrix * vec4(center_m, 1.0);
   gl_PointSize = length_px;
 #endif

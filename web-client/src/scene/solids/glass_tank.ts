@@ -1,6 +1,6 @@
 // A glass tank on a table, or a laboratory flume on a steel frame, in a lit room. The room is the cube map that stands for the sky
 // (room_bake.frag).
-import { CustomBlending, DoubleSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
+import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { castsShadow } from "../meshes/casters";
@@ -111,13 +111,14 @@ export class GlassTank {
   private readonly stand: Mesh;
   private readonly uniforms: Uniforms;
 
-  constructor(greeting: GreetingInfo, { sky, solid }: SurroundingsContext) {
+  constructor(greeting: GreetingInfo, { sky, solid, quality }: SurroundingsContext) {
     const size = tankSize(greeting);
     this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() }, u_half_m: { value: new Vector2(size.sideM / 2, size.widthM / 2) } };
     this.glass = new Mesh(
       makeGlassGeometry(size),
       makeMaterial("glass", this.uniforms, {
-        side: DoubleSide,
+        // Each pane has two faces; plain tiers draw the one that faces the camera.
+        side: quality.plain ? FrontSide : DoubleSide,
         depthWrite: false,
         transparent: true,
         blending: CustomBlending,

@@ -25,10 +25,10 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
-/** Few drops are large: radii from 6 mm to 3 cm, and puffs of mist. */
+/** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
 function dropRadiusM(random: () => number): number {
   const u = random();
-  return u < 0.12 ? 0.06 + 0.1 * random() : 0.006 + 0.024 * u * u;
+  return u < 0.15 ? 0.06 + 0.12 * random() : 0.004 + 0.016 * u * u * u;
 }
 
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {

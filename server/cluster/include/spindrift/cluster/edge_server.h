@@ -9,6 +9,7 @@
 #include <spindrift/net/server.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/sessions.h>
+#include <spindrift/service/translators.h>
 
 namespace spindrift::cluster {
 
@@ -38,6 +39,9 @@ class EdgeServer final : public net::Application {
   // net::Application
   void serverStarts(net::Hub& hub) override;
   core::Result<void> acceptSession(const std::string& room) override;
+  std::unique_ptr<core::Translator> translatorFor(const net::SessionOpening& opening) override {
+    return service::translatorOf(opening);
+  }
   void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override;
   void sessionLevelChanged(net::SessionId session, core::Level level) override {
     sessions_.levelChanged(session, level);

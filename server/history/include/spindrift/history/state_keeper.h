@@ -25,7 +25,7 @@ struct KeptRoom {
   std::vector<v1::Record> records;             ///< after the state, in order
 };
 
-/// Lives on the simulation thread, except for the functions marked "any thread".
+/// Lives on the room's thread, except for the functions marked "any thread".
 class StateKeeper {
  public:
   using TimePoint = std::chrono::steady_clock::time_point;

@@ -2,6 +2,7 @@
 // decision on an upgrade.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -43,6 +44,9 @@ Reply retryReply(unsigned status, std::string line, std::int64_t after_s = 1);
 
 /// Name of the subprotocol defined in proto/spindrift/v1.
 inline constexpr const char* kSubprotocol = "spindrift.v1";
+
+/// Names of Foxglove's protocol, one and the same under both: that of its SDK, and the older one. At /foxglove only.
+inline constexpr std::array<std::string_view, 2> kFoxgloveSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
 
 /// Defined by RFC 6455.
 inline constexpr std::string_view kWebSocketVersion = "13";
@@ -107,17 +111,20 @@ std::vector<std::pair<std::string_view, std::string>> securityHeaders(std::span<
 
 /// The room of an upgrade, or the refusal.
 struct UpgradeDecision {
-  std::optional<Reply> refusal;   ///< if set, the upgrade is refused with this reply
-  bool is_room_refused = false;   ///< the refusal is that of `accept_room`
-  std::string room{};             ///< "" is the default room
-  bool is_onlooker = false;       ///< the address has `?onlooker`
-  bool echo_subprotocol = false;  ///< the client offered kSubprotocol
+  std::optional<Reply> refusal;  ///< if set, the upgrade is refused with this reply
+  bool is_room_refused = false;  ///< the refusal is that of `accept_room`
+  std::string room{};            ///< "" is the default room
+  bool is_onlooker = false;      ///< the address has `?onlooker`
+  bool is_foxglove = false;      ///< the address is below /foxglove
+  std::string subprotocol{};     ///< offered by the client, and spoken from now on; "": none was offered
+  std::string
+      token{};  ///< secret: `access_token` of an address below /foxglove, where clients have no other place for it
 };
 
 /// Checks a WebSocket upgrade. `more_bytes_count`: bytes received after the request before it was answered.
 /// `accept_room`: returns whether sessions may enter the room; the line of its error is the refusal's, kUnavailable
-/// with 503, all others with 404. It may throw: 500.
-UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count,
+/// with 503, all others with 404. It may throw: 500. `serves_foxglove`: /foxglove is a WebSocket, too.
+UpgradeDecision decideUpgrade(const Request& request, std::size_t more_bytes_count, bool serves_foxglove,
                               const std::function<core::Result<void>(const std::string& room)>& accept_room);
 
 }  // namespace spindrift::net

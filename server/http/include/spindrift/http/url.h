@@ -26,6 +26,10 @@ std::optional<std::vector<std::string>> queryValues(std::string_view query, std:
 /// line.
 std::string printable(std::string_view text);
 
+/// Returns the room of a WebSocket path for Foxglove: "" for /foxglove, NAME for /foxglove/NAME; nullopt for any other
+/// path.
+std::optional<std::string> foxgloveRoomOfPath(std::string_view path);
+
 /// Returns the room of a WebSocket path: "" for /ws and /ws/, NAME for /ws/NAME; nullopt for any other path.
 std::optional<std::string> roomOfPath(std::string_view path);
 

@@ -22,6 +22,7 @@
 #include <spindrift/core/level.h>
 #include <spindrift/core/result.h>
 #include <spindrift/core/sender.h>
+#include <spindrift/core/translator.h>
 #include <spindrift/http/message.h>
 
 namespace spindrift::net {
@@ -184,6 +185,8 @@ struct SessionOpening {
   std::string peer;
   /// `?onlooker`: a picture among others, such as the front page's, which nobody takes part through.
   bool is_onlooker = false;
+  std::string subprotocol{};  ///< that the client offered; "": none
+  std::string token{};        ///< secret: UpgradeDecision::token
 };
 
 /// The user of a Server: implemented by service, outlives the Server. An exception from a callback is logged and ends
@@ -197,6 +200,9 @@ class Application {
   /// Checks a WebSocket handshake on `/ws/{room}` (or `/ws` = the default room, empty name). An Error refuses the
   /// upgrade with the error's line as the body: kUnavailable with HTTP 503 and Retry-After, all others with 404.
   virtual core::Result<void> acceptSession(const std::string& room) = 0;
+  /// Returns the protocol of a session that is about to open; null: the application's own, in binary messages. What
+  /// the client sends and gets passes through it, on the session's strand.
+  virtual std::unique_ptr<core::Translator> translatorFor(const SessionOpening& /*opening*/) { return nullptr; }
   /// Takes a session that was opened; the application sends the greeting.
   virtual void sessionOpened(SessionId session, const SessionOpening& opening) = 0;
   /// Takes a change of the highest level for the session's adapting watches, down or up, to what its link can carry.
@@ -248,6 +254,8 @@ struct ServerOptions {
   /// Additional allowed Origins ("https://water.example"); "*" = any. Clients that are not browsers send no Origin and
   /// are not checked.
   std::vector<std::string> allowed_origins{};
+  /// Sessions at /foxglove at a time: there each one costs the translation of its frames. 0: there is no such address.
+  std::size_t foxglove_session_max_count = 0;
   /// Origins whose pages may show `/?embed` in a frame (checkParentOrigin()). No page may show anything else in one.
   std::vector<std::string> embedding_origins{};
   /// Networks of proxies (checkNetwork()). Where the TCP peer is in one of them, the client's address, for all limits

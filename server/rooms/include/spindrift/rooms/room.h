@@ -1,13 +1,15 @@
-// One room: a scene, its water, its clock, its people and their commands. Lives on the simulation thread, except for
-// the functions marked "any thread".
+// One room: a scene, its water, its clock, its people and their commands. Lives on one thread at a time (RoomThread),
+// except for the functions marked "any thread".
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <spindrift/core/demand_table.h>
 #include <spindrift/core/result.h>
@@ -16,6 +18,7 @@
 #include <spindrift/rooms/room_actions.h>
 #include <spindrift/rooms/room_data.h>
 #include <spindrift/rooms/room_frames.h>
+#include <spindrift/rooms/room_hulls.h>
 #include <spindrift/rooms/room_keeping.h>
 #include <spindrift/rooms/room_queries.h>
 #include <spindrift/rooms/room_reports.h>
@@ -58,6 +61,9 @@ class Room {
   [[nodiscard]] const Roster& roster() const { return data_.roster; }
   /// The only entry for commands, from sessions and requests: CommandDesk::admit().
   [[nodiscard]] std::optional<wire::CommandRejection> admit(Command command);
+  /// Asks for the hash of the state between two ticks. `done` is called once, on the room's thread, or at once with
+  /// kUnavailable when 16 others wait.
+  void askStateHash(HashDone done);
   /// Asks for a snapshot on disk as soon as possible; returns false if the room is not kept.
   bool askForSnapshot();
   /// nullopt if the room is not kept on disk.
@@ -71,17 +77,21 @@ class Room {
   /// Returns what the sessions of the room need of its frames: they change it. Never null.
   [[nodiscard]] const std::shared_ptr<core::DemandTable>& demand() const { return data_.demand; }
 
-  // Simulation thread.
+  // The room's thread.
   void start(TimePoint now) { data_.time.start(now); }
   /// `on_wake` is called on any thread when due() has come nearer, at most once per run(). Set it before other threads
   /// know the room.
   void onWake(std::function<void()> on_wake) { on_wake_ = std::move(on_wake); }
+  /// `load` is called on the room's thread. Without it the room has the server to itself.
+  void loadFrom(std::function<ServerLoad()> load) { data_.load = std::move(load); }
   /// Returns the time of the next needed run(): of the next tick, or for a room that stands still, of what it waits
   /// for.
   [[nodiscard]] TimePoint due() const;
   /// Takes commands, steps unless paused or asleep, requests a frame when one is due and watched, and passes on
-  /// finished frames. At most one tick per call, so that rooms share the thread.
-  void run(TimePoint now, const ServerLoad& load = {});
+  /// finished frames. At most one tick per call.
+  void run(TimePoint now);
+  /// Unbinds the water, so that another thread can run the room.
+  void unbind() { data_.water->release(); }
 
   [[nodiscard]] const sim::WaterSim& water() const { return data_.water->sim(); }
   /// Ticks since the room started, across scene changes: never decreases.
@@ -92,6 +102,7 @@ class Room {
   void abandonCommands() {
     desk_.close();
     queries_.endAll("the room was closed");
+    answerHashes("the room was closed");
   }
   /// Writes a snapshot and waits for it until the deadline. Errors: those of the files; kUnavailable when the device
   /// does not answer, or the deadline passes: a snapshot that has begun is written nevertheless, and the log holds the
@@ -110,6 +121,12 @@ class Room {
   void handOver();
   void step(TimePoint now);
   void advancePaused(TimePoint now);
+  /// Makes a tick if the holders of the clock have asked for it, and frames.
+  void advanceHeld(TimePoint now);
+  /// Returns whether there are such ticks to make, and nothing that has to come before them.
+  [[nodiscard]] bool hasHeldTicks() const;
+  /// Answers those who have asked for a hash; with an error, if there is one.
+  void answerHashes(const std::string& error = "");
   /// Makes a tick; returns its end.
   TimePoint timedStep();
   /// Resets a scene that repeats itself, as a command would: logs hold it.
@@ -129,6 +146,7 @@ class Room {
   RoomReports reports_{data_};
   RoomFrames frames_{data_};
   RoomQueries queries_{data_};
+  RoomHulls hulls_{data_};
   WaterChange change_{data_};
   RoomActions actions_{data_};
   CommandDesk desk_{data_, actions_, change_};
@@ -139,6 +157,8 @@ class Room {
   std::atomic<bool> is_woken_{false};  ///< since the last run()
   std::atomic<std::uint64_t> round_count_{0};
   std::function<void()> on_wake_;
+  mutable std::mutex hash_mutex_;
+  std::vector<HashDone> hash_asked_;  ///< guarded by hash_mutex_
   Published<RoomVitals> vitals_;
 };
 

@@ -1,4 +1,4 @@
-// Opens rooms: where they were kept on disk, or from the start of a scene. Lives on the simulation thread.
+// Opens rooms: where they were kept on disk, or from the start of a scene. Lives on the thread of the house.
 #pragma once
 
 #include <cstdint>

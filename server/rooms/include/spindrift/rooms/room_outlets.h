@@ -14,16 +14,19 @@ namespace spindrift::rooms {
 
 class Room;
 
-/// Called on the simulation thread; must not block. Changes are reported once per round, before the answers to the
-/// commands that caused them.
+/// Called on the rooms' threads; must not block. Changes of a room are reported once per round, before the answers to
+/// the commands that caused them.
 class RoomOutlets {
  public:
   virtual ~RoomOutlets() = default;
 
   /// The room's scene was replaced; the snapshot shows the new scene.
   virtual void sceneChanged(const Room& room) = 0;
-  /// `person_id`: who paused the room or changed its speed; 0: nobody in the room. The same below.
-  virtual void timeChanged(const Room& room, bool paused, double speed, std::uint32_t person_id) = 0;
+  /// Pause, speed, or who holds the clock.
+  virtual void timeChanged(const Room& room, const v1::RoomState& state) = 0;
+  /// Somebody took the clock, gave it back, or lost it; `how` is one line for people, and timeChanged() came before.
+  /// `person_id`: whose command it was; 0: nobody's in the room. The same below.
+  virtual void clockChanged(const Room& room, const std::string& how, std::uint32_t person_id) = 0;
   virtual void parameterChanged(const Room& room, const std::string& path, double value) = 0;
   virtual void boatsChanged(const Room& room, const v1::BoatList& boats) = 0;
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;
@@ -48,6 +51,9 @@ class RoomOutlets {
 
   /// The surface at the points that this sender asks for, at one tick; it belongs to its queries only.
   virtual void queryAnswered(const Room& room, const core::Sender& sender, const v1::QueryAnswer& answer) = 0;
+
+  /// Forces of the water, in a tick, on boats that this sender moves.
+  virtual void hullsFelt(const Room& room, const core::Sender& sender, const v1::HullForces& forces) = 0;
 
   /// A frame that the room's demand() asked for. It occupies a slot of device memory until it is dropped.
   virtual void frameReady(const Room& room, core::FrameView frame) = 0;

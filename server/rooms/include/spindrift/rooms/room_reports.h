@@ -35,7 +35,7 @@ class GrowthNews {
   TimePoint next_{};
 };
 
-/// Lives on the simulation thread, except for snapshot() and lesson().
+/// Lives on the room's thread, except for snapshot() and lesson().
 class RoomReports {
  public:
   using TimePoint = RoomTime::TimePoint;
@@ -65,6 +65,8 @@ class RoomReports {
 
  private:
   void publishSnapshot();
+  /// `person_id`: whose command changed it; 0: nobody's in the room.
+  [[nodiscard]] v1::RoomState state(std::uint32_t person_id) const;
   /// Announces the boats on the water if they differ from the last announcement.
   void tellBoats();
 

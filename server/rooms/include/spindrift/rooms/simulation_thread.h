@@ -1,5 +1,5 @@
-// The thread that runs all rooms. Rooms can be opened and closed while it runs; another thread builds their water.
-// Other threads hold rooms by shared pointers and call only their any-thread functions.
+// All rooms of a server: opens and closes them on a thread of its own while each runs on its own (RoomThread); another
+// thread builds their water. Other threads hold rooms by shared pointers and call only their any-thread functions.
 #pragma once
 
 #include <atomic>
@@ -21,6 +21,7 @@
 #include <spindrift/gpu/device.h>
 #include <spindrift/rooms/room.h>
 #include <spindrift/rooms/room_opener.h>
+#include <spindrift/rooms/room_thread.h>
 #include <spindrift/water/water_builder.h>
 
 namespace spindrift::rooms {
@@ -85,12 +86,13 @@ class SimulationThread {
 
   /// Settings shared by all rooms.
   [[nodiscard]] const RoomRules& rules() const { return rules_; }
-  /// Returns seconds since the last round over all rooms; large while the thread is stuck or compiles.
+  /// Returns the seconds for which a room, or the thread that opens rooms, has not come further; large while one is
+  /// stuck.
   [[nodiscard]] double sinceLastRound_s() const;
   /// One line: the device and why it was chosen. Empty until the first room was opened.
   [[nodiscard]] std::string deviceLine() const;
-  /// Share of its time that the thread worked lately, 0 to 1.
-  [[nodiscard]] double busyShare() const { return busy_share_; }
+  /// Time that the threads of all rooms worked lately, over that of all processors.
+  [[nodiscard]] double busyShare() const;
   /// Returns how many waters could not be built since the start, for one cause.
   [[nodiscard]] std::uint64_t waterFailureCount(core::ErrorCode cause) const { return builder_->failureCount(cause); }
   /// Returns how often the system's clock was set while the rooms ran.
@@ -114,11 +116,13 @@ class SimulationThread {
   void carryOut(Change change);
   /// Starts opening a room; `done` may be called at once, with an error.
   void open(RoomSetup setup, Done done);
-  /// Continues with the openings, between the ticks of the rooms that run.
+  /// Continues with the openings.
   void advanceOpenings();
   /// Returns whether the room can run.
   core::Result<bool> advance(RoomOpener::Opening& opening);
+  /// The room gets its thread, which start() has to be called for once the server runs.
   void add(std::shared_ptr<Room> room);
+  [[nodiscard]] ServerLoad loadOf(const RoomThread& thread) const;
   core::Result<void> close(const std::string& name, const std::function<void(const Room&)>& before);
   void end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before);
 
@@ -128,16 +132,15 @@ class SimulationThread {
   // Before the builder, whose thread uses them until it has ended.
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  bool is_woken_ = false;  ///< since the last round: a room may be due, or the builder has finished a piece of work
+  bool is_woken_ = false;  ///< since the last round: the builder has finished a piece of work
+  mutable std::mutex rooms_mutex_;
+  std::vector<std::unique_ptr<RoomThread>> threads_;  ///< of the open rooms; guarded by rooms_mutex_
   std::unique_ptr<water::WaterBuilder> builder_;
   std::unique_ptr<RoomOpener> opener_;         ///< used by the thread only
   std::vector<RoomOpener::Opening> openings_;  ///< likewise
   /// Never closed: the first of those at the start. In a cluster none begins here, and it may run elsewhere.
   std::string default_room_{core::kDefaultRoom};
-  mutable std::mutex rooms_mutex_;
-  std::vector<std::shared_ptr<Room>> rooms_;
   std::string device_line_;  ///< guarded by rooms_mutex_
-  std::atomic<double> busy_share_{0.0};
   std::vector<std::string> summary_;
   std::deque<Change> changes_;
   std::chrono::steady_clock::time_point last_round_{};

@@ -29,6 +29,7 @@ class RemoteAudience {
   virtual bool commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) = 0;
   /// Returns whether the sender is a session of another process; it gets the answer.
   virtual bool queryAnswered(const core::Sender& sender, const v1::QueryAnswer& answer) = 0;
+  virtual bool hullsFelt(const core::Sender& sender, const v1::HullForces& forces) = 0;
   virtual void publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                        const core::FrameLevels& levels) = 0;
 };

@@ -1,5 +1,5 @@
 // Connects the network to the rooms of this process: their sessions, their requests and their frames. Implements
-// net::Application; called on I/O threads, the simulation thread and the encoder thread.
+// net::Application; called on I/O threads, the rooms' threads and the encoder thread.
 #pragma once
 
 #include <functional>
@@ -15,6 +15,7 @@
 #include <spindrift/service/recordings.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/service/sessions.h>
+#include <spindrift/service/translators.h>
 
 namespace spindrift::service {
 
@@ -39,6 +40,9 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
 
   void serverStarts(net::Hub& served) override { sessions_.serve(served); }
   core::Result<void> acceptSession(const std::string& room) override;
+  std::unique_ptr<core::Translator> translatorFor(const net::SessionOpening& opening) override {
+    return translatorOf(opening);
+  }
   void sessionOpened(net::SessionId session, const net::SessionOpening& opening) override;
   void sessionMessage(net::SessionId session, core::ByteView message) override { sessions_.message(session, message); }
   void sessionLevelChanged(net::SessionId session, core::Level level) override {
@@ -50,7 +54,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   // RoomOutlets interface
   /// Sends a new greeting to all sessions of the room; their subscriptions stay valid.
   void sceneChanged(const rooms::Room& room) override;
-  void timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) override;
+  void timeChanged(const rooms::Room& room, const v1::RoomState& state) override;
+  void clockChanged(const rooms::Room& room, const std::string& how, std::uint32_t person_id) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;
@@ -62,6 +67,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void fidelityChanged(const rooms::Room& room, const std::string& how) override;
   void closed(const rooms::Room& room) override;
   void queryAnswered(const rooms::Room& room, const core::Sender& sender, const v1::QueryAnswer& answer) override;
+  void hullsFelt(const rooms::Room& room, const core::Sender& sender, const v1::HullForces& forces) override;
   void frameReady(const rooms::Room& room, core::FrameView frame) override;
   void commandApplied(const rooms::Command& command, const v1::Ack& ack) override;
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection) override;

@@ -1,5 +1,5 @@
 // The REST interface: rooms, their scenes and parameters, commands, health. Runs on I/O threads; the outcomes of
-// commands come from the simulation thread.
+// commands come from the rooms' threads.
 #pragma once
 
 #include <atomic>
@@ -83,6 +83,7 @@ class RestApi {
   void surface(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void recording(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
+  void stateHash(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   [[nodiscard]] core::Result<access::Grant> resolve(const std::string& authorization) const;

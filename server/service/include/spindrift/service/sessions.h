@@ -60,6 +60,8 @@ class Sessions {
   /// Sends the answer to the session whose queries it belongs to. One that ends a query is never left out; of the
   /// others, which belong to streams alone, only the newest waits for a slow connection.
   void queryAnswered(net::SessionId session, const v1::QueryAnswer& answer);
+  /// Sends the forces to the session that moves the boats; only the newest wait for a slow connection.
+  void hullsFelt(net::SessionId session, const v1::HullForces& forces);
   /// Sends the rejection, counts it, and enters it into the audit log.
   void commandRejected(const rooms::Command& command, const wire::CommandRejection& rejection);
   /// Closes a session in whose place another connection continues.

@@ -23,8 +23,10 @@ inline const net::StateTopic kGame{.name = "game"};
 inline const net::StateTopic kLevel{.name = "level"};
 inline const net::StateTopic kDraining{.name = "draining"};
 inline const net::StateTopic kQueries{.name = "queries"};
+inline const net::StateTopic kHullForces{.name = "hull_forces"};
 inline const net::StateTopic kReset{.name = "reset"};
 inline const net::StateTopic kRecovered{.name = "recovered"};
 inline const net::StateTopic kFidelity{.name = "fidelity"};
+inline const net::StateTopic kClock{.name = "clock"};
 
 }  // namespace spindrift::service::topic

@@ -30,7 +30,7 @@ struct PlacedReading {
   GaugeReading reading;
 };
 
-/// A bounded ring. The simulation thread writes it; any thread may read it.
+/// A bounded ring. The room's thread writes it; any thread may read it.
 class GaugeHistory {
  public:
   /// Ticks that are kept: 68 s at 60 Hz.
@@ -49,7 +49,7 @@ class GaugeHistory {
 
   explicit GaugeHistory(std::size_t gauge_count);
 
-  // Simulation thread.
+  // The room's thread.
   /// Adds one reading per gauge. Overwrites the oldest tick when the ring is full.
   void add(double time_s, std::span<const GaugeReading> readings);
   void clear();

@@ -20,6 +20,7 @@
 #include <spindrift/gpu/pass_timer.h>
 #include <spindrift/sim/gauge_history.h>
 #include <spindrift/sim/health.h>
+#include <spindrift/sim/hull_forces.h>
 #include <spindrift/sim/prepared_scene.h>
 #include <spindrift/sim/state_buffer.h>
 #include <spindrift/sim/surface_sample.h>
@@ -109,6 +110,17 @@ class WaterSim {
   /// Steers a boat. Error kInvalidInput for an unknown boat.
   core::Result<void> controlBoat(std::uint32_t boat_id, double throttle_ratio, double rudder_ratio);
   core::Result<void> removeBoat(std::uint32_t boat_id);
+  /// Sets pose and velocities of a boat now; it continues with these velocities, whatever the water does, until the
+  /// next call for it, for at most kMovedFor_s. Then, or after releaseBoat(), it is the water's again. It presses with
+  /// the water that it displaces under the rest level, and has neither throttle nor rudder. kInvalidInput for an
+  /// unknown boat or in a scene without boats or without a wave; kInternal when the device fails.
+  core::Result<void> moveBoat(const HullMotion& motion);
+  /// kInvalidInput for an unknown boat; does nothing for one that nobody moves.
+  core::Result<void> releaseBoat(std::uint32_t boat_id);
+  /// Returns what the water did to moved boats in the ticks whose forces have arrived, oldest first. Never waits.
+  std::vector<HullForces> takeHullForces();
+  /// Returns the number of ticks whose forces takeHullForces() has not yet returned.
+  [[nodiscard]] std::size_t hullForcesInFlight() const;
   [[nodiscard]] std::vector<BoatRecord> boats() const;
   /// Sets the first boat id (default 1); the scene's own boats come first. Ids are not reused; only the scene's own
   /// boats keep theirs after a reset. Call it at the start, before a boat is added or a tick is run.
@@ -145,6 +157,9 @@ class WaterSim {
   /// Resets to the starting state at time 0. Parameters keep their present values, and the tick count continues.
   /// Uploads only what changed since the start: particle positions, boats, one uniform block.
   void reset();
+  /// Resets to the start of a new WaterSim of the present parameters with this seed (0: the present one): the numbers
+  /// of boats and floaters begin at 1 again, too.
+  void resetWith(std::uint64_t seed);
 
   /// Copies what another simulation of the same water needs to continue from here. Waits.
   [[nodiscard]] CarriedState carriedState();
@@ -207,6 +222,9 @@ class WaterSim {
   [[nodiscard]] const core::Scene& scene() const { return scene_; }
   [[nodiscard]] const Derived& derived() const { return derived_; }
 
+  /// Waits for the device, then looks at the health of all ticks so far: gauges have their readings, and the watchdog
+  /// has acted if it has to.
+  void takeHealth();
   /// Copies the present state. Waits.
   StateCopy copyState();
   /// Replaces what the copy has (sizes must match); the rest of what lasts stays. For tests that need a given state.
@@ -240,6 +258,8 @@ class WaterSim {
   void sampleSurface();
   void breakWaves();
   void moveBodies();
+  /// Makes the passes for moved boats and binds the uniforms.
+  core::Result<void> prepareMovedBoats();
   void emitParticles(std::uint32_t substep);
   void leadSurface(std::uint32_t substep);
   void movePatch();

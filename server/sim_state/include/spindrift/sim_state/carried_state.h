@@ -48,6 +48,7 @@ struct StateCopy {
 struct BoatPlace {
   std::uint32_t boat_id = 0;
   core::Boat boat;
+  double moved_left_s = 0.0;  ///< for this time another program moves it; 0: the water does
 };
 
 /// Fixed data of a boat, sent to clients once; its position is in the frames.

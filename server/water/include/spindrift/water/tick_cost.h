@@ -64,7 +64,7 @@ core::Result<TickWork> workAt(const SceneCatalog& scenes, const v1::Scene& now, 
 class LevelCosts {
  public:
   LevelCosts() = default;
-  /// Reads and derives the scene at every level, which takes too long for the simulation thread.
+  /// Reads and derives the scene at every level, which takes too long for a room's thread.
   LevelCosts(const SceneCatalog& scenes, const v1::Scene& now);
 
   /// Returns the levels with the time that each takes, where the scene's ticks take what `cost` has measured.

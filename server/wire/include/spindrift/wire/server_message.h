@@ -19,7 +19,7 @@ core::SharedBytes ack(const v1::Ack& ack);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 /// `person_id`: who caused it; 0: nobody in the room.
-core::SharedBytes roomState(bool paused, double speed, std::uint32_t person_id = 0);
+core::SharedBytes roomState(const v1::RoomState& state);
 core::SharedBytes boatList(const v1::BoatList& boats);
 core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text,
                             std::uint32_t person_id = 0);
@@ -28,6 +28,7 @@ core::SharedBytes people(const v1::People& people);
 core::SharedBytes strokes(const v1::Strokes& strokes);
 core::SharedBytes lesson(const v1::Lesson& lesson);
 core::SharedBytes queryAnswer(const v1::QueryAnswer& answer);
+core::SharedBytes hullForces(const v1::HullForces& forces);
 core::SharedBytes game(const v1::Game& game);
 core::SharedBytes levelChanged(core::Level level);
 core::SharedBytes draining(const v1::Draining& draining);
