@@ -10,7 +10,7 @@ fi
 # group:package …; the text of a group gives the reason.
 declare -rA package_groups=(
   [server]="git ca-certificates g++ cmake ninja-build ccache pkg-config python3 python3-glad $boost_package
-    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev libpng-dev libqrencode-dev libssl-dev libnats-dev nats-server glslc spirv-tools libegl-dev googletest libbenchmark-dev"
+    libprotobuf-dev protobuf-compiler libspdlog-dev libcli11-dev zlib1g-dev libzstd-dev libpng-dev libqrencode-dev libssl-dev libnats-dev nats-server glslc spirv-tools libegl-dev googletest libbenchmark-dev"
   [driver]="libegl1 libegl-mesa0 libgl1-mesa-dri"
   [zink]="mesa-vulkan-drivers libvulkan1"
   [browser]="chromium"

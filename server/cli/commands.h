@@ -25,6 +25,7 @@ struct ProgramCommand {
 ProgramCommand addServe(CLI::App& program);
 ProgramCommand addEdge(CLI::App& program);
 ProgramCommand addReplay(CLI::App& program);
+ProgramCommand addRecord(CLI::App& program);
 ProgramCommand addScript(CLI::App& program);
 ProgramCommand addInfo(CLI::App& program);
 ProgramCommand addCheck(CLI::App& program);

@@ -105,6 +105,7 @@ StopSignals::StopSignals() {
   sigaddset(&set, SIGHUP);
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit for the size of files is an error that can be told
 }
 
 void runUntilSignal(const FrontOptions& options, const StopSignals& signals, const RunningServer& server) {

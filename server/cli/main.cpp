@@ -6,7 +6,7 @@ int main(int argc, char** argv) {
   const auto add = [](CLI::App& program) {
     program.require_subcommand(1);
     std::vector<ProgramCommand> commands;
-    for (const auto add_command : {addServe, addEdge, addReplay, addScript, addInfo, addCheck}) {
+    for (const auto add_command : {addServe, addEdge, addReplay, addRecord, addScript, addInfo, addCheck}) {
       commands.push_back(add_command(program));
     }
     return commands;

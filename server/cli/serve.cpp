@@ -16,6 +16,7 @@
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/service/water_server.h>
+#include <spindrift/state/posix_file.h>
 
 #include "access_options.h"
 #include "front.h"
@@ -82,6 +83,11 @@ core::Result<service::WaterServerOptions> serverOptions(const ServeOptions& opti
     }
     out.rules.states = *std::move(states);
   }
+  if (!options.recordings_folder.empty()) {
+    if (auto made = state::makeFolder(options.recordings_folder); !made)
+      return Error{made.error().code, "--recordings " + options.recordings_folder + ": " + made.error().message};
+  }
+  out.recordings = {.folder = options.recordings_folder, .folder_max_bytes = options.recordings_max_mib << 20};
   water::SceneCatalog catalog(core::findSceneFolder(), scene::parseFidelity(options.fidelity));
   auto rooms = loadRooms(options, catalog);
   if (rooms && node) rooms = node->claim(*std::move(rooms));  // those that no other server of the cluster runs

@@ -186,6 +186,14 @@ void addServeOptions(CLI::App& command, ServeOptions& options) {
                   "Interval of the state hashes in the log, in ticks")
       ->check(integerIn(1, 36000))
       ->capture_default_str();
+  command
+      .add_option("--recordings", options.recordings_folder,
+                  "Let operators record rooms as MCAP files into this folder, which is made (POST "
+                  "/api/v1/rooms/ROOM/recording); not the logs of --record")
+      ->check(isNotEmpty());
+  command.add_option("--recordings-max-mib", options.recordings_max_mib, "MiB of all recordings in that folder")
+      ->check(integerIn(1, 1'073'741'824))
+      ->capture_default_str();
 
   command
       .add_option("--state-dir", options.state_folder,

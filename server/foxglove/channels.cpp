@@ -3,8 +3,7 @@
 #include <foxglove/schemas.pb.h>
 
 #include <spindrift/foxglove/channels.h>
-
-#include "schema_set.h"
+#include <spindrift/foxglove/schema_set.h>
 
 namespace spindrift::foxglove {
 namespace {

@@ -1,8 +1,8 @@
-#include "schema_set.h"
-
 #include <set>
 
 #include <google/protobuf/descriptor.pb.h>
+
+#include <spindrift/foxglove/schema_set.h>
 
 namespace spindrift::foxglove {
 namespace {

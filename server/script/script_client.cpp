@@ -11,8 +11,10 @@
 
 namespace spindrift::script {
 
-ScriptClient::ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url)
-    : setup_(setup), pool_(pool), url_(url.inRoom(setup.room())) {
+ScriptClient::ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url,
+                           ListenerSetup listener)
+    : setup_(setup), pool_(pool), listener_(std::move(listener)), url_(url.inRoom(setup.room())) {
+  if (listener_.message) url_.path += "?onlooker";
   for (const v1::Subscribe& wanted : setup_.subscribe()) subscriptions_[wanted.layer()] = wanted;
 }
 
@@ -34,7 +36,7 @@ void ScriptClient::connect() {
          v1::Hello& hello = *message.mutable_hello();
          hello.mutable_version()->set_major(wire::kWireMajor);
          hello.mutable_version()->set_minor(wire::kWireMinor);
-         hello.set_client("spindrift script");
+         hello.set_client(listener_.message ? listener_.program : "spindrift script");
          hello.set_name(setup_.person());
          hello.set_resume_key(resume_key_);
          if (const char* token = setup_.token_env().empty() ? nullptr : std::getenv(setup_.token_env().c_str())) {
@@ -136,6 +138,7 @@ std::uint64_t ScriptClient::command(v1::Command command) {
 
 void ScriptClient::take(core::ByteView bytes) {
   received.byte_count += bytes.size();
+  if (listener_.message) listener_.message(bytes);
   auto parsed = codec::parseServerMessage(bytes);
   if (!parsed) {
     ++received.malformed_count;

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -46,10 +47,17 @@ struct Received {
   std::uint64_t malformed_count = 0;
 };
 
+/// Setup of a client that only listens.
+struct ListenerSetup {
+  std::string program;                          ///< in its Hello
+  std::function<void(core::ByteView)> message;  ///< gets every message before the client reads it
+};
+
 class ScriptClient {
  public:
-  /// `setup` and the pool must outlive the client.
-  ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url);
+  /// `setup` and the pool must outlive the client. With a `listener` it is an onlooker, nobody of the room.
+  ScriptClient(const v1::ScriptClient& setup, net::ClientPool& pool, const net::ClientUrl& url,
+               ListenerSetup listener = {});
 
   /// Call it often: after a Draining message it leaves and connects again when the time has come. A script does not see
   /// that as the end of a connection.
@@ -94,6 +102,7 @@ class ScriptClient {
 
   const v1::ScriptClient& setup_;
   net::ClientPool& pool_;
+  const ListenerSetup listener_;
   net::ClientUrl url_;
   std::shared_ptr<net::Client> connection_;
   std::uint64_t connection_number_ = 0;  ///< callbacks of an earlier connection are ignored

@@ -42,11 +42,16 @@ class LocalRoom final : public Venue {
 }  // namespace
 
 Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources,
-                 std::function<void()> on_drain)
+                 std::function<void()> on_drain, RecordingRules recordings)
     : access_(std::move(access)),
       sessions_(rules, access_, counters_),
+      recordings_(std::move(recordings),
+                  [this](const std::shared_ptr<rooms::Room>& room) {
+                    const LocalRoom venue(room, simulation(), sessions_);
+                    return sessions_.greetingOf(venue, *venue.view(), 0);
+                  }),
       rest_(
-          access_, counters_, sources, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },
+          access_, counters_, sources, recordings_, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },
           std::move(on_drain)) {}
 
 void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
@@ -87,11 +92,15 @@ void Gateway::drain(net::Server& network, std::chrono::milliseconds closes_in, c
 
 void Gateway::tell(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message) {
   hub().broadcastState(room.name(), topic, message);
+  recordings_.tell(room.name(), message);
   if (cluster_.audience) cluster_.audience->stateChanged(room, topic, message);
 }
 
 void Gateway::sceneChanged(const rooms::Room& room) {
-  if (const auto here = simulation().find(room.name())) sessions_.roomChanged(LocalRoom(here, simulation(), sessions_));
+  if (const auto here = simulation().find(room.name())) {
+    sessions_.roomChanged(LocalRoom(here, simulation(), sessions_));
+    recordings_.sceneChanged(here);
+  }
   if (cluster_.audience) cluster_.audience->sceneChanged(room);
 }
 
@@ -142,6 +151,7 @@ void Gateway::fidelityChanged(const rooms::Room& room, const std::string& how) {
 
 void Gateway::closed(const rooms::Room& room) {
   encoder_->forget(room.name());
+  recordings_.roomClosed(room.name());
   if (cluster_.audience) cluster_.audience->closed(room);
 }
 
@@ -164,6 +174,7 @@ void Gateway::frameReady(const rooms::Room& room, core::FrameView frame) {
 void Gateway::publish(const std::string& room, codec::Stream stream, const codec::EncodedFrame& frame,
                       const core::FrameLevels& levels) {
   publishTo(hub(), room, stream, frame, levels);
+  recordings_.publish(room, stream, frame, levels);
   if (cluster_.audience) cluster_.audience->publish(room, stream, frame, levels);
 }
 

@@ -58,10 +58,12 @@ unsigned httpStatusOf(v1::RejectReason reason) {
 }
 
 RestApi::RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
-                 std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain)
+                 Recordings& recordings, std::function<void(const rooms::Room&)> dismiss,
+                 std::function<void()> on_drain)
     : access_(access),
       counters_(counters),
       sources_(sources),
+      recordings_(recordings),
       dismiss_(std::move(dismiss)),
       on_drain_(std::move(on_drain)) {}
 
@@ -157,6 +159,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     if (method != "POST") return respond(wrongMethod("POST"));
     return snapshot(call, *room, respond);
   }
+  if (part == "recording") return recording(call, room, std::move(respond));
   if (part != "scene" && part != "parameters" && part != "changes" && part != "people" && part != "ground")
     return respond(std::nullopt);
   if (method != "GET") return respond(wrongMethod("GET"));

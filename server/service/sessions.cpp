@@ -58,13 +58,17 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   const std::lock_guard in_order(greeting_mutex_);
   const auto view = venue.view();
   if (!view) return;
-  const rooms::RoomSnapshot& room = *view->room;
   std::shared_ptr<const VenueView> before;
   if (!with(session, [&](State& state) { before = std::exchange(state.greeted, view); })) return;
   if (before && before->room == view->room) return;
+  hub().sendState(session, topic::kGreeting, greetingOf(venue, *view, session));
+}
+
+core::SharedBytes Sessions::greetingOf(const Venue& venue, const VenueView& view, net::SessionId session) const {
+  const rooms::RoomSnapshot& room = *view.room;
   v1::Greeting greeting;
   greeting.set_server(std::string(core::nameAndVersion()));
-  greeting.set_device(view->device);
+  greeting.set_device(view.device);
   greeting.set_room(venue.name());
   greeting.set_session_id(session);
   for (const v1::Layer layer : layersOf(room.scene)) greeting.add_layers(layer);
@@ -76,15 +80,15 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   limits.set_message_burst_count(rules_.message_burst_count);
   limits.set_hello_within_s(std::chrono::duration<double>(rules_.hello_patience).count());
   limits.set_frame_rate_max_hz(kFrameRateMax_hz);
-  greeting.set_server_time_s(core::monotonic_s() + view->clock_offset_s);
+  greeting.set_server_time_s(core::monotonic_s() + view.clock_offset_s);
   greeting.mutable_room_state()->set_paused(room.paused);
   greeting.mutable_room_state()->set_speed(room.speed);
   for (const std::uint32_t person_id : room.clock_person_ids)
     greeting.mutable_room_state()->add_clock_person_ids(person_id);
   *greeting.mutable_boat_list() = room.boats;
-  for (const std::string& scene : view->scenes) greeting.add_scenes(scene);
-  if (view->levels.levels_size() > 0) *greeting.mutable_fidelity_levels() = view->levels;
-  hub().sendState(session, topic::kGreeting, wire::greeting(std::move(greeting), room.scene));
+  for (const std::string& scene : view.scenes) greeting.add_scenes(scene);
+  if (view.levels.levels_size() > 0) *greeting.mutable_fidelity_levels() = view.levels;
+  return wire::greeting(std::move(greeting), room.scene);
 }
 
 void Sessions::tellLesson(net::SessionId session, const Venue& venue) {

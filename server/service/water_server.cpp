@@ -11,12 +11,13 @@ constexpr std::size_t kDescriptorsPerRoom = 4;
 
 core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions options) {
   auto self = std::unique_ptr<WaterServer>(new WaterServer);
-  self->gateway_ = std::make_unique<Gateway>(std::move(options.access),
-                                             SessionRules{.message_max_bytes = options.network.read_message_max_bytes,
-                                                          .messages_per_s = options.network.messages_per_s,
-                                                          .message_burst_count = options.network.message_burst_count,
-                                                          .hello_patience = options.hello_patience},
-                                             self->sources_, std::move(options.on_drain));
+  self->gateway_ =
+      std::make_unique<Gateway>(std::move(options.access),
+                                SessionRules{.message_max_bytes = options.network.read_message_max_bytes,
+                                             .messages_per_s = options.network.messages_per_s,
+                                             .message_burst_count = options.network.message_burst_count,
+                                             .hello_patience = options.hello_patience},
+                                self->sources_, std::move(options.on_drain), std::move(options.recordings));
   self->gateway_->join(options.cluster);
   self->gateway_->rest().tellPadUrls(
       [&sources = self->sources_, page = net::PageAddress{.address = options.network.address,
@@ -55,6 +56,7 @@ void WaterServer::drain(std::chrono::milliseconds closes_in, const std::string& 
 void WaterServer::stop() {
   if (network_) network_->stop();
   if (encoder_) encoder_->stop();  // releases the frames before their devices are destroyed
+  if (gateway_) gateway_->recordings().endAll("the server ended");
   if (simulation_) simulation_->stop();
 }
 

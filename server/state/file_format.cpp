@@ -8,9 +8,8 @@
 
 #include <spindrift/core/crc32c.h>
 #include <spindrift/core/text.h>
+#include <spindrift/state/posix_file.h>
 #include <spindrift/state/room_files.h>
-
-#include "posix_file.h"
 
 namespace spindrift::state {
 namespace {

@@ -11,9 +11,9 @@
 #include <spindrift/core/room_name.h>
 #include <spindrift/core/text.h>
 #include <spindrift/state/folders.h>
+#include <spindrift/state/posix_file.h>
 
 #include "file_format.h"
-#include "posix_file.h"
 
 namespace spindrift::state {
 namespace {

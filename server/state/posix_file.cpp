@@ -1,5 +1,3 @@
-#include "posix_file.h"
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -10,6 +8,8 @@
 #include <sys/stat.h>
 #include <sys/uio.h>
 #include <unistd.h>
+
+#include <spindrift/state/posix_file.h>
 
 namespace spindrift::state {
 namespace {

@@ -7,10 +7,10 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
+#include <spindrift/state/posix_file.h>
 #include <spindrift/state/room_files.h>
 
 #include "file_format.h"
-#include "posix_file.h"
 #include "room_recovery.h"
 
 namespace spindrift::state {

@@ -10,7 +10,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 
-#include "posix_file.h"
+#include <spindrift/state/posix_file.h>
 
 namespace spindrift::state {
 namespace {

@@ -101,6 +101,10 @@ core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json) {
   return parse<v1::CreateRoom>(json);
 }
 
+core::Result<v1::StartRecording> parseStartRecordingJson(std::string_view json) {
+  return parse<v1::StartRecording>(json);
+}
+
 core::Result<v1::RoomList> parseRoomListJson(std::string_view json) {
   return parse<v1::RoomList>(json);
 }

@@ -12,6 +12,7 @@
 #include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/metrics.h>
+#include <spindrift/service/recordings.h>
 #include <spindrift/service/rest_api.h>
 #include <spindrift/service/sessions.h>
 #include <spindrift/service/translators.h>
@@ -22,7 +23,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
  public:
   /// `sources` outlives the gateway. `on_drain`: an operator asks for the server's end; empty: not offered.
   Gateway(AccessOptions access, const SessionRules& rules, const MetricsSources& sources,
-          std::function<void()> on_drain = {});
+          std::function<void()> on_drain = {}, RecordingRules recordings = {});
   [[nodiscard]] AccessControl& access() { return access_; }
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
@@ -32,6 +33,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   void join(const ClusterHooks& cluster);
   [[nodiscard]] Sessions& sessions() { return sessions_; }
   [[nodiscard]] RestApi& rest() { return rest_; }
+  [[nodiscard]] Recordings& recordings() { return recordings_; }
 
   /// Does what Sessions::drain() does, and refuses new rooms from now on. /readyz answers 503.
   void drain(net::Server& network, std::chrono::milliseconds closes_in, const std::string& go_to);
@@ -88,6 +90,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   CommandCounters counters_;
   AccessControl access_;
   Sessions sessions_;
+  Recordings recordings_;
   RestApi rest_;
 };
 

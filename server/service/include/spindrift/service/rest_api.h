@@ -17,6 +17,7 @@
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/ground_answers.h>
 #include <spindrift/service/metrics.h>
+#include <spindrift/service/recordings.h>
 #include <spindrift/v1/api.pb.h>
 #include <spindrift/wire/client_message.h>
 
@@ -29,7 +30,7 @@ class RestApi {
  public:
   /// All references must outlive it. `dismiss`: closes a room's sessions before the room closes. `on_drain`: ends the
   /// server, called once; empty: refused.
-  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources,
+  RestApi(AccessControl& access, CommandCounters& counters, const MetricsSources& sources, Recordings& recordings,
           std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain);
 
   /// Sets the rooms; call it before the network starts.
@@ -81,6 +82,7 @@ class RestApi {
   void submit(const Call& call, const std::shared_ptr<rooms::Room>& room, ParsedCommand parsed, Pending pending);
   void surface(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
+  void recording(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void stateHash(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
@@ -90,6 +92,7 @@ class RestApi {
   AccessControl& access_;
   CommandCounters& counters_;
   const MetricsSources& sources_;
+  Recordings& recordings_;
   const std::function<void(const rooms::Room&)> dismiss_;
   const std::function<void()> on_drain_;
   std::atomic<bool> is_draining_{false};

@@ -27,6 +27,7 @@ struct WaterServerOptions {
   std::chrono::milliseconds hello_patience{10'000};  ///< sessions that have not sent Hello by then are closed
   std::function<void()> on_drain{};                  ///< see Gateway
   std::string public_url{};                          ///< net::PageAddress::public_url
+  RecordingRules recordings{};
 };
 
 class WaterServer {

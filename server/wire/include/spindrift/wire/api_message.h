@@ -28,6 +28,9 @@ core::Result<std::variant<v1::Command, CommandRejection>> parseQueryJson(std::st
 /// or the scene exists.
 core::Result<v1::CreateRoom> parseCreateRoomJson(std::string_view json);
 
+/// Parses the body of a request for a recording. Error: kInvalidInput with one line.
+core::Result<v1::StartRecording> parseStartRecordingJson(std::string_view json);
+
 /// Parses a list as toJson() writes it; kInvalidInput with one line.
 core::Result<v1::RoomList> parseRoomListJson(std::string_view json);
 
