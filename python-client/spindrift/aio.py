@@ -16,9 +16,11 @@ from google.protobuf import json_format
 from google.protobuf.message import DecodeError
 
 from . import address, commands, queries
+from .clock import Clock
 from .errors import ConnectionLost, Damaged, NoAnswer, Refused, Rejected, SpindriftError
 from .frames import LAYERS, Boats, Floaters, Foam, Frame, FrameReader, Particles, Surface
 from .gauges import GaugeSeries
+from .hulls import HullForces
 from .inbox import Inbox
 from .queries import Answer
 from .v1 import api_pb2 as api
@@ -87,6 +89,7 @@ class Water:
         self._next_command_id = 1
         self._queries: dict[int, Inbox] = {}
         self._next_query_id = 1
+        self._hull_forces = Inbox(_MAX_WAITING_FRAMES)
         self._move: tuple[float, str] | None = None
         self._failure: SpindriftError | None = None
         self.greeting: wire.Greeting | None = None
@@ -146,8 +149,9 @@ class Water:
 
     @property
     def dropped(self) -> dict[str, int]:
-        """By layer: frames that were dropped for newer ones because nobody took them in time."""
-        return {layer: inbox.dropped for layer, inbox in self._inboxes.items()}
+        """By layer: frames that were dropped for newer ones because nobody took them in time; "hull_forces" counts those of moved boats."""
+        hulls = {"hull_forces": self._hull_forces.dropped} if self._hull_forces.dropped else {}
+        return {layer: inbox.dropped for layer, inbox in self._inboxes.items()} | hulls
 
     # ---- frames
 
@@ -223,13 +227,19 @@ class Water:
         answer = self._answers[command.command_id] = asyncio.get_running_loop().create_future()
         try:
             await self._send(command=command)
-            return await asyncio.wait_for(answer, None if action in _SLOW_ACTIONS else self._answer_within_s)
+            is_slow = action in _SLOW_ACTIONS or command.step.waits
+            return await asyncio.wait_for(answer, None if is_slow else self._answer_within_s)
         except asyncio.TimeoutError:
             raise NoAnswer(f"no answer to {action} within {self._answer_within_s:g} s; it may still be carried out") from None
         except websockets.ConnectionClosed:
             raise ConnectionLost(f"the connection was lost; {action} may or may not have been carried out") from None
         finally:
             self._answers.pop(command.command_id, None)
+
+    def clock(self, *, speed: float = 0.0, timeout_s: float = 10.0) -> Clock:
+        """Holds the room's clock: `async with water.clock() as clock: await clock.step(60)`. `speed`: simulated seconds per second of the
+        steps, 0: as fast as the machine can. `timeout_s`: a holder for whom the room waits so long loses the clock."""
+        return Clock(self, speed, timeout_s)
 
     async def advance(self, tick_count: int) -> Surface:
         """Advances a paused room by so many ticks and returns the surface after the last of them."""
@@ -290,6 +300,19 @@ class Water:
                 del self._queries[result.query_id]
             else:
                 inbox.put(Answer.of(answer, result))
+
+    # ---- boats moved from outside
+
+    async def hull_forces(self) -> HullForces:
+        """The newest forces on the boats that this client moves (move_boat), that was not returned before; waits for one. Raises
+        ConnectionLost when the connection is lost: move the boats again then."""
+        return await self._hull_forces.newest()
+
+    async def stream_hull_forces(self) -> AsyncIterator[HullForces]:
+        """Those of every tick in order; at most 16 wait, the oldest are dropped, and `dropped` counts them. Raises as hull_forces."""
+        inbox = self._hull_forces
+        while True:
+            yield await inbox.first()
 
     # ---- the connection
 
@@ -370,6 +393,8 @@ class Water:
             self._put("diagnostics", body)
         elif kind == "query_answer":
             self._query_answer(body)
+        elif kind == "hull_forces":
+            self._hull_forces.put(HullForces.of(body))
         elif kind in ("ack", "reject"):
             self._answer(kind, body)
         elif kind == "refusal":
@@ -446,6 +471,9 @@ class Water:
         for inbox in self._queries.values():
             inbox.fail(error)
         self._queries.clear()
+        lost, self._hull_forces = self._hull_forces, Inbox(_MAX_WAITING_FRAMES)
+        self._hull_forces.dropped = lost.dropped
+        lost.fail(error)
         for answer in self._answers.values():
             if not answer.done():
                 answer.set_exception(error)
@@ -456,7 +484,7 @@ class Water:
             return
         self._failure, self._socket, self.welcome = error, None, None
         self._fail_answers(error)
-        for inbox in (*self._inboxes.values(), self._events):
+        for inbox in (*self._inboxes.values(), self._events, self._hull_forces):
             inbox.fail(error)
         if not self._first.done():
             self._first.set_exception(error)
