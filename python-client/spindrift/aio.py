@@ -238,7 +238,8 @@ class Water:
 
     def clock(self, *, speed: float = 0.0, timeout_s: float = 10.0) -> Clock:
         """Holds the room's clock: `async with water.clock() as clock: await clock.step(60)`. `speed`: simulated seconds per second of the
-        steps, 0: as fast as the machine can. `timeout_s`: a holder for whom the room waits so long loses the clock."""
+        steps, 0: as fast as the machine can. `timeout_s`: a holder who sends no step for so long, while the room waits for it, loses the
+        clock."""
         return Clock(self, speed, timeout_s)
 
     async def advance(self, tick_count: int) -> Surface:

@@ -207,6 +207,30 @@ describe("commands", () => {
   });
 });
 
+describe("the water at points", () => {
+  it("agrees with the surface of its tick, and a stream has every tick", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    await water.setPaused({ paused: true });
+    await water.splash({ xM: 1, zM: 1, depthM: 0.3 });
+    const surface = await water.advance(20);
+    const points = [[1, 1], [-2.3, 0.4], [0.1, 500]];
+    const answer = await water.query(points);
+    expect([answer.tick, answer.stateId, answer.timeS, ...answer.outside]).toEqual([surface.tick, surface.stateId, surface.timeS, 0, 0, 1]);
+    for (const k of [0, 1]) expect(Math.abs(answer.elevationM[k] - surface.heightM(...points[k]))).toBeLessThanOrEqual(surface.quantumM);
+    expect(Math.abs(answer.elevationM[0])).toBeGreaterThan(0.001);
+    const ticks = [];
+    for await (const { tick, outside } of water.streamQuery(points, { velocities: [[0, 1]] })) {
+      expect([...outside]).toEqual([0, 0, 1]);
+      if (ticks.push(tick) === 5) break;
+      await water.step({ tickCount: 1 });
+    }
+    expect(ticks).toEqual([0, 1, 2, 3, 4].map((k) => answer.tick + k));
+    expect(await failure(water.query([[0, NaN]]))).toMatchObject({ name: "Rejected", field: "query.z_m[0]", value: NaN });
+    expect(await failure(water.query(new Float32Array(2 * 1025)))).toMatchObject({ name: "Rejected", message: expect.stringContaining("1024") });
+    await water.setPaused({ paused: false });
+  });
+});
+
 describe("the connection", () => {
   const marina = ["--scene", `${repository}/tests/browser/marina.textproto`, "--grace", "60"];
 

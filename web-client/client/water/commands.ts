@@ -3,9 +3,9 @@ import { getOption, hasOption, ScalarType, type DescField, type DescMessage } fr
 
 import type { ParameterInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
-import { CommandSchema } from "../gen/spindrift/v1/wire_pb";
-import type { CommandAction } from "../session/events";
-import type { Bound } from "./errors";
+import { CommandSchema, RejectReason } from "../gen/spindrift/v1/wire_pb";
+import type { CommandAction, ConnectionEvent } from "../session/events";
+import { ConnectionLost, NoAnswer, Rejected, SpindriftError, type Bound, type RejectReasonName } from "./errors";
 
 /** The server's answer to a command that it carried out. */
 export interface Ack {
@@ -15,11 +15,12 @@ export interface Ack {
   boatId: number;
   floaterId: number;
   gaugeId: number;
+  /** Of a step that waits: of the state after appliedTick. */
+  stateHash: bigint | undefined;
 }
 
-/** A query's answer is a message of its own, which this client does not read: docs/javascript.md says how to ask. */
-const kWithoutMethod = "query";
-type CommandName = Exclude<CommandAction["case"], typeof kWithoutMethod>;
+/** The answer to a query is another message than its Ack: Water.query. */
+type CommandName = Exclude<CommandAction["case"], "query">;
 
 type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K }>["value"];
 
@@ -28,7 +29,7 @@ type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K 
 export type Commands = { [K in CommandName]: (fields?: Fields<K>) => Promise<Ack> };
 
 /** The commands, by name. */
-export const kActions: ReadonlyMap<string, DescField> = new Map(CommandSchema.oneofs[0]!.fields.filter(({ localName }) => localName !== kWithoutMethod).map((field) => [field.localName, field]));
+export const kActions: ReadonlyMap<string, DescField> = new Map(CommandSchema.oneofs[0]!.fields.filter(({ localName }) => localName !== "query").map((field) => [field.localName, field]));
 
 /** Names of all commands. */
 export const kCommandNames = [...kActions.keys()] as CommandName[];
@@ -65,7 +66,7 @@ export function offence({ case: name, value: fields }: CommandAction, field: str
     return { value: fields.value, bound: described && boundOf(described) };
   }
   const [head, ...path] = field.split(".");
-  const action = kActions.get(name)!;
+  const action = CommandSchema.field[name]!;
   if (head !== action.name) return { value: undefined, bound: undefined };
   let message = action.message;
   let value: unknown = fields;
@@ -80,6 +81,16 @@ export function offence({ case: name, value: fields }: CommandAction, field: str
     message = at.message;
   }
   return { value, bound };
+}
+
+/** Why a command was not carried out, or may not have been. `live`: whether commands can be sent at present. */
+export function errorOf({ reason, field, message }: Extract<ConnectionEvent, { kind: "reject" }>, action: CommandAction, parameters: ReadonlyMap<string, ParameterInfo>, live: boolean): SpindriftError {
+  const name = action.case;
+  if (reason === "LOST") return new ConnectionLost(`${message}; ${name} may or may not have been carried out`, true);
+  if (reason === "NO_ANSWER") return new NoAnswer(`${message} to ${name}; it may still be carried out`);
+  if (reason === "NOT_SENT") return live ? new SpindriftError(`${name} was not sent: ${message}`) : new ConnectionLost(`${name} was not sent: ${message}`);
+  const { value, bound } = offence(action, field, parameters);
+  return new Rejected(message, reason in RejectReason && !/^\d/.test(reason) ? (reason as RejectReasonName) : "OTHER", field, value, bound);
 }
 
 function boundOf({ min, max, unit }: Bound): Bound {
