@@ -27,7 +27,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 10;
+export const kWireMinor = 11;
 
 export interface ParameterInfo {
   path: string;
