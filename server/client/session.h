@@ -112,7 +112,7 @@ class Session {
   std::map<std::uint64_t, Waiting*> commands_;
   std::map<std::uint32_t, Waiting*> queries_;
 
-  /// What is followed; without points nothing.
+  /// Followed points; none if empty.
   struct Followed {
     Points points;
     std::uint32_t interval_ticks = 1;

@@ -2,6 +2,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <limits>
 #include <memory>
 #include <sstream>
@@ -153,7 +154,14 @@ TEST_F(CClient, BoxRidesTheWavesAndItsWaterAgreesWithRest) {
   EXPECT_NEAR(vz_mps, numberOf(rest, "velocity_z_mps", 0), 1e-5);
 }
 
-TEST_F(CClient, ProgramInCRuns) {
+TEST_F(CClient, ProgramInCIsThatOfTheDocumentationAndRuns) {
+  const auto read = [](const std::string& file) {
+    std::ifstream stream(SPINDRIFT_SOURCE_DIR "/" + file);
+    return std::string(std::istreambuf_iterator<char>(stream), {});
+  };
+  const std::string code = read("server/client/example/points.c");
+  ASSERT_THAT(code, HasSubstr("spindrift_follow"));
+  EXPECT_THAT(read("docs/c.md"), HasSubstr("```c\n" + code + "```\n"));
   const Server server = serve();
   const Outcome outcome = runProgram({server.url()}, {}, SPINDRIFT_POINTS);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

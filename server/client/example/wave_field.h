@@ -18,7 +18,7 @@ class WaveField {
   };
   virtual ~WaveField() = default;
   virtual double elevation_m(double x_m, double z_m, double time_s) const = 0;
-  /// Of the water at the surface.
+  /// Returns that of the water at the surface.
   virtual Velocity velocity(double x_m, double z_m, double time_s) const = 0;
 };
 

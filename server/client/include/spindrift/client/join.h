@@ -11,7 +11,7 @@
 
 namespace spindrift::client {
 
-/// Who joins. `program` is for the server's log.
+/// The person that joins. `program` is for the server's log.
 struct Identity {
   std::string program;
   std::string name;
@@ -22,7 +22,7 @@ struct Identity {
 /// Returns Hello with the version of the wire of this build.
 v1::ClientMessage hello(const Identity& identity);
 
-/// Where and when to connect next.
+/// Address and time of the next connection.
 struct Move {
   net::ClientUrl url;
   std::chrono::steady_clock::time_point at;
