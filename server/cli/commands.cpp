@@ -60,8 +60,10 @@ void addJson(CLI::App& command, std::string& file) {
 }
 
 core::Result<void> writeJson(const std::string& file, const boost::json::value& value, const std::string& option) {
-  if (file.empty()) return {};
-  const std::string text = boost::json::serialize(value) + "\n";
+  return file.empty() ? core::Result<void>() : writeText(file, boost::json::serialize(value) + "\n", option);
+}
+
+core::Result<void> writeText(const std::string& file, const std::string& text, const std::string& option) {
   if (file == "-") {
     std::fwrite(text.data(), 1, text.size(), stdout);
     return {};

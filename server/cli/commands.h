@@ -38,6 +38,8 @@ void addJson(CLI::App& command, std::string& file);
 /// the file cannot be written; the message names the option.
 core::Result<void> writeJson(const std::string& file, const boost::json::value& value,
                              const std::string& option = "--json");
+/// The same for a text.
+core::Result<void> writeText(const std::string& file, const std::string& text, const std::string& option);
 
 /// Writes the error's line to standard error (logging.h) and returns its exit code.
 int fail(const core::Error& error);

@@ -1,9 +1,13 @@
+#include <cstdint>
+#include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <boost/json.hpp>
 #include <fmt/format.h>
 
+#include <spindrift/script/junit.h>
 #include <spindrift/script/script.h>
 
 #include "commands.h"
@@ -17,6 +21,8 @@ struct ScriptOptions {
   std::string ca_file;
   std::string file;
   std::string json_file;
+  std::string junit_file;
+  std::optional<std::uint64_t> seed;
 };
 
 void print(const script::ScriptReport& report) {
@@ -34,6 +40,13 @@ void print(const script::ScriptReport& report) {
     }
     fmt::print("\n");
   }
+  if (!report.held) return;
+  const script::HeldReport& held = *report.held;
+  fmt::print("{} ticks, {:.3f} s, seed {}: state hash {}\n", held.tick_count, held.made_s,
+             held.seed == 0 ? "of the scene" : std::to_string(held.seed),
+             held.state_hash ? script::hashText(*held.state_hash) : "unknown");
+  if (held.recovered_count > 0)
+    fmt::print("the watchdog put the water back {} times: another run may have another hash\n", held.recovered_count);
 }
 
 boost::json::object toJson(const script::ScriptReport& report) {
@@ -64,19 +77,36 @@ boost::json::object toJson(const script::ScriptReport& report) {
                                           {"answer_p50_ms", client.answer_p50_ms},
                                           {"answer_p99_ms", client.answer_p99_ms}});
   }
-  return {{"passed", report.passed()},
-          {"step_count", report.step_count},
-          {"steps", std::move(steps)},
-          {"clients", std::move(clients)}};
+  boost::json::object out{{"passed", report.passed()},
+                          {"step_count", report.step_count},
+                          {"steps", std::move(steps)},
+                          {"clients", std::move(clients)}};
+  if (report.held) {
+    const script::HeldReport& held = *report.held;
+    out["state_hash"] = held.state_hash ? boost::json::value(script::hashText(*held.state_hash)) : nullptr;
+    out["seed"] = held.seed;
+    out["tick_count"] = held.tick_count;
+    out["made_s"] = held.made_s;
+    out["recovered_count"] = held.recovered_count;
+  }
+  return out;
 }
 
 int script(const ScriptOptions& options) {
   const auto url = net::ClientUrl::parse(options.url);
   if (!url) return fail(url.error());
-  const auto loaded = script::loadScript(options.file);
+  auto loaded = script::loadScript(options.file);
   if (!loaded) return fail(loaded.error());
+  if (options.seed && !loaded->hold_clock())
+    return fail(core::invalid("--seed: " + options.file + " does not hold the clock: add hold_clock: true to it"));
+  if (options.seed) loaded->set_seed(*options.seed);
   const script::ScriptReport report = script::runScript(*loaded, *url, options.ca_file);
-  if (options.json_file != "-") print(report);
+  if (options.json_file != "-" && options.junit_file != "-") print(report);
+  if (!options.junit_file.empty()) {
+    const std::string name = std::filesystem::path(options.file).stem().string();
+    if (auto written = writeText(options.junit_file, script::toJunit(report, name), "--junit"); !written)
+      return fail(written.error());
+  }
   if (auto written = writeJson(options.json_file, toJson(report)); !written) return fail(written.error());
   return report.passed() ? 0 : core::exitCode(core::ErrorCode::kCheckFailed);
 }
@@ -94,6 +124,8 @@ ProgramCommand addScript(CLI::App& program) {
       ->add_option("--tls-ca", options->ca_file,
                    "For wss://: PEM file with authorities to trust beside those of the system")
       ->check(CLI::ExistingFile);
+  command->add_option("--seed", options->seed, "Seed of the scene's random numbers, for a script with hold_clock");
+  command->add_option("--junit", options->junit_file, "Writes the steps as a JUnit report into this file");
   addJson(*command, options->json_file);
   return {command, [options] { return script(*options); }};
 }

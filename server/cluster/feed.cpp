@@ -112,6 +112,7 @@ void Feed::sendView(const std::string& name, FedRoom& room, const std::string& n
   *view.mutable_scene() = snapshot->scene;
   view.set_paused(snapshot->paused);
   view.set_speed(snapshot->speed);
+  for (const std::uint32_t person_id : snapshot->clock_person_ids) view.add_clock_person_ids(person_id);
   *view.mutable_boats() = snapshot->boats;
   view.set_device(room.device);
   for (const std::string& scene : room.scenes) view.add_scenes(scene);

@@ -24,7 +24,7 @@
 namespace spindrift::cluster {
 
 /// Version of cluster.proto, the frames' head and the numbers of streams.
-inline constexpr std::uint32_t kClusterVersion = 4;
+inline constexpr std::uint32_t kClusterVersion = 5;
 /// A link whose other end was silent for so long is dead.
 inline constexpr std::chrono::milliseconds kLinkPatience{1'500};
 /// Interval of the messages that show that an end of a link is alive.

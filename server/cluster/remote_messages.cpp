@@ -80,6 +80,7 @@ void RemoteRoom::takeView(const v1::RoomView& message) {
     room->scene = message.scene();
     room->paused = message.paused();
     room->speed = message.speed();
+    room->clock_person_ids = {message.clock_person_ids().begin(), message.clock_person_ids().end()};
     room->boats = message.boats();
     // Half of the round trip has passed since the room read its clock.
     double offset_s = view_ ? view_->clock_offset_s : 0.0;
@@ -139,6 +140,8 @@ void RemoteRoom::takeNews(const v1::RoomNews& message) {
       if (content.has_room_state()) {
         room->paused = content.room_state().paused();
         room->speed = content.room_state().speed();
+        const auto& holders = content.room_state().clock_person_ids();
+        room->clock_person_ids = {holders.begin(), holders.end()};
       } else if (content.has_boat_list()) {
         room->boats = content.boat_list();
       } else if (const auto error = scene::setParameter(room->scene, content.parameter_changed().path(),

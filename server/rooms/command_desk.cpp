@@ -58,7 +58,7 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kSpawnBoat, {kPlayer, kHeavy}, &Act::spawnBoat, nullptr},
       {C::kControlBoat, {kPlayer, kLight}, &Act::controlBoat, nullptr},
       {C::kRemoveBoat, {kPlayer, kHeavy}, &Act::removeBoat, nullptr},
-      {C::kStep, {kOperator, kLight}, &Act::advance, nullptr},
+      {C::kStep, {kPlayer, kLight}, nullptr, &Desk::beginStep},  // of operators and holders of the clock
       {C::kChangeScene, {kOperator, kHeavy, kShared}, nullptr, &Desk::beginScene},
       {C::kTakeBoat, {kPlayer, kLight}, &Act::takeBoat, nullptr},
       {C::kSpawnFloater, {kPlayer, kLight}, &Act::spawnFloater, nullptr},
@@ -72,6 +72,8 @@ const CommandDesk::Kind& CommandDesk::kindOf(const v1::Command& command) {
       {C::kPlaceGauge, {kPlayer, kLight}, &Act::placeGauge, nullptr},
       {C::kRemoveGauge, {kPlayer, kLight}, &Act::removeGauge, nullptr},
       {C::kQuery, {kViewer, kLight}, &Act::ask, nullptr},
+      {C::kTakeClock, {kPlayer, kLight}, &Act::takeClock, nullptr},
+      {C::kReleaseClock, {kPlayer, kLight}, &Act::releaseClock, nullptr},
   };
   const auto* kind = std::ranges::find(kKinds, command.action_case(), &Kind::action);
   assert(kind != std::end(kKinds));  // wire::checkCommand() rejects a command without an action
@@ -124,13 +126,16 @@ void CommandDesk::carryOut(TimePoint now) {
   if (values_ && !values_->relaid && heavy_budget_.isOpen(now)) spend([this] { tryNewest(resume()); });
   for (int k = 0; k < kRoundMaxCount; ++k) {
     const bool may_be_heavy = !values_ && heavy_budget_.isOpen(now);
-    auto batch = queue_.next({.heavy = may_be_heavy, .scene_change = change_.mayBuild()});
+    auto batch = queue_.next(
+        {.heavy = may_be_heavy, .scene_change = change_.mayBuild(), .joined_values = !room_.clock.isHeld()});
     if (!batch) break;
     if (traitsOf(batch->front().message).is_heavy)
       spend([&] { apply(*std::move(batch)); });
     else
       apply(*std::move(batch));
   }
+  // With a held clock the same commands have the same outcome on a busy machine, too: they wait.
+  if (room_.clock.isHeld()) return;
   answer(queue_.takeExpired(now),
          wire::rejection(v1::REJECT_REASON_BUSY, "",
                          "the room is busy with resets, scenes, parameters and boats: try again in a second"));
@@ -153,6 +158,25 @@ void CommandDesk::apply(Batch batch) {
 CommandDesk::Outcome CommandDesk::checkAgain(const Command& command) const {
   if (command.scene_version == room_.water->sceneVersion()) return {};
   return wire::checkAgainstScene(command.message, room_.water->scene());
+}
+
+// Steps
+
+void CommandDesk::beginStep(Batch batch) {
+  const Command& step = batch.front();
+  Outcome outcome = room_.roster.refuse(step.sender, step.message);
+  if (!outcome) outcome = actions_.advance(step);
+  if (outcome || !step.message.step().waits()) answer(std::move(batch), outcome);
+}
+
+void CommandDesk::finishSteps() {
+  std::vector<Command> done = room_.steps.takeDone();
+  if (done.empty()) return;
+  room_.water->takeHealth();
+  v1::Ack ack;
+  ack.set_state_hash(room_.water->sim().stateHash());
+  answer(std::move(done), {}, ack);
+  sendAnswers();
 }
 
 // Scenes
@@ -253,11 +277,16 @@ void CommandDesk::rejectAll(const wire::CommandRejection& rejection) {
 void CommandDesk::close() {
   const auto closed = wire::rejection(v1::REJECT_REASON_BUSY, "", "the room was closed");
   answer(std::exchange(scene_batch_, {}), closed);
+  room_.steps.endAll("the room was closed");
   rejectAll(closed);
   sendAnswers();
 }
 
 void CommandDesk::sendAnswers() {
+  for (StepBook::Ended& ended : room_.steps.takeEnded()) {
+    const auto not_now = wire::rejection(v1::REJECT_REASON_NOT_NOW, "step", std::move(ended.why));
+    answers_.push_back({std::move(ended.command), not_now});
+  }
   std::vector<Answer> answers = std::exchange(answers_, {});
   // A rejection promises nothing, and does not wait for the disk.
   const bool promises = std::ranges::any_of(answers, [](const Answer& one) { return !one.rejected; });

@@ -65,7 +65,8 @@ std::optional<CommandQueue::Batch> CommandQueue::next(const Allowed& allowed) {
   Batch out;
   out.push_back(pop(lane));
   const v1::Command first = out.front().message;
-  while (!lane.entries.empty() && setsTheSame(first, lane.entries.front().command.message)) out.push_back(pop(lane));
+  while (allowed.joined_values && !lane.entries.empty() && setsTheSame(first, lane.entries.front().command.message))
+    out.push_back(pop(lane));
   tidy(key);
   takeEqual(first, out);
   return out;
@@ -83,6 +84,11 @@ void CommandQueue::release(const Batch& batch) {
     lanes_[key].is_held = false;
     tidy(key);
   }
+}
+
+bool CommandQueue::isBusyWith(const core::Sender& sender) const {
+  const std::lock_guard lock(mutex_);
+  return lanes_.contains(keyOf(sender));
 }
 
 CommandQueue::Batch CommandQueue::takeEqual(const v1::Command& command) {

@@ -17,6 +17,7 @@ constexpr auto kWaitingCommandInterval = 10ms;
 /// A room that stands still looks after its state on disk, its people and its metrics.
 constexpr auto kStandingInterval = 1s;
 constexpr auto kVitalsInterval = 250ms;
+constexpr std::size_t kHashAskedMaxCount = 16;
 
 }  // namespace
 
@@ -84,6 +85,18 @@ std::optional<wire::CommandRejection> Room::admit(Command command) {
   return refused;
 }
 
+void Room::askStateHash(HashDone done) {
+  {
+    const std::lock_guard lock(hash_mutex_);
+    if (hash_asked_.size() < kHashAskedMaxCount) {
+      hash_asked_.push_back(std::move(done));
+      done = nullptr;
+    }
+  }
+  if (done) return done(core::unavailable(fmt::format("{} requests wait for the hash: try again", kHashAskedMaxCount)));
+  wake();
+}
+
 bool Room::askForSnapshot() {
   if (!data_.diary.keeper()) return false;
   data_.diary.keeper()->ask();
@@ -111,9 +124,11 @@ Room::TimePoint Room::due() const {
   if (!change_.isLost() && awaits_device) no_later_than(ran_ + kReadbackPollInterval);
   if (!stands_still) return next;
   if (is_woken_ || (data_.time.stepsToCome() > 0 && !change_.stopsTime())) return ran_;
+  if (hasHeldTicks()) no_later_than(data_.time.due());
+  if (const auto silent = data_.clock.expiry()) no_later_than(*silent);
   if (desk_.hasWork()) no_later_than(ran_ + kWaitingCommandInterval);
   if (const auto people = reports_.due()) no_later_than(*people);
-  if (!change_.stopsTime() && data_.time.isPaused() && data_.demand->sessionCount() > 0)
+  if (!change_.stopsTime() && (data_.time.isPaused() || data_.clock.isHeld()) && data_.demand->sessionCount() > 0)
     no_later_than(data_.schedule.idleDue());
   return next;
 }
@@ -129,9 +144,11 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   if (change_.watchDevice(now)) return standStill();
   data_.time.beginRound(now);
   handOver();
-  const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP;
+  const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP && !data_.clock.isHeld();
   if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
   settlePeople(now);
+  actions_.reviewClock(now,
+                       [this](const core::Sender& sender) { return change_.stopsTime() || desk_.isBusyWith(sender); });
   desk_.finishRelayout();
   if (!data_.time.runs() || now >= data_.time.due()) desk_.carryOut(now);
   reports_.tellGame(now);
@@ -139,11 +156,15 @@ void Room::run(TimePoint now, const ServerLoad& load) {
   queries_.sample(QueryBook::Which::kNew);  // the tick of their Ack
   if (change_.stopsTime()) {
     // The state stands still until the particles are laid out.
+  } else if (data_.clock.isHeld()) {
+    advanceHeld(now);
   } else if (data_.time.isPaused()) {
     advancePaused(now);
   } else if (data_.time.runs() && now >= data_.time.due()) {
     step(now);
   }
+  desk_.finishSteps();
+  answerHashes();
   if (reports_.tellRecovery(now)) actions_.boatsChanged();
   if (!change_.stopsTime()) keeping_.keep(now);
   handOver();
@@ -161,7 +182,7 @@ void Room::step(TimePoint now) {
   data_.time.ticked(now, end);
   restartIfOver();
   actions_.advanceGame();
-  frames_.afterTick(scheduled, end);
+  frames_.afterTick(scheduled, end, data_.time.speed());
   reports_.tellStrokes(end);
   data_.time.warnIfSlow(data_.name, end);
   change_.adapt(end);
@@ -176,6 +197,40 @@ void Room::advancePaused(TimePoint now) {
   frames_.whilePaused(now);
 }
 
+bool Room::hasHeldTicks() const {
+  // What a command builds takes its place at the tick at which the command came.
+  return data_.clock.ticksToCome() > 0 && !change_.stopsTime() && !change_.isBuildingForCommand();
+}
+
+void Room::advanceHeld(TimePoint now) {
+  if (hasHeldTicks() && now >= data_.time.due()) {
+    const double speed = data_.clock.speed();
+    const TimePoint scheduled = std::max(now, data_.time.due());
+    now = timedStep();
+    data_.time.heldTicked(speed, now);
+    data_.clock.ticked(now);
+    actions_.advanceGame();
+    reports_.tellStrokes(now);
+    if (data_.clock.ticksToCome() == 0)
+      data_.schedule.setIdleDue(now);  // what was asked for is there to see at once
+    else
+      frames_.afterTick(scheduled, now, speed > 0 ? speed : std::max(1.0, data_.time.realTimeFactor()));
+  }
+  frames_.whilePaused(now);
+}
+
+void Room::answerHashes(const std::string& error) {
+  std::vector<HashDone> asked;
+  {
+    const std::lock_guard lock(hash_mutex_);
+    asked = std::exchange(hash_asked_, {});
+  }
+  if (asked.empty()) return;
+  const auto state = error.empty() ? core::Result<HashedState>(HashedState{tick(), stateHash()})
+                                   : core::Result<HashedState>(core::unavailable(error));
+  for (const HashDone& done : asked) done(state);
+}
+
 Room::TimePoint Room::timedStep() {
   const auto begin = std::chrono::steady_clock::now();
   data_.water->step();
@@ -183,6 +238,7 @@ Room::TimePoint Room::timedStep() {
   const double step_ms = std::chrono::duration<double, std::milli>(end - begin).count();
   data_.tick_cost.note(step_ms);
   data_.tick_meter.note(step_ms);
+  data_.steps.ticked();
   data_.diary.ticked();
   queries_.sample(QueryBook::Which::kDue);
   return end;
@@ -207,6 +263,7 @@ void Room::waterChanged(const WaterChange::Built& built, TimePoint now) {
     }
     actions_.waterChanged(built.water == Water::kContinues);
     queries_.waterChanged(built.water == Water::kContinues);
+    if (built.water != Water::kContinues) actions_.dropSteps("the scene has changed: the steps have ended");
     publishVitals(now);
     reports_.sceneChanged();
   }
@@ -220,6 +277,8 @@ void Room::standStill() {
     vitals.lost = true;  // the rest as it was: the device does not answer
     vitals_.publish(std::move(vitals));
   }
+  actions_.dropSteps("the device failed: the steps have ended");
+  answerHashes("the device failed and the room's water is being built anew");
   desk_.rejectAll(wire::rejection(v1::REJECT_REASON_BUSY, "",
                                   "the device failed and the room's water is being built anew: try again"));
   announce();

@@ -8,9 +8,6 @@
 namespace spindrift::rooms {
 namespace {
 
-/// Limit of waiting ticks of Step: that of one command.
-constexpr std::uint32_t kPendingTickMaxCount = 600;
-
 /// The rejection for a boat that belongs to another person or to none.
 wire::CommandRejection notYours(std::string field, std::uint32_t boat_id, std::uint32_t owner_id) {
   return wire::rejection(v1::REJECT_REASON_NOT_YOURS, std::move(field),
@@ -52,45 +49,11 @@ RoomActions::Outcome RoomActions::reset(const Command& command) {
   levers_.clear();
   room_.schedule.restart();
   room_.schedule.setIdleDue({});
-  room_.time.setSteps(0);
+  dropSteps("the scene began again: the steps have ended");
+  if (command.message.reset().has_seed()) room_.roster.keepOnly({});  // other boats have the numbers now
   room_.news.reset = true;
   room_.news.reset_person_id = command.sender.person_id;
   boatsChanged();
-  return {};
-}
-
-// Time
-
-RoomActions::Outcome RoomActions::setPaused(const Command& command) {
-  if (auto refused = writeAhead(command)) return refused;
-  room_.time.setPaused(command.message.set_paused().paused(), std::chrono::steady_clock::now());
-  room_.news.state = true;
-  room_.news.state_person_id = command.sender.person_id;
-  return {};
-}
-
-RoomActions::Outcome RoomActions::setSpeed(const Command& command) {
-  if (auto refused = writeAhead(command)) return refused;
-  room_.time.setSpeed(command.message.set_speed().speed());
-  room_.news.state = true;
-  room_.news.state_person_id = command.sender.person_id;
-  return {};
-}
-
-RoomActions::Outcome RoomActions::advance(const Command& command) {
-  const std::uint32_t tick_count = command.message.step().tick_count();
-  RoomTime& time = room_.time;
-  if (!time.isPaused()) {
-    return wire::rejection(v1::REJECT_REASON_OUT_OF_RANGE, "step", "the room is running; pause it first, then step");
-  }
-  if (time.stepsToCome() + tick_count > kPendingTickMaxCount) {
-    return wire::rejection(
-        v1::REJECT_REASON_BUSY, "step.tick_count",
-        fmt::format("{} ticks more than the {} still to come are above {}; try again when they are done", tick_count,
-                    time.stepsToCome(), kPendingTickMaxCount));
-  }
-  if (auto refused = writeAhead(command)) return refused;
-  time.setSteps(time.stepsToCome() + tick_count);
   return {};
 }
 

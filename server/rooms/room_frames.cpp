@@ -65,11 +65,11 @@ std::optional<Referee::Position> placeOf(std::uint32_t id, std::span<const std::
 
 }  // namespace
 
-void RoomFrames::afterTick(TimePoint scheduled, TimePoint end) {
+void RoomFrames::afterTick(TimePoint scheduled, TimePoint end, double speed) {
   const auto levels = room_.schedule.afterTick({.time_s = room_.water->sim().time_s(),
                                                 .scheduled = scheduled,
                                                 .end = end,
-                                                .speed = room_.time.speed(),
+                                                .speed = speed,
                                                 .frame_rate_hz = room_.water->scene().stream().frame_rate_hz()});
   if (levels) request(end, *levels);
 }

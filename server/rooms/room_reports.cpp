@@ -29,15 +29,33 @@ void RoomReports::sceneChanged() {
 }
 
 void RoomReports::publishSnapshot() {
-  snapshot_.publish({room_.water->scene(), room_.water->sceneVersion(), room_.time.isPaused(), room_.time.speed(),
-                     boats_, room_.water->sim().reducedCounts(), room_.water->sim().gauges(), room_.gauges});
+  const v1::RoomState now = state(0);
+  snapshot_.publish({room_.water->scene(),
+                     room_.water->sceneVersion(),
+                     now.paused(),
+                     now.speed(),
+                     {now.clock_person_ids().begin(), now.clock_person_ids().end()},
+                     boats_,
+                     room_.water->sim().reducedCounts(),
+                     room_.water->sim().gauges(),
+                     room_.gauges});
+}
+
+v1::RoomState RoomReports::state(std::uint32_t person_id) const {
+  v1::RoomState out;
+  out.set_paused(room_.time.isPaused());
+  out.set_speed(room_.time.speed());
+  out.set_person_id(person_id);
+  for (const HeldClock::Holder& holder : room_.clock.holders()) out.add_clock_person_ids(holder.who.person_id);
+  return out;
 }
 
 void RoomReports::tell() {
   const News news = std::exchange(room_.news, {});
   RoomOutlets& outlets = room_.outlets;
-  if (news.state || news.gauges || !news.parameters.empty()) publishSnapshot();
-  if (news.state) outlets.timeChanged(room_.self, room_.time.isPaused(), room_.time.speed(), news.state_person_id);
+  if (news.state || news.gauges || news.reset || !news.parameters.empty()) publishSnapshot();
+  if (news.state) outlets.timeChanged(room_.self, state(news.state_person_id));
+  if (!news.clock.empty()) outlets.clockChanged(room_.self, news.clock, news.clock_person_id);
   for (const auto& [path, value] : news.parameters) outlets.parameterChanged(room_.self, path, value);
   if (news.reset) outlets.wasReset(room_.self, news.reset_person_id);
   if (!news.recovered.empty()) outlets.hasRecovered(room_.self, news.recovered);

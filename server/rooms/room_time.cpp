@@ -70,6 +70,25 @@ void RoomTime::setPaused(bool is_paused, TimePoint now) {
 void RoomTime::beginRound(TimePoint now) {
   if (runs()) running_wall_s_ += seconds(now - last_run_);
   last_run_ = now;
+  while (is_held_ && !ticks_.empty() && now - ticks_.front() > kWindow) ticks_.pop_front();
+}
+
+void RoomTime::setHeld(bool is_held, TimePoint now) {
+  is_held_ = is_held;
+  slow_since_ = {};
+  restartPace(now);
+}
+
+void RoomTime::noteTick(TimePoint end) {
+  ticks_.push_back(end);
+  while (end - ticks_.front() > kWindow) ticks_.pop_front();
+}
+
+void RoomTime::heldTicked(double speed, TimePoint end) {
+  if (speed > 0)
+    due_ += std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(tick_s_ / speed));
+  due_ = speed > 0 ? std::max(due_, end - kMaxDebt) : end;
+  noteTick(end);
 }
 
 bool RoomTime::watchOver(bool is_watched, TimePoint now) {
@@ -90,8 +109,7 @@ void RoomTime::ticked(TimePoint begin, TimePoint end) {
   last_run_ = end;
   due_ += std::chrono::duration_cast<TimePoint::duration>(std::chrono::duration<double>(tick_s_ / speed_));
   due_ = std::max(due_, end - kMaxDebt);
-  ticks_.push_back(end);
-  while (end - ticks_.front() > kWindow) ticks_.pop_front();
+  noteTick(end);
 }
 
 void RoomTime::warnIfSlow(const std::string& room, TimePoint now) {

@@ -103,6 +103,20 @@ bool Roster::isHere(std::uint32_t person_id) const {
   return people_.contains(person_id);
 }
 
+bool Roster::hasActorsBeside(std::uint32_t person_id) const {
+  const std::lock_guard lock(mutex_);
+  return std::ranges::any_of(people_, [&](const auto& entry) {
+    return entry.first != person_id && entry.second.session != 0 && entry.second.role >= core::Role::kPlayer;
+  });
+}
+
+std::string Roster::nameOf(std::uint32_t person_id) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = people_.find(person_id);
+  return found != people_.end() ? fmt::format("{} (person {})", found->second.name, person_id)
+                                : fmt::format("person {}", person_id);
+}
+
 bool Roster::isConnected(std::uint32_t person_id, core::SessionId session) const {
   const std::lock_guard lock(mutex_);
   const auto found = people_.find(person_id);

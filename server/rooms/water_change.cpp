@@ -191,6 +191,8 @@ WaterChange::Built WaterChange::takeAdapted(TimePoint now, const Build& build, w
     return Built{};
   };
   if (!water) return fail(core::firstLine(water.error().message));
+  // Its time is not that of the holders' ticks.
+  if (room_.clock.isHeld() && !is_lost_) return fail("somebody holds the room's clock");
   if (is_lost_) return takeRebuilt(now, std::move(water));
   // It ran for the first time: a device that works beside this thread shows what it costs only now.
   const double budget_ms = 1e3 * (*water)->sim().derived().tick_s / room_.time.speed();

@@ -131,17 +131,21 @@ void ScriptClient::take(core::ByteView bytes) {
     case v1::ServerMessage::kFrame: {
       v1::LayerFrame& newest = *parsed->mutable_frame();
       if (!v1::Layer_IsValid(newest.layer())) return;
-      frame(newest.layer(), newest.state_id());
+      frame(newest.layer(), newest.state_id(), newest.tick());
       received.newest[newest.layer()] = std::move(newest);
       return;
     }
     case v1::ServerMessage::kDiagnostics:
       received.diagnostics = std::move(*parsed->mutable_diagnostics());
-      return frame(v1::LAYER_DIAGNOSTICS, received.diagnostics.state_id());
+      return frame(v1::LAYER_DIAGNOSTICS, received.diagnostics.state_id(), received.diagnostics.tick());
     case v1::ServerMessage::kAck:
       return answered(parsed->ack().command_id());
     case v1::ServerMessage::kReject:
       return answered(parsed->reject().command_id());
+    case v1::ServerMessage::kGreeting:
+      if (parsed->greeting().scene().tick_rate_hz() > 0)
+        received.tick_rate_hz = parsed->greeting().scene().tick_rate_hz();
+      return;
     case v1::ServerMessage::kWelcome:
       welcome_ = parsed->welcome();
       resume_key_ = welcome_->resume_key();
@@ -163,12 +167,13 @@ void ScriptClient::take(core::ByteView bytes) {
   }
 }
 
-void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id) {
+void ScriptClient::frame(v1::Layer layer, std::uint64_t state_id, std::uint64_t tick) {
   LayerTally& tally = received.tallies[layer];
   ++tally.frame_count;
   // A server that does not number its states sends 0: then each frame counts.
   if (state_id == 0 || state_id != tally.state_id) ++tally.state_count;
   tally.state_id = state_id;
+  tally.tick = tick;
   if (tally.last) {
     const double gap_s = since_s(*tally.last);
     tally.longest_gap_s = std::max(tally.longest_gap_s, gap_s);

@@ -25,7 +25,8 @@ inline double since_s(Clock::time_point begin) {
 struct LayerTally {
   std::uint64_t frame_count = 0;
   std::uint64_t state_count = 0;  ///< different states of the water in the frames; a paused room repeats its state
-  std::uint64_t state_id = 0;     ///< of the last frame
+  std::uint64_t state_id = 0;     ///< of the last frame, and so the next
+  std::uint64_t tick = 0;
   std::optional<Clock::time_point> last;  ///< time of the last frame, or of the subscription
   double longest_gap_s = 0.0;             ///< since the subscription or the last takeLongestGap_s()
   double longest_gap_ever_s = 0.0;
@@ -37,6 +38,7 @@ struct Received {
   std::map<v1::Layer, LayerTally> tallies;
   v1::Diagnostics diagnostics;  ///< the newest
   v1::People people;
+  double tick_rate_hz = 60.0;  ///< of the room's scene
   std::map<v1::RoomEventKind, std::uint64_t> event_counts;
   std::map<std::uint64_t, v1::ServerMessage> answers;  ///< Ack or Reject by the number of the command
   std::vector<double> answer_times_ms;
@@ -88,7 +90,7 @@ class ScriptClient {
   void planMove(const v1::Draining& draining);
   void ended(const End& end);
   void take(core::ByteView bytes);
-  void frame(v1::Layer layer, std::uint64_t state_id);
+  void frame(v1::Layer layer, std::uint64_t state_id, std::uint64_t tick);
 
   const v1::ScriptClient& setup_;
   net::ClientPool& pool_;

@@ -28,10 +28,49 @@ class FirstError final : public google::protobuf::io::ErrorCollector {
   const std::string& label_;
 };
 
+std::string checkTime(const char* field, double time_s) {
+  if (!std::isfinite(time_s) || time_s < 0) return fmt::format("{} has to be 0 or more", field);
+  return time_s <= kScriptMax_s ? "" : fmt::format("{}: {} s are more than {} s", field, time_s, kScriptMax_s);
+}
+
+/// Returns an empty string, or what is wrong with the step of a script that holds the clock. `holder`: who does.
+std::string checkHeldStep(const v1::ScriptStep& step, const std::string& holder, std::set<std::string>& saved) {
+  if (step.has_hash()) {
+    const v1::ExpectHash& hash = step.hash();
+    if (!hash.same_as().empty() && !saved.contains(hash.same_as()))
+      return fmt::format("hash.same_as: no step before saves a hash as \"{}\"", hash.same_as());
+    if (!hash.save().empty()) saved.insert(hash.save());
+  }
+  if (step.client() != holder) return "";
+  const v1::Command& command = step.command().command();
+  if (command.has_step() || command.has_take_clock() || command.has_release_clock())
+    return "the script holds the clock through \"" + holder + "\" and makes its ticks: use at_s or wait";
+  if (step.has_connect() || step.has_disconnect() || step.has_closed())
+    return "the script holds the clock through \"" + holder + "\": let another client connect and disconnect";
+  return "";
+}
+
+/// Returns an empty string, or what is wrong with the use of the clock.
+std::string checkHeld(const v1::Script& script) {
+  if (!script.hold_clock()) return script.seed() != 0 ? "seed goes with hold_clock: true" : "";
+  const std::string& room = script.clients(0).room();
+  for (const v1::ScriptClient& client : script.clients()) {
+    if (client.room() != room)
+      return fmt::format("hold_clock: the clients are in the rooms \"{}\" and \"{}\"; a script holds the clock of one",
+                         room, client.room());
+  }
+  std::set<std::string> saved;
+  for (int k = 0; k < script.steps_size(); ++k) {
+    const std::string why = checkHeldStep(script.steps(k), script.clients(0).name(), saved);
+    if (!why.empty()) return fmt::format("steps[{}]: {}", k, why);
+  }
+  return "";
+}
+
 /// Returns an empty string, or what is wrong with the step.
 std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& names) {
   if (!names.contains(step.client())) return "there is no client \"" + step.client() + "\"";
-  if (!std::isfinite(step.at_s()) || step.at_s() < 0) return "at_s has to be 0 or more";
+  if (auto why = checkTime("at_s", step.at_s()); !why.empty()) return why;
   switch (step.what_case()) {
     case v1::ScriptStep::WHAT_NOT_SET:
       return "it says neither what to do nor what to expect";
@@ -44,6 +83,8 @@ std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& n
       }
       return "";
     }
+    case v1::ScriptStep::kWait:
+      return checkTime("wait.duration_s", step.wait().duration_s());
     case v1::ScriptStep::kBoat:
       return step.boat().boat().empty() == (step.boat().boat_id() == 0) ? "name the boat, or give its boat_id" : "";
     case v1::ScriptStep::kGauge: {
@@ -88,7 +129,10 @@ core::Result<v1::Script> parseScript(const std::string& text, const std::string&
     if (const std::string why = checkStep(step, names); !why.empty()) {
       return refuse(fmt::format("steps[{}]: {}", k, why));
     }
+    if (step.has_hash() && !script.hold_clock())
+      return refuse(fmt::format("steps[{}]: hash goes with hold_clock: true", k));
   }
+  if (const std::string why = checkHeld(script); !why.empty()) return refuse(why);
   return script;
 }
 

@@ -9,21 +9,19 @@
 
 #include <fmt/format.h>
 
-#include <spindrift/codec/frame_decoder.h>
+#include <spindrift/script/junit.h>
 #include <spindrift/script/script.h>
 
+#include "expectations.h"
+#include "held_time.h"
 #include "script_client.h"
 
 namespace spindrift::script {
 namespace {
 
 constexpr double kPatience_s = 5.0;
-
-/// Result of a step; empty: success.
-struct Outcome {
-  bool passed = false;
-  std::string detail;
-};
+/// For the frame of a tick that was made: on a machine of any speed.
+constexpr double kHeldFramePatience_s = 60.0;
 
 template <typename Step>
 double patience_s(const Step& step) {
@@ -43,20 +41,33 @@ class Runner {
     for (const v1::ScriptClient& setup : script.clients()) {
       clients_.emplace(setup.name(), std::make_unique<ScriptClient>(setup, *pool_, url));
     }
+    if (script.hold_clock()) {
+      held_.emplace(holder(), script.seed(),
+                    [this](ScriptClient& client, v1::Command command, double within_s, Outcome& why) {
+                      return ask(client, std::move(command), within_s, why);
+                    });
+    }
   }
 
   ScriptReport run() {
     ScriptReport out;
     out.step_count = script_.steps_size();
+    const auto held_begin = Clock::now();
+    if (const Outcome begun = beginHeld(); !begun.passed) {
+      out.steps.push_back({0, script_.clients(0).name(), "take_clock", "", false, begun.detail, since_s(held_begin)});
+      goodbye();
+      return out;
+    }
     for (int k = 0; k < script_.steps_size(); ++k) {
       const v1::ScriptStep& step = script_.steps(k);
-      wait(step.at_s() - since_s(begin_), [] { return false; });
       const auto step_begin = Clock::now();
-      const Outcome outcome = carryOut(step, *clients_.at(step.client()));
+      Outcome outcome = waitUntil(step.at_s());
+      if (outcome.passed) outcome = carryOut(step, *clients_.at(step.client()));
       out.steps.push_back(
           {k, step.client(), describe(step), step.note(), outcome.passed, outcome.detail, since_s(step_begin)});
       if (!outcome.passed && !script_.keep_going()) break;
     }
+    out.held = reportHeld();
     for (const v1::ScriptClient& setup : script_.clients()) out.clients.push_back(reportOf(*clients_.at(setup.name())));
     goodbye();
     return out;
@@ -71,6 +82,35 @@ class Runner {
       out += " " + v1::Command::descriptor()->FindFieldByNumber(action)->name();
     }
     return out;
+  }
+
+  // Time
+
+  ScriptClient& holder() { return *clients_.at(script_.clients(0).name()); }
+
+  Outcome beginHeld() {
+    if (!held_) return {true, ""};
+    if (Outcome there = connected(holder()); !there.passed) return there;
+    return held_->begin();
+  }
+
+  /// Waits until this time since the start, of the script or of the water.
+  Outcome waitUntil(double at_s) {
+    if (held_) return held_->advanceTo(at_s);
+    wait(at_s - since_s(begin_), [] { return false; });
+    return {true, ""};
+  }
+
+  std::optional<HeldReport> reportHeld() {
+    if (!held_) return std::nullopt;
+    (void)held_->settle();  // after a failure there may be nobody to do it
+    const auto& events = holder().received.event_counts;
+    const auto recovered = events.find(v1::ROOM_EVENT_KIND_RECOVERED);
+    return HeldReport{.seed = script_.seed(),
+                      .tick_count = held_->madeCount(),
+                      .made_s = held_->made_s(),
+                      .state_hash = held_->hash(),
+                      .recovered_count = recovered == events.end() ? 0 : recovered->second};
   }
 
   /// Lets the clients run until `holds` is true or the time is over; returns whether it became true.
@@ -99,19 +139,33 @@ class Runner {
     return {passed, std::move(detail)};
   }
 
-  /// The same for what frames of a layer show, which the client subscribes to: `shows` looks at each once, until one
-  /// shows what is wanted.
-  Outcome awaitFrame(ScriptClient& client, v1::Layer layer, double duration_s, const std::function<bool()>& shows,
-                     const std::function<std::string()>& seen) {
+  /// The same for what frames of a layer show, which the client subscribes to: looks at each once, until one shows what
+  /// is wanted.
+  Outcome awaitFrame(ScriptClient& client, v1::Layer layer, double duration_s, const std::function<Seen()>& look) {
     client.needLayer(layer);
+    if (held_) return awaitHeldFrame(client, layer, look);
     std::uint64_t looked_count = 0;
-    bool has_shown = false;
+    Seen seen{.is_wanted = false, .what = "no frame of " + v1::Layer_Name(layer)};
     const auto holds = [&] {
       const std::uint64_t frame_count = client.received.tallies[layer].frame_count;
-      if (!has_shown && std::exchange(looked_count, frame_count) != frame_count) has_shown = shows();
-      return has_shown;
+      if (!seen.is_wanted && std::exchange(looked_count, frame_count) != frame_count) seen = look();
+      return seen.is_wanted;
     };
-    return await(client, duration_s, holds, seen);
+    return await(client, duration_s, holds, [&] { return seen.what; });
+  }
+
+  /// The same with a held clock: looks at the newest tick only, because no time passes.
+  Outcome awaitHeldFrame(ScriptClient& client, v1::Layer layer, const std::function<Seen()>& look) {
+    if (Outcome settled = held_->settle(); !settled.passed) return settled;
+    const auto is_there = [&] {
+      const LayerTally& tally = client.received.tallies[layer];
+      return tally.frame_count > 0 && tally.tick >= held_->tick();
+    };
+    const Outcome there = await(client, kHeldFramePatience_s, is_there, [] { return std::string(); });
+    if (!there.passed) return {false, fmt::format("no frame of tick {}{}", held_->tick(), there.detail)};
+    const Seen seen = look();
+    return {seen.is_wanted,
+            fmt::format("{} at {:.3f} s{}", seen.what, held_->made_s(), seen.is_wanted ? "" : ", out of bounds")};
   }
 
   static std::string endOf(const ScriptClient& client) {
@@ -142,17 +196,23 @@ class Runner {
       case v1::ScriptStep::kSubscribe:
         client.subscribe(step.subscribe());
         return {true, ""};
+      case v1::ScriptStep::kHash:
+        return expectHash(step.hash());
       case v1::ScriptStep::kWait:
+        if (held_) return held_->advanceBy(step.wait().duration_s());
         wait(step.wait().duration_s(), [] { return false; });
         return client.end() ? Outcome{false, "the connection ended: " + endOf(client)} : Outcome{true, ""};
       case v1::ScriptStep::kSurface:
-        return expectSurface(step.surface(), client);
+        return awaitFrame(client, v1::LAYER_SURFACE, patience_s(step.surface()),
+                          [&] { return seenSurface(step.surface(), client.received); });
       case v1::ScriptStep::kGauge:
-        return expectGauge(step.gauge(), client);
+        return awaitFrame(client, v1::LAYER_DIAGNOSTICS, patience_s(step.gauge()),
+                          [&] { return seenGauge(step.gauge(), client.received); });
       case v1::ScriptStep::kBoat:
         return expectBoat(step.boat(), client);
       case v1::ScriptStep::kParticles:
-        return expectParticles(step.particles(), client);
+        return awaitFrame(client, v1::LAYER_PARTICLES, patience_s(step.particles()),
+                          [&] { return seenParticles(step.particles(), client.received); });
       case v1::ScriptStep::kFrames:
         return expectFrames(step.frames(), client);
       case v1::ScriptStep::kGap:
@@ -169,6 +229,30 @@ class Runner {
     }
   }
 
+  /// Sends a command. Returns its answer; null with the reason in `why` if there is none.
+  const v1::ServerMessage* ask(ScriptClient& client, v1::Command command, double within_s, Outcome& why) {
+    const std::uint64_t id = client.command(std::move(command));
+    const Outcome answered = await(
+        client, within_s, [&] { return client.received.answers.contains(id); }, [] { return std::string(); });
+    if (answered.passed) return &client.received.answers[id];
+    why = {false, "no answer" + answered.detail};
+    return nullptr;
+  }
+
+  Outcome expectHash(const v1::ExpectHash& step) {
+    if (Outcome settled = held_->settle(); !settled.passed) return settled;
+    const std::uint64_t hash = *held_->hash();
+    std::string detail = fmt::format("{} at {:.3f} s", hashText(hash), held_->made_s());
+    const auto same = hashes_.find(step.same_as());
+    const std::optional<std::uint64_t> wanted = step.has_is()           ? std::optional(step.is())
+                                                : same != hashes_.end() ? std::optional(same->second)
+                                                                        : std::nullopt;
+    const bool passed = !wanted || *wanted == hash;
+    if (!passed) detail += "; wanted " + hashText(*wanted);
+    if (!step.save().empty()) hashes_[step.save()] = hash;
+    return {passed, std::move(detail)};
+  }
+
   Outcome command(const v1::ScriptCommand& step, ScriptClient& client) {
     v1::Command command = step.command();
     if (!step.boat().empty()) {
@@ -178,15 +262,16 @@ class Runner {
       if (command.has_take_boat()) command.mutable_take_boat()->set_boat_id(saved->second);
       if (command.has_remove_boat()) command.mutable_remove_boat()->set_boat_id(saved->second);
     }
-    const std::uint64_t id = client.command(std::move(command));
-    const Outcome answered = await(
-        client, patience_s(step), [&] { return client.received.answers.contains(id); }, [] { return std::string(); });
-    if (!answered.passed) return {false, "no answer" + answered.detail};
-    const v1::ServerMessage& answer = client.received.answers[id];
+    Outcome why;
+    const v1::ServerMessage* const answered = ask(client, std::move(command), patience_s(step), why);
+    if (!answered) return why;
+    const v1::ServerMessage& answer = *answered;
     if (answer.has_ack()) {
+      if (held_) held_->commandApplied(answer.ack().applied_tick());
       if (!step.save_boat().empty()) boats_[step.save_boat()] = answer.ack().boat_id();
       const bool wanted = step.rejected() == v1::REJECT_REASON_UNSPECIFIED;
-      return {wanted, fmt::format("applied at tick {}{}", answer.ack().applied_tick(),
+      const std::string hash = answer.ack().has_state_hash() ? ", hash " + hashText(answer.ack().state_hash()) : "";
+      return {wanted, fmt::format("applied at tick {}{}{}", answer.ack().applied_tick(), hash,
                                   wanted ? "" : "; wanted " + v1::RejectReason_Name(step.rejected()))};
     }
     const v1::Reject& reject = answer.reject();
@@ -200,50 +285,6 @@ class Runner {
                                                                         : std::string("an ack")))};
   }
 
-  Outcome expectSurface(const v1::ExpectSurface& step, ScriptClient& client) {
-    std::optional<double> seen_m;
-    const auto shows = [&] {
-      seen_m = elevation_m(client.received.newest[v1::LAYER_SURFACE], step.x_m(), step.z_m());
-      return seen_m && (!step.has_min_m() || *seen_m >= step.min_m()) && (!step.has_max_m() || *seen_m <= step.max_m());
-    };
-    return awaitFrame(client, v1::LAYER_SURFACE, patience_s(step), shows, [&] {
-      return seen_m ? fmt::format("elevation {:.4f} m", *seen_m) : std::string("no surface there");
-    });
-  }
-
-  static std::optional<double> elevation_m(const v1::LayerFrame& frame, double x_m, double z_m) {
-    const auto surface = codec::decodeSurface(frame);
-    if (!surface) return std::nullopt;
-    const auto index = [](double at_m, double side_m, std::uint32_t count) {
-      return static_cast<std::int64_t>(std::floor((at_m / side_m + 0.5) * count));
-    };
-    const std::int64_t i = index(x_m, surface->length_m, surface->count.x);
-    const std::int64_t k = index(z_m, surface->width_m, surface->count.z);
-    if (i < 0 || k < 0 || i >= surface->count.x || k >= surface->count.z) return std::nullopt;
-    return surface->elevation_m[static_cast<std::size_t>(k * surface->count.x + i)];
-  }
-
-  Outcome expectGauge(const v1::ExpectGauge& step, ScriptClient& client) {
-    std::string seen = "no diagnostics";
-    const auto shows = [&] {
-      const auto& gauges = client.received.diagnostics.gauges();
-      const auto gauge = std::ranges::find(gauges, step.gauge(), &v1::GaugeReading::name);
-      if (gauge == gauges.end()) {
-        seen = fmt::format("there is no gauge \"{}\"", step.gauge());
-        return false;
-      }
-      seen = fmt::format("elevation {:.4f} m, highest {:.4f} m, lowest {:.4f} m", gauge->elevation_m(),
-                         gauge->highest_m(), gauge->lowest_m());
-      return (!step.has_min_m() || gauge->elevation_m() >= step.min_m()) &&
-             (!step.has_max_m() || gauge->elevation_m() <= step.max_m()) &&
-             (!step.has_highest_min_m() || gauge->highest_m() >= step.highest_min_m()) &&
-             (!step.has_highest_max_m() || gauge->highest_m() <= step.highest_max_m()) &&
-             (!step.has_lowest_min_m() || gauge->lowest_m() >= step.lowest_min_m()) &&
-             (!step.has_lowest_max_m() || gauge->lowest_m() <= step.lowest_max_m());
-    };
-    return awaitFrame(client, v1::LAYER_DIAGNOSTICS, patience_s(step), shows, [&] { return seen; });
-  }
-
   Outcome expectBoat(const v1::ExpectBoat& step, ScriptClient& client) {
     std::uint32_t boat_id = step.boat_id();
     if (!step.boat().empty()) {
@@ -251,34 +292,8 @@ class Runner {
       if (saved == boats_.end()) return {false, "no boat was saved as \"" + step.boat() + "\""};
       boat_id = saved->second;
     }
-    std::string seen = "no frame of the boats";
-    const auto shows = [&] {
-      const auto bodies = codec::decodeBodies(client.received.newest[v1::LAYER_BODIES]);
-      if (!bodies) return false;
-      const auto boat = std::ranges::find(*bodies, boat_id, &codec::BodySample::boat_id);
-      if (boat == bodies->end()) {
-        seen = fmt::format("boat {} is not on the water", boat_id);
-        return false;
-      }
-      const double x_m = boat->position_m[0];
-      const double z_m = boat->position_m[2];
-      seen = fmt::format("boat {} at {:.2f}, {:.2f} m", boat_id, x_m, z_m);
-      return !step.has_radius_m() || std::hypot(x_m - step.x_m(), z_m - step.z_m()) <= step.radius_m();
-    };
-    return awaitFrame(client, v1::LAYER_BODIES, patience_s(step), shows, [&] { return seen; });
-  }
-
-  Outcome expectParticles(const v1::ExpectParticles& step, ScriptClient& client) {
-    std::uint32_t count = 0;
-    const auto shows = [&] {
-      const v1::LayerFrame& frame = client.received.newest[v1::LAYER_PARTICLES];
-      count = frame.has_particles_fixed12() ? frame.particles_fixed12().count() : frame.particles_by_cell().count();
-      return count >= step.min_count() && (!step.has_max_count() || count <= step.max_count());
-    };
-    return awaitFrame(client, v1::LAYER_PARTICLES, patience_s(step), shows, [&] {
-      const bool has_frame = client.received.newest.contains(v1::LAYER_PARTICLES);
-      return has_frame ? fmt::format("{} particles", count) : std::string("no frame of the particles");
-    });
+    return awaitFrame(client, v1::LAYER_BODIES, patience_s(step),
+                      [&] { return seenBoat(step, boat_id, client.received); });
   }
 
   Outcome expectFrames(const v1::ExpectFrames& step, ScriptClient& client) {
@@ -353,6 +368,8 @@ class Runner {
   std::unique_ptr<net::ClientPool> pool_;  // declared first: must outlive the clients
   std::map<std::string, std::unique_ptr<ScriptClient>> clients_;
   std::map<std::string, std::uint32_t> boats_;
+  std::map<std::string, std::uint64_t> hashes_;  ///< that were saved
+  std::optional<HeldTime> held_;                 ///< with hold_clock
   std::map<std::pair<std::string, v1::RoomEventKind>, std::uint64_t> used_events_;
   const Clock::time_point begin_ = Clock::now();
 };

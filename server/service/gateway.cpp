@@ -95,8 +95,12 @@ void Gateway::sceneChanged(const rooms::Room& room) {
   if (cluster_.audience) cluster_.audience->sceneChanged(room);
 }
 
-void Gateway::timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) {
-  tell(room, topic::kRoomState, wire::roomState(paused, speed, person_id));
+void Gateway::timeChanged(const rooms::Room& room, const v1::RoomState& state) {
+  tell(room, topic::kRoomState, wire::roomState(state));
+}
+
+void Gateway::clockChanged(const rooms::Room& room, const std::string& how, std::uint32_t person_id) {
+  tell(room, topic::kClock, wire::roomEvent(v1::ROOM_EVENT_KIND_CLOCK, room.tick(), how, person_id));
 }
 
 void Gateway::parameterChanged(const rooms::Room& room, const std::string& path, double value) {

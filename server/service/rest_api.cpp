@@ -48,6 +48,7 @@ unsigned httpStatusOf(v1::RejectReason reason) {
     case v1::REJECT_REASON_UNKNOWN_PARAMETER:
       return 404;
     case v1::REJECT_REASON_NOT_NOW:
+    case v1::REJECT_REASON_CLOCK_HELD:
       return 409;
     case v1::REJECT_REASON_BUSY:
       return 503;
@@ -144,6 +145,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     return respond(json(200, out));
   }
   if (call.path[2] == "surface" && call.path.size() == 3) return surface(call, room, std::move(respond));
+  if (call.path[2] == "state_hash" && call.path.size() == 3) return stateHash(call, *room, respond);
   if (call.path[2] == "gauges") return gauges(call, *room, respond);
   if (call.path.size() != 3) return respond(std::nullopt);
   const std::string& part = call.path[2];
@@ -185,6 +187,19 @@ void RestApi::snapshot(const Call& call, rooms::Room& room, const net::HttpRespo
                           is_kept ? "" : "the server keeps no state on disk");
   if (!is_kept) return respond(problem(409, "the server keeps no state on disk: start it with --state-dir FOLDER"));
   respond(HttpReply{.status = 202, .content_type = "application/json", .body = "{}\n"});
+}
+
+void RestApi::stateHash(const Call& call, rooms::Room& room, const net::HttpResponder& respond) {
+  if (call.request.method != "GET") return respond(wrongMethod("GET"));
+  // The room stands still while its state is copied.
+  if (!call.isOperator()) return respond(problem(403, "the hash of the state takes the role of operator"));
+  room.askStateHash([respond](const core::Result<rooms::HashedState>& state) {
+    if (!state) return respond(problem(503, state.error().message));
+    v1::StateHash out;
+    out.set_tick(state->tick);
+    out.set_state_hash(state->hash);
+    respond(json(200, out));
+  });
 }
 
 void RestApi::gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond) {

@@ -79,6 +79,8 @@ void Sessions::greet(net::SessionId session, const Venue& venue) {
   greeting.set_server_time_s(core::monotonic_s() + view->clock_offset_s);
   greeting.mutable_room_state()->set_paused(room.paused);
   greeting.mutable_room_state()->set_speed(room.speed);
+  for (const std::uint32_t person_id : room.clock_person_ids)
+    greeting.mutable_room_state()->add_clock_person_ids(person_id);
   *greeting.mutable_boat_list() = room.boats;
   for (const std::string& scene : view->scenes) greeting.add_scenes(scene);
   if (view->levels.levels_size() > 0) *greeting.mutable_fidelity_levels() = view->levels;

@@ -25,6 +25,8 @@ class Floaters {
   void reset(const core::Scene& scene);
   void declareState(StateBuffers& out);
   /// Everything but the device's state, and its replacement.
+  /// The next reset() numbers from 1 again.
+  void numberAfresh() { next_id_ = 1; }
   [[nodiscard]] CarriedFloaters carried() const { return {places_, next_id_}; }
   void takeOver(const CarriedFloaters& carried);
   /// Returns whether takeOver() may be called: as many slots as here.

@@ -76,6 +76,7 @@ struct WaterSim::Parts {
   std::vector<float> starting_positions;       ///< the lattice; computed when first needed
   std::optional<ParticleLayout> start_layout;  ///< of starting_positions
   double start_jitter_ratio = 0.0;             ///< likewise
+  std::uint64_t start_seed = 0;                ///< likewise
   std::optional<BasinInputs> basin_inputs;     ///< inputs of the wave's present tables
 
   /// Starting positions, 4 floats per particle.

@@ -151,11 +151,13 @@ void WaterSim::Parts::pressBodies() {
 const std::vector<float>& WaterSim::Parts::startOf(const core::Scene& scene, const ParticleLayout& layout) {
   const std::size_t wanted = std::size_t{layout.count} * 4;
   if (settled_positions.size() == wanted) return settled_positions;  // false after a change of the particle count
-  const bool is_known = start_layout == layout && start_jitter_ratio == scene.particles->jitter_ratio;
+  const bool is_known =
+      start_layout == layout && start_jitter_ratio == scene.particles->jitter_ratio && start_seed == scene.seed;
   if (!is_known) {
     starting_positions = startingPositions(scene, layout);
     start_layout = layout;
     start_jitter_ratio = scene.particles->jitter_ratio;
+    start_seed = scene.seed;
   }
   return starting_positions;
 }
@@ -189,6 +191,13 @@ void WaterSim::reset() {
   uploadStartingState();
   parts_->checkpoints->forget();
   ++revision_;
+}
+
+void WaterSim::resetWith(std::uint64_t seed) {
+  if (seed != 0) scene_.seed = seed;
+  if (parts_->floaters) parts_->floaters->numberAfresh();
+  numberBoatsFrom(1);
+  reset();
 }
 
 /// The basin's tables depend on the scene only. Uploading them is the slowest part of a reset, so it is skipped when

@@ -59,6 +59,11 @@ void WaterSim::watchHealth() {
   if (is_careful_ && tick_ >= careful_until_tick_) setCareful(false);
 }
 
+void WaterSim::takeHealth() {
+  ctx_.finish();
+  watchHealth();
+}
+
 void WaterSim::recordGauges(const Health& health) {
   const double time_s = static_cast<double>(health.tick - start_tick_) * derived_.tick_s;
   if (gauges_) gauges_->add(time_s, health.gauges);

@@ -15,7 +15,8 @@ WaveMakers::WaveMakers(Creation& create, const core::Scene& scene, const WaveLay
 }
 
 void WaveMakers::update(const core::Scene& scene, const WaveLayout& layout) {
-  const Inputs inputs{.depth_m = scene.wave->depth_m, .gravity_mps2 = scene.gravity_mps2, .dt_s = layout.dt_s};
+  const Inputs inputs{
+      .depth_m = scene.wave->depth_m, .gravity_mps2 = scene.gravity_mps2, .dt_s = layout.dt_s, .seed = scene.seed};
   if (inputs == inputs_) return;
   inputs_ = inputs;
   for (std::size_t k = 0; k < makers_.size(); ++k) {

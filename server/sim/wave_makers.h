@@ -31,6 +31,7 @@ class WaveMakers {
   /// Values from which the waves were computed.
   struct Inputs {
     double depth_m, gravity_mps2, dt_s;
+    std::uint64_t seed;
     bool operator==(const Inputs&) const = default;
   };
 

@@ -69,10 +69,7 @@ RoomWater::Handler RoomWater::handlerOf(v1::Command::ActionCase action) {
     case Command::kSetParameter:
       return [](RoomWater& room, const Command& command) { return room.setParameter(command.set_parameter()); };
     case Command::kReset:
-      return [](RoomWater& room, const Command&) {
-        room.sim().reset();
-        return Outcome();
-      };
+      return [](RoomWater& room, const Command& command) { return room.reset(command.reset()); };
     case Command::kSpawnBoat:
       return [](RoomWater& room, const Command& command) {
         return room.spawned(room.sim().spawnBoat(scene::toCore(command.spawn_boat().boat())), "spawn_boat");
@@ -121,6 +118,19 @@ RoomWater::Outcome RoomWater::apply(const v1::Command& command) {
   return outcome;
 }
 
+RoomWater::Outcome RoomWater::reset(const v1::Reset& reset) {
+  if (!reset.has_seed()) {
+    sim().reset();
+    return {};
+  }
+  sim().resetWith(reset.seed());
+  if (reset.seed() == 0) return {};
+  v1::Scene seeded = scene();
+  seeded.set_seed(reset.seed());
+  setScene(std::move(seeded));
+  return {};
+}
+
 RoomWater::Outcome RoomWater::setParameter(const v1::SetParameter& change) {
   v1::Scene changed = scene();
   if (auto error = scene::setParameter(changed, change.path(), change.value())) {
@@ -149,6 +159,12 @@ RoomWater::Outcome RoomWater::adopt(Relayout relayout, core::Result<sim::Prepare
   setScene(std::move(relayout.changed));
   ++state_id_;
   return {};
+}
+
+void RoomWater::takeHealth() {
+  const std::uint64_t before = sim().recoveredCount();
+  sim().takeHealth();
+  if (sim().recoveredCount() != before) ++state_id_;
 }
 
 TickWork RoomWater::work() const {
@@ -181,6 +197,7 @@ core::Result<void> RoomWater::continueIn(std::unique_ptr<Water>& next) {
   // Values may have changed since the building began.
   v1::Scene wanted = next->scene();
   scene::keepParameters(scene(), wanted);
+  wanted.set_seed(scene().seed());
   next->bind();
   auto done = next->sim().setScene(scene::toCore(wanted));
   if (done) done = next->sim().takeOver(carried);

@@ -65,6 +65,7 @@ core::Result<v1::Scene> sceneAt(const SceneCatalog& scenes, const v1::Scene& now
   auto scene = scenes.load(now.name(), level);
   if (!scene) return scene;
   scene::keepParameters(now, *scene);
+  scene->set_seed(now.seed());
   // Waters that began before their scene had floaters continue without.
   if (!now.has_floaters()) scene->clear_floaters();
   return scene;

@@ -45,12 +45,8 @@ core::SharedBytes parameterChanged(std::string_view path, double value, std::uin
   return messageWith(&v1::ServerMessage::mutable_parameter_changed, std::move(out));
 }
 
-core::SharedBytes roomState(bool paused, double speed, std::uint32_t person_id) {
-  v1::RoomState out;
-  out.set_paused(paused);
-  out.set_speed(speed);
-  out.set_person_id(person_id);
-  return messageWith(&v1::ServerMessage::mutable_room_state, std::move(out));
+core::SharedBytes roomState(const v1::RoomState& state) {
+  return messageWith(&v1::ServerMessage::mutable_room_state, state);
 }
 
 core::SharedBytes boatList(const v1::BoatList& boats) {

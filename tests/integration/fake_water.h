@@ -109,7 +109,7 @@ class FakeGateway final : public net::Application, public rooms::FrameOutlet {
     } else if (const auto* ping = std::get_if<v1::Ping>(&message)) {
       hub_->sendAnswer(session, wire::pong(ping->client_time_s(), 0.0));
     } else if (const auto* command = std::get_if<v1::Command>(&message)) {
-      hub_->broadcastState(kRooms[command->command_id() % 2], {.name = "room_state"}, wire::roomState(false, 1.0));
+      hub_->broadcastState(kRooms[command->command_id() % 2], {.name = "room_state"}, wire::roomState(v1::RoomState()));
       if (command->has_reset()) hub_->join(session, kRooms[1], demands[1]);
       hub_->sendAnswer(session, wire::ack(ackOf(command->command_id(), 0)));
     }

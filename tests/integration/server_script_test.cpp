@@ -1,4 +1,10 @@
 // Scripted clients against a live server: expectations that hold, and reports of those that do not.
+#include <atomic>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+
 #include <spindrift/script/script.h>
 
 #include "server_fixture.h"
@@ -16,9 +22,18 @@ constexpr const char* kScriptLagoon = R"(
   stream { frame_rate_hz: 60 }
 )";
 
+constexpr const char* kScriptStorm = R"(
+  wave { resolution_count: 48 side_m: 12 depth_m: 1 }
+  boats { capacity_count: 2 }
+  storm { level_ratio: 1 drops_per_m2_s: 2 }
+  stream { frame_rate_hz: 60 }
+)";
+
 class Script : public ServerTest {
  protected:
-  std::vector<RoomText> rooms() const override { return {{"main", kScriptLagoon}, {"other", kStillWave}}; }
+  std::vector<RoomText> rooms() const override {
+    return {{"main", kScriptLagoon}, {"other", kStillWave}, {"storm", kScriptStorm}};
+  }
   void adjust(service::WaterServerOptions& options) const override { options.rules.grace = std::chrono::hours(1); }
 
   script::ScriptReport run(const std::string& text) {
@@ -141,6 +156,80 @@ TEST_F(Script, SeesEventsAndRefusals) {
     steps { client: "rude" closed { code: 1008 within_s: 20 } }
   )");
   EXPECT_TRUE(report.passed()) << failures(report);
+}
+
+/// A script whose water depends on its seed, its commands and their times.
+std::string heldScript(std::uint64_t seed, double depth_m) {
+  return fmt::format(R"(
+    hold_clock: true
+    seed: {}
+    clients {{ name: "ada" room: "storm" }}
+    clients {{ name: "bob" room: "storm" }}
+    steps {{ surface {{ x_m: 0 z_m: 0 min_m: -0.5 max_m: 0.5 }} }}
+    steps {{ at_s: 0.25 client: "bob" command {{ command {{ splash {{ depth_m: {} radius_m: 1 }} }} }} }}
+    steps {{ at_s: 0.25 command {{ command {{ spawn_boat {{ boat {{ x_m: 2 z_m: 1 }} }} }} save_boat: "a" }} }}
+    steps {{ at_s: 0.5 command {{ boat: "a" command {{ control_boat {{ throttle_ratio: 1 }} }} }} }}
+    steps {{ client: "bob" command {{ command {{ set_paused {{ paused: true }} }} rejected: REJECT_REASON_CLOCK_HELD }} }}
+    steps {{ at_s: 1.5 boat {{ boat: "a" x_m: 3 z_m: 1 radius_m: 2 }} }}
+    steps {{ wait {{ duration_s: 0.5 }} }}
+    steps {{ hash {{ save: "end" }} }}
+    steps {{ hash {{ same_as: "end" }} }}
+  )",
+                     seed, depth_m);
+}
+
+TEST_F(Script, HeldScriptGivesTheSameHashAtAnyLoad) {
+  const auto calm = run(heldScript(7, 0.4));
+  ASSERT_TRUE(calm.passed()) << failures(calm);
+  ASSERT_TRUE(calm.held && calm.held->state_hash);
+  EXPECT_EQ(calm.held->tick_count, 120u) << "two seconds of 60 ticks";
+  EXPECT_NEAR(calm.held->made_s, 2.0, 1e-9);
+  script::ScriptReport busy;
+  {
+    std::atomic<bool> over{false};
+    std::vector<std::jthread> burners;
+    for (int k = 0; k < 2; ++k) {
+      burners.emplace_back([&over] {
+        for (volatile std::uint64_t work = 0; !over;) work = work + 1;
+      });
+    }
+    busy = run(heldScript(7, 0.4));
+    over = true;
+  }
+  ASSERT_TRUE(busy.passed()) << failures(busy);
+  EXPECT_EQ(busy.held->state_hash, calm.held->state_hash);
+  const auto seeded = run(heldScript(8, 0.4));
+  ASSERT_TRUE(seeded.passed()) << failures(seeded);
+  EXPECT_NE(seeded.held->state_hash, calm.held->state_hash) << "another seed";
+  const auto other = run(heldScript(7, 0.41));
+  ASSERT_TRUE(other.passed()) << failures(other);
+  EXPECT_NE(other.held->state_hash, calm.held->state_hash) << "another command";
+}
+
+TEST_F(Script, HeldScriptReportsAnotherHash) {
+  const auto report = run(R"(
+    hold_clock: true
+    keep_going: true
+    steps { at_s: 0.1 hash { is: 1 save: "a" } }
+    steps { at_s: 0.2 hash { same_as: "a" } }
+    steps { surface { x_m: 0 z_m: 0 min_m: 1 } }
+  )");
+  ASSERT_EQ(report.steps.size(), 3u);
+  EXPECT_THAT(report.steps[0].detail, HasSubstr("at 0.100 s; wanted 0x0000000000000001"));
+  EXPECT_FALSE(report.steps[1].passed) << "time has passed";
+  EXPECT_THAT(report.steps[2].detail, HasSubstr("at 0.200 s, out of bounds"));
+}
+
+TEST_F(Script, TimeThatSomebodyElseHoldsIsReported) {
+  ScriptedClient other = client("storm");
+  v1::Command take;
+  take.mutable_take_clock();
+  ASSERT_TRUE(other.apply(take));
+  const auto report = run(R"(
+    clients { name: "ada" room: "storm" }
+    steps { command { command { set_speed { speed: 2 } } } }
+  )");
+  EXPECT_THAT(report.steps.at(0).detail, HasSubstr("CLOCK_HELD"));
 }
 
 TEST_F(Script, InvalidScriptIsRefusedWithItsLocation) {

@@ -7,7 +7,8 @@ namespace spindrift::test {
 
 struct SilentOutlets : rooms::RoomOutlets {
   void sceneChanged(const rooms::Room&) override {}
-  void timeChanged(const rooms::Room&, bool, double, std::uint32_t) override {}
+  void timeChanged(const rooms::Room&, const v1::RoomState&) override {}
+  void clockChanged(const rooms::Room&, const std::string&, std::uint32_t) override {}
   void parameterChanged(const rooms::Room&, const std::string&, double) override {}
   void boatsChanged(const rooms::Room&, const v1::BoatList&) override {}
   void peopleChanged(const rooms::Room&, const v1::People&) override {}

@@ -99,6 +99,24 @@ TEST(RoomTime, MeanFactorLeavesOutTheTimeInWhichTheRoomStoodStill) {
   EXPECT_EQ(time.realTimeFactor(), 0.0) << "it stands still";
 }
 
+TEST(RoomTime, HeldClockPacesTheTicksThatAreAskedFor) {
+  RoomTime time = running();
+  time.setHeld(true, kRoomStart);
+  EXPECT_FALSE(time.runs());
+  time.heldTicked(0.0, kRoomStart + 5ms);
+  EXPECT_EQ(time.due(), kRoomStart + 5ms) << "as fast as the machine can: at once";
+  time.setHeld(true, kRoomStart);
+  for (int k = 0; k < 60; ++k) time.heldTicked(2.0, time.due());
+  EXPECT_NEAR(std::chrono::duration<double>(time.due() - kRoomStart).count(), 0.5, 1e-6) << "twice real time";
+  time.holdFrom(kRoomStart + 10s);
+  EXPECT_EQ(time.due(), kRoomStart + 10s) << "the time in which the room waited is no lag";
+  time.beginRound(kRoomStart + 20s);
+  EXPECT_EQ(time.realTimeFactor(), 0.0) << "it waits";
+  time.setHeld(false, kRoomStart + 20s);
+  EXPECT_TRUE(time.runs());
+  EXPECT_EQ(time.due(), kRoomStart + 20s) << "its own clock runs again, without lag";
+}
+
 TEST(RoomTime, OtherWaterKeepsSpeedAndPauseAndStepsWhereTheyContinue) {
   for (const bool keeps_steps : {false, true}) {
     RoomTime time = running();

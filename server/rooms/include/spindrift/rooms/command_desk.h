@@ -61,6 +61,10 @@ class CommandDesk {
   [[nodiscard]] bool hasWork() const { return waitingCount() > 0 || (values_ && !values_->relaid); }
   /// Carries out what waits, heavy commands within their share of the time.
   void carryOut(TimePoint now);
+  /// Any thread. CommandQueue::isBusyWith().
+  [[nodiscard]] bool isBusyWith(const core::Sender& sender) const { return queue_.isBusyWith(sender); }
+  /// Answers the steps whose ticks are done.
+  void finishSteps();
   /// Takes over particles that are laid out anew, if they are ready.
   void finishRelayout();
   /// Answers the commands that asked for another scene: WaterChange::Built::outcome.
@@ -94,6 +98,8 @@ class CommandDesk {
 
   void apply(Batch batch);
   void beginScene(Batch batch);
+  /// Answers a Step now, unless it waits for its ticks.
+  void beginStep(Batch batch);
   void setParameters(Batch values) { tryNewest({.untried = std::move(values)}); }
   void tryNewest(Values values);
   /// Leaves the values to a later round; their sender's later commands wait for them.

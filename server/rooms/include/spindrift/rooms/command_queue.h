@@ -42,6 +42,9 @@ class CommandQueue {
   struct Allowed {
     bool heavy = true;
     bool scene_change = true;  ///< requires `heavy` too
+    /// Values of one sender for the same parameter may be taken together. How many there are depends on how fast they
+    /// are taken.
+    bool joined_values = true;
   };
   /// Returns the next batch, from the lane whose turn it is; nullopt when no lane has an allowed command.
   [[nodiscard]] std::optional<Batch> next(const Allowed& allowed);
@@ -50,6 +53,8 @@ class CommandQueue {
   /// wait.
   void hold(const Batch& batch);
   void release(const Batch& batch);
+  /// Returns whether commands of this sender wait, or its lane is blocked.
+  [[nodiscard]] bool isBusyWith(const core::Sender& sender) const;
 
   /// Takes the first commands of lanes, held or not, that equal `command`: they get the same answer.
   [[nodiscard]] Batch takeEqual(const v1::Command& command);

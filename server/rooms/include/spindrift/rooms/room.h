@@ -6,8 +6,10 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <spindrift/core/demand_table.h>
 #include <spindrift/core/result.h>
@@ -58,6 +60,9 @@ class Room {
   [[nodiscard]] const Roster& roster() const { return data_.roster; }
   /// The only entry for commands, from sessions and requests: CommandDesk::admit().
   [[nodiscard]] std::optional<wire::CommandRejection> admit(Command command);
+  /// Asks for the hash of the state between two ticks. `done` is called once, on the simulation thread, or at once with
+  /// kUnavailable when 16 others wait.
+  void askStateHash(HashDone done);
   /// Asks for a snapshot on disk as soon as possible; returns false if the room is not kept.
   bool askForSnapshot();
   /// nullopt if the room is not kept on disk.
@@ -92,6 +97,7 @@ class Room {
   void abandonCommands() {
     desk_.close();
     queries_.endAll("the room was closed");
+    answerHashes("the room was closed");
   }
   /// Writes a snapshot and waits for it until the deadline. Errors: those of the files; kUnavailable when the device
   /// does not answer, or the deadline passes: a snapshot that has begun is written nevertheless, and the log holds the
@@ -110,6 +116,12 @@ class Room {
   void handOver();
   void step(TimePoint now);
   void advancePaused(TimePoint now);
+  /// Makes a tick if the holders of the clock have asked for it, and frames.
+  void advanceHeld(TimePoint now);
+  /// Returns whether there are such ticks to make, and nothing that has to come before them.
+  [[nodiscard]] bool hasHeldTicks() const;
+  /// Answers those who have asked for a hash; with an error, if there is one.
+  void answerHashes(const std::string& error = "");
   /// Makes a tick; returns its end.
   TimePoint timedStep();
   /// Resets a scene that repeats itself, as a command would: logs hold it.
@@ -139,6 +151,8 @@ class Room {
   std::atomic<bool> is_woken_{false};  ///< since the last run()
   std::atomic<std::uint64_t> round_count_{0};
   std::function<void()> on_wake_;
+  mutable std::mutex hash_mutex_;
+  std::vector<HashDone> hash_asked_;  ///< guarded by hash_mutex_
   Published<RoomVitals> vitals_;
 };
 

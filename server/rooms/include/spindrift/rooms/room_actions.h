@@ -1,9 +1,12 @@
 // What commands do in a room: to its water, its time, and to boats, gauges and their owners.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +20,7 @@ namespace spindrift::rooms {
 class RoomActions {
  public:
   using Outcome = water::RoomWater::Outcome;
+  using TimePoint = std::chrono::steady_clock::time_point;
 
   explicit RoomActions(RoomData& room) : room_(room) {}
 
@@ -41,11 +45,19 @@ class RoomActions {
   /// Stops a boat whose owner has left, or may not steer now.
   void stopBoat(std::uint32_t boat_id);
 
+  /// Takes the clock from holders who have left, who are not alone any more, or who are silent for too long. `is_busy`:
+  /// the room is still occupied with commands of this sender.
+  void reviewClock(TimePoint now, const std::function<bool(const core::Sender&)>& is_busy);
+  /// Ends all steps that are still to come. `why`: for those who wait for theirs.
+  void dropSteps(const std::string& why);
+
   // One per kind of command that does more; see the table in command_desk.cpp.
   Outcome reset(const Command& command);
   Outcome setPaused(const Command& command);
   Outcome setSpeed(const Command& command);
   Outcome advance(const Command& command);
+  Outcome takeClock(const Command& command);
+  Outcome releaseClock(const Command& command);
   Outcome draw(const Command& command);
   Outcome spawnBoat(const Command& command);
   Outcome controlBoat(const Command& command);
@@ -70,6 +82,15 @@ class RoomActions {
  private:
   [[nodiscard]] Outcome writeAhead(const Command& command) { return room_.diary.writeAhead(command.message); }
   [[nodiscard]] bool isOnTheWater(std::uint32_t boat_id) const { return room_.water->boatIds().contains(boat_id); }
+
+  [[nodiscard]] std::string holderNames() const;
+  /// Rejects what changes the time of a room whose clock somebody holds.
+  [[nodiscard]] Outcome refuseHeld(const char* field) const;
+  /// Takes the clock from the holders for which `holds` returns true. `how`: what they did, for people. `person_id`:
+  /// whose command it was; 0: nobody's.
+  void loseClock(const std::function<bool(const HeldClock::Holder&)>& holds, const std::string& how,
+                 std::uint32_t person_id);
+  void tellClock(const std::string& what, std::uint32_t person_id);
 
   [[nodiscard]] bool isHeld(const Command& command) const {
     return room_.referee.holdsBoats() && command.sender.role < core::Role::kOperator;

@@ -10,12 +10,14 @@
 #include <spindrift/core/demand_table.h>
 #include <spindrift/history/diary.h>
 #include <spindrift/rooms/frame_schedule.h>
+#include <spindrift/rooms/held_clock.h>
 #include <spindrift/rooms/placed_gauge.h>
 #include <spindrift/rooms/query_book.h>
 #include <spindrift/rooms/room_outlets.h>
 #include <spindrift/rooms/room_rules.h>
 #include <spindrift/rooms/room_time.h>
 #include <spindrift/rooms/roster.h>
+#include <spindrift/rooms/step_book.h>
 #include <spindrift/rooms/tick_meter.h>
 #include <spindrift/v1/kept_state.pb.h>
 #include <spindrift/v1/scene.pb.h>
@@ -33,16 +35,18 @@ struct ServerLoad {
 
 /// Changes that the clients have not been told about yet.
 struct News {
-  bool state = false;  ///< pause or speed
+  bool state = false;  ///< pause, speed, or who holds the clock
   bool boats = false;
   bool gauges = false;  ///< those that people have placed
   bool reset = false;
-  std::uint32_t state_person_id = 0;  ///< who changed pause or speed last; 0: nobody in the room
+  std::uint32_t state_person_id = 0;  ///< who changed that last; 0: nobody in the room
   std::uint32_t reset_person_id = 0;
   bool lesson = false;
   std::map<std::string, double> parameters{};  ///< current values by path
   std::string recovered{};                     ///< one line for people, after the device failed
   std::string fidelity{};                      ///< the same, after the fidelity changed
+  std::string clock{};                         ///< the same: who took the clock, or does not hold it any more
+  std::uint32_t clock_person_id = 0;           ///< whose command that was; 0: nobody's
 };
 
 /// Belongs to a room, and outlives its parts. For the simulation thread, except for name, access, roster and demand.
@@ -58,6 +62,8 @@ struct RoomData {
   Roster roster;
   const std::shared_ptr<core::DemandTable> demand = std::make_shared<core::DemandTable>();
   RoomTime time{water->sim().derived().tick_s};
+  HeldClock clock{};
+  StepBook steps{};
   water::TickCost tick_cost{};
   TickMeter tick_meter{};
   FrameSchedule schedule{};

@@ -15,8 +15,8 @@ class RoomFrames {
 
   explicit RoomFrames(RoomData& room) : room_(room) {}
 
-  /// Requests the frame after a tick of a running room, if it is due.
-  void afterTick(TimePoint scheduled, TimePoint end);
+  /// Requests the frame after a tick of a room that makes them at this speed, if it is due.
+  void afterTick(TimePoint scheduled, TimePoint end, double speed);
   /// Requests the frame of a paused room, if it is due.
   void whilePaused(TimePoint now);
   /// Passes on the frames that the device has finished.

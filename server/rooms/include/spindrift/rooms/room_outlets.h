@@ -22,8 +22,11 @@ class RoomOutlets {
 
   /// The room's scene was replaced; the snapshot shows the new scene.
   virtual void sceneChanged(const Room& room) = 0;
-  /// `person_id`: who paused the room or changed its speed; 0: nobody in the room. The same below.
-  virtual void timeChanged(const Room& room, bool paused, double speed, std::uint32_t person_id) = 0;
+  /// Pause, speed, or who holds the clock.
+  virtual void timeChanged(const Room& room, const v1::RoomState& state) = 0;
+  /// Somebody took the clock, gave it back, or lost it; `how` is one line for people, and timeChanged() came before.
+  /// `person_id`: whose command it was; 0: nobody's in the room. The same below.
+  virtual void clockChanged(const Room& room, const std::string& how, std::uint32_t person_id) = 0;
   virtual void parameterChanged(const Room& room, const std::string& path, double value) = 0;
   virtual void boatsChanged(const Room& room, const v1::BoatList& boats) = 0;
   virtual void peopleChanged(const Room& room, const v1::People& people) = 0;

@@ -65,6 +65,8 @@ class RoomReports {
 
  private:
   void publishSnapshot();
+  /// `person_id`: whose command changed it; 0: nobody's in the room.
+  [[nodiscard]] v1::RoomState state(std::uint32_t person_id) const;
   /// Announces the boats on the water if they differ from the last announcement.
   void tellBoats();
 

@@ -1,7 +1,8 @@
-// The time of a room: its pace beside the wall clock, pause, single steps, and sleep. The caller passes the wall time
-// in; no clock is read.
+// The time of a room: its pace beside the wall clock, pause, single steps, sleep, and the clock that people hold. The
+// caller passes the wall time in; no clock is read.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <deque>
@@ -26,17 +27,17 @@ class RoomTime {
 
   [[nodiscard]] bool isPaused() const { return is_paused_; }
   [[nodiscard]] bool isAsleep() const { return is_asleep_; }
-  /// Neither paused nor asleep.
-  [[nodiscard]] bool runs() const { return !is_paused_ && !is_asleep_; }
+  /// Neither paused nor asleep, and nobody holds the clock.
+  [[nodiscard]] bool runs() const { return !is_paused_ && !is_asleep_ && !is_held_; }
   /// Wanted simulated seconds per wall second.
   [[nodiscard]] double speed() const { return speed_; }
   /// realTimeFactor() of a running room as a share of speed(): 1 where the machine keeps up.
   [[nodiscard]] double pace() const { return runningFactor() / speed_; }
   /// Simulated over wall time in the last second (too low right after a start); 0 in a room that stands still.
-  [[nodiscard]] double realTimeFactor() const { return runs() ? runningFactor() : 0.0; }
+  [[nodiscard]] double realTimeFactor() const { return runs() || is_held_ ? runningFactor() : 0.0; }
   /// The same since the start, without the time in which the room stood still.
   [[nodiscard]] double meanRealTimeFactor(TimePoint now) const;
-  /// When the next tick of a running room is due.
+  /// When the next tick is due of a room that runs, or whose holders have asked for one.
   [[nodiscard]] TimePoint due() const { return due_; }
 
   /// Ends the steps that were still to come.
@@ -49,6 +50,13 @@ class RoomTime {
   /// Notes that such a tick is done; returns whether it was the last one.
   bool stepped() { return --steps_to_come_ == 0; }
 
+  /// Somebody holds the clock, or nobody any more: then the room's own clock runs again.
+  void setHeld(bool is_held, TimePoint now);
+  /// The holders have asked for ticks, after the room has waited for them.
+  void holdFrom(TimePoint now) { due_ = std::max(due_, now); }
+  /// A tick that the holders have asked for, at this speed (0: as fast as the machine can), has ended.
+  void heldTicked(double speed, TimePoint end);
+
   /// Call it at the begin of each round of the room.
   void beginRound(TimePoint now);
   /// Lets the room sleep when nobody has `watched` it for a while, and wakes it. Returns whether it fell asleep now.
@@ -59,6 +67,8 @@ class RoomTime {
   void warnIfSlow(const std::string& room, TimePoint now);
 
  private:
+  /// Notes the end of a tick for runningFactor().
+  void noteTick(TimePoint end);
   /// The next tick is due at `now`, without lag.
   void restartPace(TimePoint now);
   [[nodiscard]] double runningFactor() const;
@@ -66,9 +76,10 @@ class RoomTime {
   double tick_s_;
   double speed_ = 1.0;
   TimePoint due_{};
-  std::deque<TimePoint> ticks_;  ///< end times of the ticks of the last second; bounded by tick rate times speed
+  std::deque<TimePoint> ticks_;  ///< end times of the ticks of the last second; bounded by what the machine makes
   bool is_paused_ = false;
   bool is_asleep_ = false;
+  bool is_held_ = false;
   std::uint32_t steps_to_come_ = 0;
   TimePoint last_watched_{};
   TimePoint last_run_{};         ///< up to which running_wall_s_ counts

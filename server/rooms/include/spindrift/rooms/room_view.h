@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <utility>
 #include <vector>
 
 #include <spindrift/core/frame_view.h>
+#include <spindrift/core/result.h>
 #include <spindrift/rooms/placed_gauge.h>
 #include <spindrift/rooms/tick_meter.h>
 #include <spindrift/sim/water_sim.h>
@@ -22,6 +24,7 @@ struct RoomSnapshot {
   std::uint64_t scene_version = 0;  ///< RoomWater::sceneVersion()
   bool paused = false;
   double speed = 1.0;
+  std::vector<std::uint32_t> clock_person_ids;      ///< who holds the clock, ascending
   v1::BoatList boats;                               ///< boats on the water now
   core::ReducedCounts reduced_counts;               ///< levels that downsample the frames
   std::shared_ptr<const sim::GaugeHistory> gauges;  ///< null in scenes without gauges
@@ -33,6 +36,13 @@ struct LessonState {
   v1::Lesson lesson;
   v1::Game game;
 };
+
+/// sim::WaterSim::stateHash() after a tick of the room.
+struct HashedState {
+  std::uint64_t tick = 0;
+  std::uint64_t hash = 0;
+};
+using HashDone = std::function<void(const core::Result<HashedState>&)>;
 
 /// Condition of a room, for /metrics and lists; updated a few times per second.
 struct RoomVitals {

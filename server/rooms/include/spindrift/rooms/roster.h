@@ -58,6 +58,10 @@ class Roster {
   void keepOnly(const std::set<std::uint32_t>& boat_ids);
 
   [[nodiscard]] bool isHere(std::uint32_t person_id) const;
+  /// Returns whether anybody else who may act (a player or an operator) is connected.
+  [[nodiscard]] bool hasActorsBeside(std::uint32_t person_id) const;
+  /// Returns "Ada (person 3)", and "person 3" for somebody who is not here.
+  [[nodiscard]] std::string nameOf(std::uint32_t person_id) const;
   /// Returns whether this session is the person's present one.
   [[nodiscard]] bool isConnected(std::uint32_t person_id, core::SessionId session) const;
   /// Says who has gauges in the water; nobody else has any.

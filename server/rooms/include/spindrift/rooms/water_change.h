@@ -31,6 +31,8 @@ class WaterChange {
   [[nodiscard]] bool stopsTime() const { return is_lost_ || relayout_; }
   /// Returns whether another build can begin.
   [[nodiscard]] bool mayBuild() const { return !build_; }
+  /// Returns whether a command's scene or level is being built.
+  [[nodiscard]] bool isBuildingForCommand() const { return build_ && build_->cause == Build::Cause::kCommand; }
   /// Returns when takeBuilt(), takeLayout() or watchDevice() has something to do; nullopt: not known yet. `ran`: begin
   /// of the last round.
   [[nodiscard]] std::optional<TimePoint> due(TimePoint ran) const;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,8 @@ namespace spindrift::script {
 
 inline constexpr int kScriptClientMaxCount = 256;
 inline constexpr int kScriptStepMaxCount = 10'000;
+/// Longest time in a script.
+inline constexpr double kScriptMax_s = 86'400.0;
 
 /// Loads a script. Errors: kUnavailable for a file that cannot be read, kInvalidInput with `FILE:LINE:COLUMN: what` or
 /// `FILE: steps[3]: what`. The result has at least one client, and every step names one.
@@ -47,10 +50,22 @@ struct ClientReport {
   double answer_p99_ms = 0.0;
 };
 
+/// Result of a script with hold_clock.
+struct HeldReport {
+  std::uint64_t seed = 0;                   ///< 0: that of the scene
+  std::uint64_t tick_count = 0;             ///< that it has made
+  double made_s = 0.0;                      ///< simulated time of these
+  std::optional<std::uint64_t> state_hash;  ///< after the last one
+  /// Number of times that the watchdog put the water back. When it acts depends on how fast the device answers, so that
+  /// the hash of another run may differ.
+  std::uint64_t recovered_count = 0;
+};
+
 struct ScriptReport {
   std::vector<StepReport> steps;  ///< those that were run
   std::vector<ClientReport> clients;
   int step_count = 0;  ///< those that there are
+  std::optional<HeldReport> held;
   [[nodiscard]] bool passed() const;
 };
 

@@ -48,7 +48,8 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   // RoomOutlets interface
   /// Sends a new greeting to all sessions of the room; their subscriptions stay valid.
   void sceneChanged(const rooms::Room& room) override;
-  void timeChanged(const rooms::Room& room, bool paused, double speed, std::uint32_t person_id) override;
+  void timeChanged(const rooms::Room& room, const v1::RoomState& state) override;
+  void clockChanged(const rooms::Room& room, const std::string& how, std::uint32_t person_id) override;
   void parameterChanged(const rooms::Room& room, const std::string& path, double value) override;
   void boatsChanged(const rooms::Room& room, const v1::BoatList& boats) override;
   void peopleChanged(const rooms::Room& room, const v1::People& people) override;

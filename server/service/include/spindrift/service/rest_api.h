@@ -81,6 +81,7 @@ class RestApi {
   void submit(const Call& call, const std::shared_ptr<rooms::Room>& room, ParsedCommand parsed, Pending pending);
   void surface(const Call& call, const std::shared_ptr<rooms::Room>& room, net::HttpResponder respond);
   void snapshot(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
+  void stateHash(const Call& call, rooms::Room& room, const net::HttpResponder& respond);
   void gauges(const Call& call, const rooms::Room& room, const net::HttpResponder& respond);
   void fillRoomInfo(const rooms::Room& room, v1::RoomInfo& out) const;
   [[nodiscard]] core::Result<access::Grant> resolve(const std::string& authorization) const;

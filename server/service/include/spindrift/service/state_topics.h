@@ -26,5 +26,6 @@ inline const net::StateTopic kQueries{.name = "queries"};
 inline const net::StateTopic kReset{.name = "reset"};
 inline const net::StateTopic kRecovered{.name = "recovered"};
 inline const net::StateTopic kFidelity{.name = "fidelity"};
+inline const net::StateTopic kClock{.name = "clock"};
 
 }  // namespace spindrift::service::topic

@@ -145,6 +145,9 @@ class WaterSim {
   /// Resets to the starting state at time 0. Parameters keep their present values, and the tick count continues.
   /// Uploads only what changed since the start: particle positions, boats, one uniform block.
   void reset();
+  /// Resets to the start of a new WaterSim of the present parameters with this seed (0: the present one): the numbers
+  /// of boats and floaters begin at 1 again, too.
+  void resetWith(std::uint64_t seed);
 
   /// Copies what another simulation of the same water needs to continue from here. Waits.
   [[nodiscard]] CarriedState carriedState();
@@ -207,6 +210,9 @@ class WaterSim {
   [[nodiscard]] const core::Scene& scene() const { return scene_; }
   [[nodiscard]] const Derived& derived() const { return derived_; }
 
+  /// Waits for the device, then looks at the health of all ticks so far: gauges have their readings, and the watchdog
+  /// has acted if it has to.
+  void takeHealth();
   /// Copies the present state. Waits.
   StateCopy copyState();
   /// Replaces what the copy has (sizes must match); the rest of what lasts stays. For tests that need a given state.

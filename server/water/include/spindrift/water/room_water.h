@@ -81,6 +81,8 @@ class RoomWater {
     sim().step();
     ++state_id_;
   }
+  /// sim::WaterSim::takeHealth().
+  void takeHealth();
   /// Water::failure().
   [[nodiscard]] std::optional<std::string> failure() { return water_->failure(); }
 
@@ -106,6 +108,7 @@ class RoomWater {
   using Handler = Outcome (*)(RoomWater& room, const v1::Command& command);
   /// Returns the handler of a command; null if it does not change the water.
   static Handler handlerOf(v1::Command::ActionCase action);
+  Outcome reset(const v1::Reset& reset);
   Outcome setParameter(const v1::SetParameter& change);
   /// Keeps the id of what was added, or rejects the command of that name.
   Outcome spawned(const core::Result<std::uint32_t>& id, const char* action);

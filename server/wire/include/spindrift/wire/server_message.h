@@ -19,7 +19,7 @@ core::SharedBytes ack(const v1::Ack& ack);
 core::SharedBytes reject(const CommandRejection& rejection);
 core::SharedBytes parameterChanged(std::string_view path, double value, std::uint64_t applied_tick);
 /// `person_id`: who caused it; 0: nobody in the room.
-core::SharedBytes roomState(bool paused, double speed, std::uint32_t person_id = 0);
+core::SharedBytes roomState(const v1::RoomState& state);
 core::SharedBytes boatList(const v1::BoatList& boats);
 core::SharedBytes roomEvent(v1::RoomEventKind kind, std::uint64_t tick, std::string_view text,
                             std::uint32_t person_id = 0);
