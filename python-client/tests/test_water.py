@@ -151,6 +151,38 @@ def test_faulty_queries_say_what_would_be_right(water):
         water.query(np.zeros((1025, 2)))
 
 
+def test_a_held_clock_makes_exactly_the_ticks_that_are_asked_for_and_repeats(server, water):
+    hashes = []
+    with water.clock() as clock:
+        for _ in range(2):
+            water.reset(seed=5)
+            water.splash(x_m=1, z_m=1, depth_m=0.3)
+            ack = clock.step(40)
+            hashes.append(ack.state_hash)
+        answer = water.query([[1.0, 1.0]])
+        assert answer.tick == ack.applied_tick and abs(answer.elevation_m[0]) > 1e-4
+        assert clock.step().applied_tick == answer.tick + 1
+        time.sleep(0.3)
+        assert water.query([[1.0, 1.0]]).tick == answer.tick + 1
+        assert list(water.room_state.clock_person_ids) == [water.welcome.person_id]
+        with server.connect() as other, pytest.raises(spindrift.Rejected) as rejected:
+            other.set_paused(paused=True)
+        assert rejected.value.reason == "CLOCK_HELD"
+    assert hashes[0] == hashes[1] != 0
+    while water.query([[1.0, 1.0]]).tick < answer.tick + 10:
+        pass
+
+
+def test_a_clock_that_timed_out_is_an_error_of_the_next_step(water):
+    with water.clock(timeout_s=0.2) as clock:
+        clock.step(2)
+        for event in water.events():
+            if event.kind == "room_event" and not list(water.room_state.clock_person_ids):
+                break
+        with pytest.raises(spindrift.Rejected):
+            clock.step(2)
+
+
 def test_a_room_that_does_not_exist_is_refused(server):
     with pytest.raises(spindrift.Refused, match="there is no such room"):
         server.connect(room="nowhere")

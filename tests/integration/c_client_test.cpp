@@ -257,6 +257,36 @@ TEST_F(CClient, FollowedPointsCanBeReplacedAndContinueInAnotherScene) {
   EXPECT_EQ(newest(1), SPINDRIFT_BAD_ARGUMENT);
 }
 
+TEST_F(CClient, HeldClockMakesExactlyTheTicksThatAreAskedFor) {
+  const Server server = serve();
+  const Room room = connect(server.url());
+  ASSERT_TRUE(room);
+  const float x_m = 0.5f, z_m = 0.0f;
+  spindrift_moment moment = {};
+  spindrift_sample sample = {};
+  ASSERT_EQ(spindrift_take_clock(room.get(), 0.0, 30.0), SPINDRIFT_OK) << spindrift_error();
+  ASSERT_EQ(spindrift_follow(room.get(), &x_m, &z_m, 1, 1), SPINDRIFT_OK) << spindrift_error();
+  std::uint64_t tick = 0, state_hash = 0;
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_EQ(spindrift_step(room.get(), 6, &tick, &state_hash), SPINDRIFT_OK) << spindrift_error();
+    while (moment.tick < tick) {
+      ASSERT_EQ(spindrift_newest(room.get(), moment.number, 30.0, &moment, &sample, 1), SPINDRIFT_OK)
+          << spindrift_error();
+    }
+    EXPECT_EQ(moment.tick, tick);
+  }
+  EXPECT_EQ(spindrift_newest(room.get(), moment.number, 0.3, &moment, &sample, 1), SPINDRIFT_NO_ANSWER);
+  const auto rest =
+      boost::json::parse(httpRequest(server.port, "GET", "/api/v1/rooms/main/state_hash").body).as_object();
+  EXPECT_EQ(tickOf(rest), tick);
+  EXPECT_EQ(std::string(rest.at("state_hash").as_string()), std::to_string(state_hash));
+  EXPECT_EQ(spindrift_take_clock(room.get(), -1.0, 30.0), SPINDRIFT_REJECTED);
+  EXPECT_THAT(spindrift_error(), HasSubstr("take_clock.speed"));
+  ASSERT_EQ(spindrift_release_clock(room.get()), SPINDRIFT_OK) << spindrift_error();
+  EXPECT_EQ(spindrift_newest(room.get(), moment.number, 30.0, &moment, &sample, 1), SPINDRIFT_OK) << "it runs again";
+  EXPECT_EQ(spindrift_step(room.get(), 1, nullptr, nullptr), SPINDRIFT_REJECTED);
+}
+
 TEST_F(CClient, FaultsSayWhatIsWrong) {
   const Server server = serve();
   spindrift_options options = {};

@@ -231,6 +231,37 @@ describe("the water at points", () => {
   });
 });
 
+describe("a held clock", () => {
+  it("makes exactly the ticks that are asked for, and repeats", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    const hashes = [];
+    const clock = await water.takeClock();
+    let ack;
+    for (let k = 0; k < 2; ++k) {
+      await water.reset({ seed: 5 });
+      await water.splash({ xM: 1, zM: 1, depthM: 0.3 });
+      ack = await clock.step(40);
+      hashes.push(ack.stateHash);
+    }
+    expect(hashes[0]).toBe(hashes[1]);
+    expect(hashes[0]).not.toBe(0n);
+    const answer = await water.query([[1, 1]]);
+    expect(answer.tick).toBe(ack.appliedTick);
+    expect((await clock.step()).appliedTick).toBe(answer.tick + 1);
+    expect((await water.query([[1, 1]])).tick).toBe(answer.tick + 1);
+    expect(water.clockPersonIds).toEqual([water.personId]);
+    const other = await connected(server.url, { room: "marina" });
+    expect(await failure(other.setPaused({ paused: true }))).toMatchObject({ name: "Rejected", reason: "CLOCK_HELD" });
+    await clock.release();
+    while ((await water.query([[1, 1]])).tick < answer.tick + 10);
+    const short = await water.takeClock({ timeoutS: 0.2 });
+    while (water.clockPersonIds.length === 0) await water.once("roomState");
+    while (water.clockPersonIds.length > 0) await water.once("roomState");
+    expect(await failure(short.step())).toMatchObject({ name: "Rejected" });
+    await short.release();
+  });
+});
+
 describe("the connection", () => {
   const marina = ["--scene", `${repository}/tests/browser/marina.textproto`, "--grace", "60"];
 

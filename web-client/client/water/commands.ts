@@ -22,7 +22,9 @@ export interface Ack {
 /** The answer to a query is another message than its Ack: Water.query. */
 type CommandName = Exclude<CommandAction["case"], "query">;
 
-type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K }>["value"];
+/** 64-bit numbers may be given as a number or a bigint. */
+type Wide<V> = { [P in keyof V]: bigint extends V[P] ? V[P] | number : V[P] };
+type Fields<K extends CommandAction["case"]> = Wide<Extract<CommandAction, { case: K }>["value"]>;
 
 /** Each sends its command. The promise is resolved when the server has carried it out, and rejected with Rejected, ConnectionLost or
  *  NoAnswer; fields that the command does not have are a TypeError. Units and bounds stand at the fields. */
@@ -50,11 +52,15 @@ function checkMessage(message: DescMessage, value: unknown, path: string): void 
     if (field.fieldKind === "message") checkMessage(field.message, each, `${path}.${name}`);
     else if (field.fieldKind === "list" && !Array.isArray(each)) throw new TypeError(`${path}.${name} takes an array, not ${String(each)}`);
     else if (field.fieldKind === "list" && field.listKind === "message") (each as unknown[]).forEach((one, k) => checkMessage(field.message, one, `${path}.${name}[${k}]`));
-    else if (field.fieldKind === "scalar" && typeof each !== typeOf(field.scalar)) throw new TypeError(`${path}.${name} takes a ${typeOf(field.scalar)}, not ${String(each)}`);
+    else if (field.fieldKind === "scalar" && typeof each !== typeOf(field.scalar) && !(is64Bits(field.scalar) && typeof each === "bigint")) throw new TypeError(`${path}.${name} takes a ${typeOf(field.scalar)}, not ${String(each)}`);
   }
 }
 
-/** Commands have neither 64-bit numbers nor bytes. */
+function is64Bits(scalar: ScalarType): boolean {
+  return scalar === ScalarType.UINT64 || scalar === ScalarType.FIXED64;
+}
+
+/** Commands have no bytes. */
 function typeOf(scalar: ScalarType): "boolean" | "string" | "number" {
   return scalar === ScalarType.BOOL ? "boolean" : scalar === ScalarType.STRING ? "string" : "number";
 }
