@@ -251,6 +251,25 @@ def test_it_goes_on_when_the_server_ends_and_comes_back():
                     again.stop()
 
 
+def test_it_follows_a_draining_server_to_another_one():
+    scene = str(PROJECT / "python-client" / "tests" / "tank.textproto")
+    with spindrift.Server(scene, environment=ENVIRONMENT) as other:
+        options = ["--drain-s", "4", "--drain-to", other.url.rstrip("/").replace("http", "ws")]
+        with spindrift.Server(scene, environment=ENVIRONMENT, options=options) as first, first.connect(name="Ada", answer_within_s=60) as water:
+            before = water.surface()
+            first.stop()
+            kinds = []
+            for event in water.events():
+                kinds.append(event.kind)
+                if event.kind == "live" and "moving" in kinds:
+                    break
+            assert water.surface().heights_m.shape == before.heights_m.shape
+            assert water.splash(x_m=0).applied_tick >= 0
+            with other.connect(name="Ben") as ben:
+                while sorted(person.name for person in ben.people) != ["Ada", "Ben"]:
+                    next(ben.events())
+
+
 def test_a_server_that_does_not_start_says_why():
     with pytest.raises(spindrift.ServerFailed, match="no_such_scene"):
         spindrift.Server("no_such_scene")
