@@ -8,6 +8,7 @@ import { kWireMinor } from "../client/codec/greeting";
 import { parse } from "../client/codec/parse";
 import { ServerMessageSchema } from "../client/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
+import { greeting } from "./wire";
 
 const lines = readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", "versions.txt"), "utf8").split("\n").filter((line) => line !== "" && !line.startsWith("#"));
 const said = lines.map((line) => line.split(" ") as [string, string, string, string]).filter(([, side]) => side === "server").map(([version, , kind, hex]) => ({ version, kind, bytes: Uint8Array.from(Buffer.from(hex, "hex")).buffer }));
@@ -17,6 +18,18 @@ const camel = (name: string): string => name.replace(/_([a-z])/g, (_, letter: st
 describe("a server of another minor version", () => {
   it("is any from 1.0 to that of this client", () => {
     expect(versions).toEqual(Array.from({ length: kWireMinor + 1 }, (_, minor) => `1.${minor}`));
+  });
+
+  it("may be newer, with messages that this client does not know", () => {
+    const rig = new Rig();
+    rig.socket.open();
+    rig.socket.deliver(greeting({ version: { major: 1, minor: kWireMinor + 7 } }));
+    rig.socket.onmessage?.({ data: Uint8Array.of(0xfa, 0x7f, 3, 97, 98, 99).buffer });
+    rig.socket.deliver({ case: "roomState", value: { paused: true, speed: 1 } });
+    expect(rig.state.name).toBe("live");
+    expect(rig.eventsOf("roomState")).toMatchObject([{ paused: true }]);
+    rig.time.advance(600);
+    expect(rig.lastStats().malformedCount).toBe(0);
   });
 
   it.each(versions)("%s is understood", (version) => {
