@@ -16,6 +16,8 @@
 namespace spindrift::cli {
 namespace {
 
+constexpr std::int64_t kSeedMax = std::int64_t{1} << 53;  // every number up to it is exact in JSON
+
 struct ScriptOptions {
   std::string url = "ws://127.0.0.1:8080";
   std::string ca_file;
@@ -124,8 +126,10 @@ ProgramCommand addScript(CLI::App& program) {
       ->add_option("--tls-ca", options->ca_file,
                    "For wss://: PEM file with authorities to trust beside those of the system")
       ->check(CLI::ExistingFile);
-  command->add_option("--seed", options->seed, "Seed of the scene's random numbers, for a script with hold_clock");
-  command->add_option("--junit", options->junit_file, "Writes the steps as a JUnit report into this file");
+  command->add_option("--seed", options->seed, "Seed of the scene's random numbers, for a script with hold_clock")
+      ->check(integerIn(0, kSeedMax));
+  command->add_option("--junit", options->junit_file, "Write the steps as a JUnit report to this file")
+      ->check(isOutputFile());
   addJson(*command, options->json_file);
   return {command, [options] { return script(*options); }};
 }

@@ -68,7 +68,8 @@ std::optional<WaterChange::Outcome> WaterChange::beginScene(const Command& comma
     return wire::rejection(v1::REJECT_REASON_UNKNOWN_SCENE, kSceneField,
                            "there is no scene '" + wanted.name() + "'; the greeting lists what there is");
   }
-  if (Clock::now() < next_scene_change_) {
+  // With a held clock the outcome does not depend on how fast the ticks before were.
+  if (Clock::now() < next_scene_change_ && !room_.clock.isHeld()) {
     return wire::rejection(v1::REJECT_REASON_BUSY, kSceneField,
                            "the scene was changed a moment ago; try again in a second");
   }

@@ -20,8 +20,8 @@ namespace spindrift::script {
 namespace {
 
 constexpr double kPatience_s = 5.0;
-/// For the frame of a tick that was made: on a machine of any speed.
-constexpr double kHeldFramePatience_s = 60.0;
+/// With a held clock, for answers and for the frame of a tick that was made: on a machine of any speed.
+constexpr double kHeldPatience_s = 60.0;
 
 template <typename Step>
 double patience_s(const Step& step) {
@@ -161,7 +161,7 @@ class Runner {
       const LayerTally& tally = client.received.tallies[layer];
       return tally.frame_count > 0 && tally.tick >= held_->tick();
     };
-    const Outcome there = await(client, kHeldFramePatience_s, is_there, [] { return std::string(); });
+    const Outcome there = await(client, kHeldPatience_s, is_there, [] { return std::string(); });
     if (!there.passed) return {false, fmt::format("no frame of tick {}{}", held_->tick(), there.detail)};
     const Seen seen = look();
     return {seen.is_wanted,
@@ -263,7 +263,8 @@ class Runner {
       if (command.has_remove_boat()) command.mutable_remove_boat()->set_boat_id(saved->second);
     }
     Outcome why;
-    const v1::ServerMessage* const answered = ask(client, std::move(command), patience_s(step), why);
+    const double within_s = held_ && !step.has_within_s() ? kHeldPatience_s : patience_s(step);
+    const v1::ServerMessage* const answered = ask(client, std::move(command), within_s, why);
     if (!answered) return why;
     const v1::ServerMessage& answer = *answered;
     if (answer.has_ack()) {

@@ -19,9 +19,11 @@ bool isOperatorsCommand(const v1::Command& command) {
   return rooms::roleFor(command) >= core::Role::kOperator;
 }
 
-/// Players may do the same with their own boats and gauges; of an operator it may be anybody's.
+/// Players may do the same with their own boats and gauges, and with the time of a room where they are alone; of an
+/// operator it may be anybody's.
 bool concernsThingsOfOthers(const v1::Command& command) {
-  return command.has_take_boat() || command.has_remove_boat() || command.has_remove_gauge();
+  return command.has_take_boat() || command.has_remove_boat() || command.has_remove_gauge() || command.has_step() ||
+         command.has_take_clock() || command.has_release_clock();
 }
 
 }  // namespace
@@ -54,9 +56,10 @@ void Audit::command(const rooms::Command& command, access::AuditEvent event) {
   event.role = core::roleName(sender.role);
   event.person_id = sender.person_id;
   event.session_id = sender.session_id;
-  // A flood of operators' commands ends here as BUSY. A stroke is 30 messages per second.
-  const bool is_frequent =
-      !is_operator || command.message.has_stroke() || event.reason == nameOf(v1::REJECT_REASON_BUSY);
+  // A flood of operators' commands ends here as BUSY. A stroke is 30 messages per second, and steps of a held clock may
+  // be more.
+  const bool is_frequent = !is_operator || command.message.has_stroke() || command.message.has_step() ||
+                           event.reason == nameOf(v1::REJECT_REASON_BUSY);
   if (is_frequent)
     writeRarely(std::move(event));
   else

@@ -139,6 +139,36 @@ TEST_F(ClusterTest, QueriesThroughAnEdgeAreAnsweredAsByTheServer) {
   EXPECT_EQ(last.results(0).query_id(), 11u) << "the stream has ended";
 }
 
+TEST_F(ClusterTest, ClockIsHeldThroughAnEdge) {
+  const Member s1 = server("s1");
+  const Member e1 = edge("e1");
+  ScriptedClient ben(s1.port, "main");
+  ben.hello({.name = "Ben"});
+  const auto says = [](const std::string& words) {
+    return [words](const v1::ServerMessage& message) {
+      return message.room_event().kind() == v1::ROOM_EVENT_KIND_CLOCK &&
+             message.room_event().message().find(words) != std::string::npos;
+    };
+  };
+  {
+    ScriptedClient ada(e1.port);
+    ada.hello({.name = "Ada"});
+    const auto taken = ada.apply(takeClock());
+    ASSERT_TRUE(taken);
+    EXPECT_TRUE(ben.waitFor(says("Ada")));
+    const v1::ServerMessage done = ada.ask(waitingStep(12));
+    ASSERT_TRUE(done.has_ack()) << done.reject().message();
+    EXPECT_EQ(done.ack().applied_tick(), *taken + 12);
+    EXPECT_TRUE(done.ack().has_state_hash());
+    EXPECT_EQ(ben.rejected(setPaused(true)).reason(), v1::REJECT_REASON_CLOCK_HELD);
+    ScriptedClient late(e1.port, "main");
+    ASSERT_EQ(late.greeting().room_state().clock_person_ids_size(), 1);
+    EXPECT_EQ(late.greeting().room_state().clock_person_ids(0), ada.welcome().person_id());
+  }
+  EXPECT_TRUE(ben.waitFor(says("the connection ended")));
+  EXPECT_TRUE(ben.runFor(3));
+}
+
 TEST_F(ClusterTest, LatecomerSeesPausedWaterAtOnce) {
   const Member s1 = server("s1");
   const Member e1 = edge("e1");

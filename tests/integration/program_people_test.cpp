@@ -1,5 +1,7 @@
 // Tokens, scripted clients, logs and their replay, through the program.
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include <boost/json.hpp>
 #include <gmock/gmock.h>
@@ -73,6 +75,34 @@ TEST_F(People, ScriptWithoutServerOrFileIsReported) {
   const Outcome alone = runProgram({"script", "--url", "ws://127.0.0.1:1", script(kSplash)});
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.out, HasSubstr("no connection to 127.0.0.1:1"));
+}
+
+TEST_F(People, HeldScriptHasASeedAndAReport) {
+  const std::string url = serve();
+  if (url.empty()) GTEST_SKIP() << "no device";
+  const std::string file = (folder().path() / "report.xml").string();
+  const auto report = [&file] {
+    std::ifstream in(file);
+    return std::string(std::istreambuf_iterator<char>(in), {});
+  };
+  const auto held = [](const std::string& steps) { return "hold_clock: true " + steps; };
+  const std::string good = scene(held("steps { at_s: 0.5 hash {} }"), "good.textproto");
+  const Outcome first = runProgram({"script", "--url", url, "--seed", "7", "--junit", file, good});
+  EXPECT_EQ(first.exit_code, 0) << first.out << first.err;
+  EXPECT_THAT(first.out, HasSubstr("30 ticks, 0.500 s, seed 7: state hash 0x"));
+  EXPECT_THAT(report(), HasSubstr("tests=\"1\" failures=\"0\""));
+  const Outcome again = runProgram({"script", "--url", url, "--seed", "7", "--json", "-", good});
+  const std::string hash(boost::json::parse(again.out).at("state_hash").as_string());
+  EXPECT_THAT(first.out, HasSubstr(hash));
+  const std::string bad = scene(held("steps { hash { is: 1 } }"), "bad.textproto");
+  EXPECT_EQ(runProgram({"script", "--url", url, "--junit", file, bad}).exit_code, 1);
+  EXPECT_THAT(report(), HasSubstr("<failure message=\"client: 0x")) << "written, too";
+  expectOneErrorLine(runProgram({"script", "--url", url, "--seed", "7", script("steps { wait {} }")}), 2,
+                     {"--seed", "hold_clock: true"});
+  expectOneErrorLine(runProgram({"script", "--url", url, "--seed", "-1", good}), 2, {"--seed", "-1"});
+  expectOneErrorLine(runProgram({"script", "--url", url, "--junit", "/nonexistent/x.xml", good}), 2,
+                     {"--junit", "/nonexistent"});
+  stop();
 }
 
 TEST_F(People, TokensAreReadAndNeverPrinted) {

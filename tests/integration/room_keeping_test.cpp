@@ -213,6 +213,53 @@ TEST_F(KeptRoomTest, ResumesWithItsPauseSpeedAndSteps) {
   EXPECT_EQ(room_->tick(), end) << "and no further";
 }
 
+TEST_F(KeptRoomTest, ResumesWithTheSeedOfAReset) {
+  const std::uint64_t seed = scene().seed();
+  send(1, seededReset(seed + 1));
+  ASSERT_TRUE(isAnswered(1));
+  EXPECT_EQ(scene().seed(), seed + 1);
+  ASSERT_TRUE(runTicks(20));
+  const std::uint64_t compared = room_->tick() + 10;
+  const std::uint64_t expected = hashAt(compared);
+  crashAndComeBack();  // from the first snapshot and the log
+  EXPECT_EQ(scene().seed(), seed + 1);
+  EXPECT_EQ(hashAt(compared), expected);
+  const std::uint64_t snapshot_count = room_->keptStatus()->snapshot_count;
+  ASSERT_TRUE(room_->askForSnapshot());
+  ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count > snapshot_count; }));
+  const std::uint64_t later = room_->tick() + 10;
+  const std::uint64_t expected_later = hashAt(later);
+  crashAndComeBack();  // from a snapshot that has the seed
+  EXPECT_EQ(hashAt(later), expected_later);
+}
+
+TEST_F(KeptRoomTest, NobodyHoldsTheClockAfterARestart) {
+  const std::uint32_t person_id =
+      room_->roster().arrive({.session = 1, .role = core::Role::kOperator, .name = "Ada"}).person_id;
+  send(1, takeClock(), 1, person_id);
+  send(2, step(600), 1, person_id);
+  send(3, waitingStep(1), 1, person_id);
+  ASSERT_TRUE(isAnswered(3));
+  EXPECT_THAT(outlets_.rejected, SizeIs(1)) << "601 ticks are one too many";
+  EXPECT_THAT(room_->snapshot()->clock_person_ids, ElementsAre(person_id));
+  ASSERT_TRUE(runTicks(3));
+  crashAndComeBack();
+  EXPECT_THAT(room_->snapshot()->clock_person_ids, IsEmpty());
+  EXPECT_FALSE(room_->snapshot()->paused);
+  EXPECT_TRUE(runTicks(3)) << "it runs by itself";
+}
+
+TEST_F(KeptRoomTest, ARoomThatClosesAnswersTheStepsThatWait) {
+  const std::uint32_t person_id =
+      room_->roster().arrive({.session = 1, .role = core::Role::kOperator, .name = "Ada"}).person_id;
+  send(1, takeClock(0.1), 1, person_id);
+  send(2, waitingStep(600), 1, person_id);
+  ASSERT_TRUE(runTicks(1));
+  EXPECT_THAT(outlets_.applied, ElementsAre(1u));
+  room_->abandonCommands();
+  EXPECT_THAT(outlets_.rejected_ids, ElementsAre(2u));
+}
+
 TEST_F(KeptRoomTest, WritesNoSnapshotsWhileItStandsStill) {
   crash();
   interval_ = 5ms;

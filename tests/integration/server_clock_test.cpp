@@ -32,31 +32,6 @@ constexpr const char* kStorm = R"(
   storm { level_ratio: 1 drops_per_m2_s: 2 }
 )";
 
-v1::Command takeClock(double speed = 0.0, double timeout_s = 60.0) {
-  v1::Command command;
-  command.mutable_take_clock()->set_speed(speed);
-  command.mutable_take_clock()->set_timeout_s(timeout_s);
-  return command;
-}
-
-v1::Command releaseClock() {
-  v1::Command command;
-  command.mutable_release_clock();
-  return command;
-}
-
-v1::Command waitingStep(std::uint32_t tick_count) {
-  v1::Command command = step(tick_count);
-  command.mutable_step()->set_waits(true);
-  return command;
-}
-
-v1::Command seededReset(std::uint64_t seed) {
-  v1::Command command;
-  command.mutable_reset()->set_seed(seed);
-  return command;
-}
-
 class HeldClock : public ServerTest {
  protected:
   std::vector<RoomText> rooms() const override { return {{"main", kPool}, {"storm", kStorm}, {"other", kPool}}; }

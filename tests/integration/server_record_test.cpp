@@ -81,6 +81,28 @@ TEST_F(Recorded, ARoomRunsAgainBitForBit) {
   EXPECT_FALSE(outcome->device_difference) << *outcome->device_difference;
 }
 
+TEST_F(Recorded, AHeldClockAndASeedAreReplayedBitForBit) {
+  {
+    ScriptedClient one = client();
+    ASSERT_TRUE(one.apply(takeClock()));
+    ASSERT_TRUE(one.apply(splash(0.3)));
+    ASSERT_TRUE(one.ask(waitingStep(20)).has_ack());
+    ASSERT_TRUE(one.apply(spawnBoat(-2, 1)));
+    ASSERT_TRUE(one.apply(seededReset(99)));
+    EXPECT_EQ(one.ask(spawnBoat(-2, 1)).ack().boat_id(), 2u) << "after the scene's boat";
+    ASSERT_TRUE(one.apply(splash(0.2)));
+    ASSERT_TRUE(one.ask(waitingStep(20)).has_ack());
+    ASSERT_TRUE(one.apply(releaseClock()));
+    ASSERT_TRUE(one.runFor(10));
+    server().stop();
+  }
+  const auto outcome = replayed(logFile());
+  ASSERT_TRUE(outcome) << outcome.error().message;
+  EXPECT_EQ(outcome->command_count, 5U);
+  EXPECT_GE(outcome->hash_count, 8U);
+  EXPECT_FALSE(outcome->difference) << "at tick " << outcome->difference->tick;
+}
+
 /// Particles whose number may change while the room runs.
 class RecordedPool : public Recorded {
  protected:

@@ -53,6 +53,12 @@ inline v1::Command reset() {
   return command;
 }
 
+inline v1::Command seededReset(std::uint64_t seed) {
+  v1::Command command;
+  command.mutable_reset()->set_seed(seed);
+  return command;
+}
+
 inline v1::Command spawnBoat(double x_m, double z_m) {
   v1::Command command;
   command.mutable_spawn_boat()->mutable_boat()->set_x_m(x_m);
@@ -162,6 +168,25 @@ inline v1::Command numbered(std::uint64_t command_id, v1::Command command) {
 inline v1::Command at(double x_m, double z_m, v1::Command command) {
   command.mutable_splash()->set_x_m(x_m);
   command.mutable_splash()->set_z_m(z_m);
+  return command;
+}
+
+inline v1::Command takeClock(double speed = 0.0, double timeout_s = 60.0) {
+  v1::Command command;
+  command.mutable_take_clock()->set_speed(speed);
+  command.mutable_take_clock()->set_timeout_s(timeout_s);
+  return command;
+}
+
+inline v1::Command releaseClock() {
+  v1::Command command;
+  command.mutable_release_clock();
+  return command;
+}
+
+inline v1::Command waitingStep(std::uint32_t tick_count) {
+  v1::Command command = step(tick_count);
+  command.mutable_step()->set_waits(true);
   return command;
 }
 

@@ -52,7 +52,7 @@ TEST(CommandTraits, EveryCommandOfTheWireHasItsOwn) {
     const auto& name = actions.field(i)->name();
     const bool is_play = name.find("boat") != std::string::npos || name.find("floater") != std::string::npos ||
                          name.find("gauge") != std::string::npos || name == "splash" || name == "breaking_wave" ||
-                         name == "stroke";
+                         name == "stroke" || name == "step" || name.find("clock") != std::string::npos;
     const core::Role expected = name == "query" ? core::Role::kViewer
                                 : is_play       ? core::Role::kPlayer
                                                 : core::Role::kOperator;
@@ -109,6 +109,16 @@ TEST_F(CommandQueueTest, SuccessiveValuesForOneParameterAreReturnedTogether) {
   EXPECT_THAT(next(queue_), ElementsAre(1, 2));
   EXPECT_THAT(next(queue_), ElementsAre(3));
   EXPECT_THAT(next(queue_), ElementsAre(4));
+}
+
+TEST_F(CommandQueueTest, ValuesAreReturnedOneByOneIfTheyMayNotBeJoined) {
+  push(queue_, from(1, 1, setParameter("wave.depth_m", 1)));
+  push(queue_, from(1, 2, setParameter("wave.depth_m", 2)));
+  EXPECT_TRUE(queue_.isBusyWith({.session_id = 1}));
+  EXPECT_FALSE(queue_.isBusyWith({.session_id = 2}));
+  EXPECT_THAT(next(queue_, {.joined_values = false}), ElementsAre(1));
+  EXPECT_THAT(next(queue_, {.joined_values = false}), ElementsAre(2));
+  EXPECT_FALSE(queue_.isBusyWith({.session_id = 1}));
 }
 
 TEST_F(CommandQueueTest, SceneChangesWaitForTheOneUnderWay) {

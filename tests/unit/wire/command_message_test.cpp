@@ -37,6 +37,9 @@ void fill(google::protobuf::Message& message) {
       case FieldDescriptor::CPPTYPE_UINT32:
         reflection.SetUInt32(&message, &field, 7);
         break;
+      case FieldDescriptor::CPPTYPE_UINT64:
+        reflection.SetUInt64(&message, &field, ~0ull);
+        break;
       case FieldDescriptor::CPPTYPE_ENUM:
         if (field.is_repeated())
           reflection.AddEnumValue(&message, &field, 2);

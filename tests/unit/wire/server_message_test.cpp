@@ -83,10 +83,17 @@ TEST(ServerMessages, StateMessagesHaveTheirValues) {
   EXPECT_EQ(changed.path(), "wave.depth_m");
   EXPECT_EQ(changed.value(), 2.5);
   EXPECT_EQ(changed.applied_tick(), 99u);
-  const v1::RoomState state = read(roomState(true, 2.0, 7)).room_state();
+  v1::RoomState held;
+  held.set_paused(true);
+  held.set_speed(2.0);
+  held.set_person_id(7);
+  held.add_clock_person_ids(7);
+  const v1::RoomState state = read(roomState(held)).room_state();
   EXPECT_TRUE(state.paused());
   EXPECT_EQ(state.speed(), 2.0);
   EXPECT_EQ(state.person_id(), 7u);
+  ASSERT_EQ(state.clock_person_ids_size(), 1);
+  EXPECT_EQ(state.clock_person_ids(0), 7u);
   v1::BoatList boats;
   boats.add_boats()->set_draught_m(0.25);
   EXPECT_EQ(read(boatList(boats)).boat_list().boats(0).draught_m(), 0.25);
@@ -102,7 +109,7 @@ TEST(ServerMessages, StateMessagesHaveTheirValues) {
 }
 
 TEST(ServerMessages, MessageOfDefaultsKeepsItsKind) {
-  EXPECT_TRUE(read(roomState(false, 0.0)).has_room_state());
+  EXPECT_TRUE(read(roomState({})).has_room_state());
   EXPECT_TRUE(read(ack({})).has_ack());
   EXPECT_TRUE(read(boatList({})).has_boat_list()) << "the last boat left";
 }
