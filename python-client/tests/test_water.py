@@ -183,6 +183,35 @@ def test_a_clock_that_timed_out_is_an_error_of_the_next_step(water):
             clock.step(2)
 
 
+def test_a_moved_boat_is_where_it_was_put_and_floats_by_archimedes_law(water):
+    water.set_paused(paused=True)
+    boat_id = water.spawn_boat(x_m=0, z_m=0, heading_deg=0).boat_id
+    boat = next(each for each in water.boats if each.boat_id == boat_id) if water.boats else None
+    while boat is None:
+        event = next(water.events())
+        boat = next((each for each in event.message.boats if each.boat_id == boat_id), None) if event.kind == "boat_list" else None
+    lifts_n = []
+    for deeper_m in (0.0, 0.05):
+        ack = water.move_boat(boat_id=boat_id, x_m=1.5, y_m=0.5 * boat.height_m - boat.draught_m - deeper_m, z_m=-1, heading_rad=0.5)
+        water.step(tick_count=1)
+        forces = water.hull_forces()
+        row = forces.index_of(boat_id)
+        assert forces.tick == ack.applied_tick + 1 and len(forces.boat_ids) == 1
+        lifts_n.append(forces.hydrostatic.force_n[row][1])
+    assert lifts_n[1] > lifts_n[0] > 0
+    for boats in water.frames("bodies"):
+        k = boats.index_of(boat_id)
+        if k is not None and boats.tick >= forces.tick:
+            break
+    assert boats.positions_m[k][[0, 2]] == pytest.approx([1.5, -1], abs=0.01)
+    assert boats.heading_rad[k] == pytest.approx(0.5, abs=0.01)
+    water.move_boat(boat_id=boat_id, ends=True)
+    water.remove_boat(boat_id=boat_id)
+    with pytest.raises(spindrift.Rejected) as rejected:
+        water.move_boat(boat_id=boat_id, x_m=float("nan"))
+    assert rejected.value.field == "move_boat.x_m"
+
+
 def test_a_room_that_does_not_exist_is_refused(server):
     with pytest.raises(spindrift.Refused, match="there is no such room"):
         server.connect(room="nowhere")

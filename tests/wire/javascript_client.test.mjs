@@ -262,6 +262,36 @@ describe("a held clock", () => {
   });
 });
 
+describe("a moved boat", () => {
+  it("is where it was put, and gets the forces of the tick", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    await water.setPaused({ paused: true });
+    const { boatId } = await water.spawnBoat({ boat: { xM: 2, zM: 2 } });
+    const own = () => water.boats.find((boat) => boat.boatId === boatId);
+    while (!own()) await water.once("boatList");
+    const { heightM, draughtM } = own();
+    const lifts = [];
+    let forces;
+    for (const deeperM of [0, 0.05]) {
+      const { appliedTick } = await water.moveBoat({ boatId, xM: 1.5, yM: heightM / 2 - draughtM - deeperM, zM: -1, headingRad: 0.5 });
+      await water.step({ tickCount: 1 });
+      forces = await water.hullForces();
+      expect([forces.tick, forces.hulls.map((hull) => hull.boatId)]).toEqual([appliedTick + 1, [boatId]]);
+      lifts.push(forces.hulls[0].hydrostatic.forceYN);
+    }
+    expect(lifts[0]).toBeGreaterThan(0);
+    expect(lifts[1]).toBeGreaterThan(lifts[0]);
+    let frame;
+    do frame = await water.next("bodies");
+    while (frame.tick < forces.tick);
+    expect(frame.boat(boatId)).toMatchObject({ xM: expect.closeTo(1.5, 2), zM: expect.closeTo(-1, 2), headingRad: expect.closeTo(0.5, 2) });
+    expect(await failure(water.moveBoat({ boatId, xM: NaN }))).toMatchObject({ name: "Rejected", field: "move_boat.x_m" });
+    await water.moveBoat({ boatId, ends: true });
+    await water.removeBoat({ boatId });
+    await water.setPaused({ paused: false });
+  });
+});
+
 describe("the connection", () => {
   const marina = ["--scene", `${repository}/tests/browser/marina.textproto`, "--grace", "60"];
 
