@@ -31,7 +31,7 @@ def run(command, what):
 
 
 class BuildWithProject(build_py):
-    """Adds spindrift/v1/*_pb2.py and spindrift/libspindrift_client.so."""
+    """Adds spindrift/v1/*_pb2.py and spindrift/libspindrift_decoder.so."""
 
     def run(self):
         super().run()
@@ -41,10 +41,10 @@ class BuildWithProject(build_py):
             "the messages need protoc (Debian: protobuf-compiler)")
         (package / "v1" / "__init__.py").write_text("")
         bitstream = SERVER / "bitstream"
-        sources = [*sorted((bitstream / "decode").glob("*.cpp")), bitstream / "c" / "spindrift_client.cpp", SERVER / "core" / "crc32c_tables.cpp"]
+        sources = [*sorted((bitstream / "decode").glob("*.cpp")), bitstream / "c" / "spindrift_decoder.cpp", SERVER / "core" / "crc32c_tables.cpp"]
         folders = [bitstream, bitstream / "include", SERVER / "core" / "include"]
         run([os.environ.get("CXX", "g++"), "-std=c++20", "-O3", "-DNDEBUG", "-fPIC", "-shared", "-fvisibility=hidden",
-             *(f"-I{folder}" for folder in folders), *map(str, sources), "-o", str(package / "libspindrift_client.so")],
+             *(f"-I{folder}" for folder in folders), *map(str, sources), "-o", str(package / "libspindrift_decoder.so")],
             "the decoder needs a compiler of C++20 (Debian: g++)")
 
 

@@ -8,12 +8,14 @@
 project has examples."""
 from . import aio
 from .aio import Event
-from .blocking import Water, connect
+from .blocking import Clock, Water, connect
 from .errors import ConnectionLost, Damaged, NoAnswer, Refused, Rejected, ServerFailed, SpindriftError
 from .frames import Boats, Floaters, Foam, Frame, Particles, Plane, Surface
 from .gauges import GaugeSeries
+from .hulls import HullForces, Wrenches
 from .queries import Answer
 from .server import Server, serve
 
-__all__ = ["Answer", "Boats", "ConnectionLost", "Damaged", "Event", "Floaters", "Foam", "Frame", "GaugeSeries", "NoAnswer", "Particles", "Plane",
-           "Refused", "Rejected", "Server", "ServerFailed", "SpindriftError", "Surface", "Water", "aio", "connect", "serve"]
+__all__ = ["Answer", "Boats", "Clock", "ConnectionLost", "Damaged", "Event", "Floaters", "Foam", "Frame", "GaugeSeries", "HullForces", "NoAnswer",
+           "Particles", "Plane", "Refused", "Rejected", "Server", "ServerFailed", "SpindriftError", "Surface", "Water", "Wrenches", "aio", "connect",
+           "serve"]

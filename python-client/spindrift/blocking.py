@@ -32,6 +32,24 @@ class _Loop:
         self._loop.close()
 
 
+class Clock:
+    """clock.Clock with calls that wait: `with water.clock() as clock: ack = clock.step(60)`."""
+
+    def __init__(self, loop: _Loop, clock: aio.Clock):
+        self._loop, self._clock = loop, clock
+
+    def __enter__(self) -> "Clock":
+        self._loop.run(self._clock.__aenter__())
+        return self
+
+    def __exit__(self, *error):
+        self._loop.run(self._clock.__aexit__(*error))
+
+    def step(self, tick_count: int = 1):
+        """As clock.Clock.step."""
+        return self._loop.run(self._clock.step(tick_count))
+
+
 class Water:
     """aio.Water with calls that wait and generators instead of asynchronous ones; its attributes are the same. Usable from several threads."""
 
@@ -72,6 +90,8 @@ class Water:
             result = value(*arguments, **named)
             if inspect.isasyncgen(result):
                 return self._each(result)
+            if isinstance(result, aio.Clock):
+                return Clock(self._loop, result)
             return self._loop.run(result) if inspect.iscoroutine(result) else result
 
         return call

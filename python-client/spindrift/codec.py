@@ -1,4 +1,4 @@
-"""Packed frames to plain samples, by the project's own decoder (server/bitstream/c/spindrift_client.h)."""
+"""Packed frames to plain samples, by the project's own decoder (server/bitstream/c/spindrift_decoder.h)."""
 import ctypes
 import pathlib
 
@@ -6,7 +6,7 @@ import numpy as np
 
 from .errors import Damaged
 
-_LIBRARY = ctypes.CDLL(str(pathlib.Path(__file__).with_name("libspindrift_client.so")))
+_LIBRARY = ctypes.CDLL(str(pathlib.Path(__file__).with_name("libspindrift_decoder.so")))
 _LIBRARY.spindrift_reader_new.restype = ctypes.c_void_p
 _LIBRARY.spindrift_crc32c.restype = ctypes.c_uint32
 _LIBRARY.spindrift_crc32c.argtypes = [ctypes.c_char_p, ctypes.c_size_t]

@@ -8,28 +8,34 @@ from spindrift.v1 import wire_pb2 as wire
 
 
 class FakeServer:
-    """`received`: the client's messages; `send`: to the newest client."""
+    """`received`: the clients' messages; `send`: to the newest client; `sockets`: all of them."""
 
     def __init__(self):
         self.url = ""
-        self.major = 1
+        self.greeting = wire.Greeting(version=wire.Version(major=1, minor=99), room="main")
+        self.sockets: list = []
         self.received: asyncio.Queue = asyncio.Queue()
         self.connection_count = 0
         self._socket = None
 
     async def handle(self, socket):
         self._socket = socket
+        self.sockets.append(socket)
         self.connection_count += 1
-        await self.send(greeting=wire.Greeting(version=wire.Version(major=self.major, minor=99), room="main"))
+        await self.send(greeting=self.greeting)
         async for data in socket:
             message = wire.ClientMessage()
             message.ParseFromString(data)
             if message.HasField("hello"):
-                await self.send(welcome=wire.Welcome(role=wire.ROLE_PLAYER, person_id=7, resume_key="key"))
+                await self.say(socket, welcome=wire.Welcome(role=wire.ROLE_PLAYER, person_id=7, resume_key="key"))
             await self.received.put(message)
 
     async def send(self, raw=None, **message):
-        await self._socket.send(raw if raw is not None else wire.ServerMessage(**message).SerializeToString())
+        await self.say(self._socket, raw, **message)
+
+    @staticmethod
+    async def say(socket, raw=None, **message):
+        await socket.send(raw if raw is not None else wire.ServerMessage(**message).SerializeToString())
 
     async def close(self, code, reason=""):
         await self._socket.close(code, reason)

@@ -151,6 +151,67 @@ def test_faulty_queries_say_what_would_be_right(water):
         water.query(np.zeros((1025, 2)))
 
 
+def test_a_held_clock_makes_exactly_the_ticks_that_are_asked_for_and_repeats(server, water):
+    hashes = []
+    with water.clock() as clock:
+        for _ in range(2):
+            water.reset(seed=5)
+            water.splash(x_m=1, z_m=1, depth_m=0.3)
+            ack = clock.step(40)
+            hashes.append(ack.state_hash)
+        answer = water.query([[1.0, 1.0]])
+        assert answer.tick == ack.applied_tick and abs(answer.elevation_m[0]) > 1e-4
+        assert clock.step().applied_tick == answer.tick + 1
+        time.sleep(0.3)
+        assert water.query([[1.0, 1.0]]).tick == answer.tick + 1
+        assert list(water.room_state.clock_person_ids) == [water.welcome.person_id]
+        with server.connect() as other, pytest.raises(spindrift.Rejected) as rejected:
+            other.set_paused(paused=True)
+        assert rejected.value.reason == "CLOCK_HELD"
+    assert hashes[0] == hashes[1] != 0
+    while water.query([[1.0, 1.0]]).tick < answer.tick + 10:
+        pass
+
+
+def test_a_clock_that_timed_out_is_an_error_of_the_next_step(water):
+    with water.clock(timeout_s=0.2) as clock:
+        clock.step(2)
+        for event in water.events():
+            if event.kind == "room_event" and not list(water.room_state.clock_person_ids):
+                break
+        with pytest.raises(spindrift.Rejected):
+            clock.step(2)
+
+
+def test_a_moved_boat_is_where_it_was_put_and_floats_by_archimedes_law(water):
+    water.set_paused(paused=True)
+    boat_id = water.spawn_boat(x_m=0, z_m=0, heading_deg=0).boat_id
+    boat = next(each for each in water.boats if each.boat_id == boat_id) if water.boats else None
+    while boat is None:
+        event = next(water.events())
+        boat = next((each for each in event.message.boats if each.boat_id == boat_id), None) if event.kind == "boat_list" else None
+    lifts_n = []
+    for deeper_m in (0.0, 0.05):
+        ack = water.move_boat(boat_id=boat_id, x_m=1.5, y_m=0.5 * boat.height_m - boat.draught_m - deeper_m, z_m=-1, heading_rad=0.5)
+        water.step(tick_count=1)
+        forces = water.hull_forces()
+        row = forces.index_of(boat_id)
+        assert forces.tick == ack.applied_tick + 1 and len(forces.boat_ids) == 1
+        lifts_n.append(forces.hydrostatic.force_n[row][1])
+    assert lifts_n[1] > lifts_n[0] > 0
+    for boats in water.frames("bodies"):
+        k = boats.index_of(boat_id)
+        if k is not None and boats.tick >= forces.tick:
+            break
+    assert boats.positions_m[k][[0, 2]] == pytest.approx([1.5, -1], abs=0.01)
+    assert boats.heading_rad[k] == pytest.approx(0.5, abs=0.01)
+    water.move_boat(boat_id=boat_id, ends=True)
+    water.remove_boat(boat_id=boat_id)
+    with pytest.raises(spindrift.Rejected) as rejected:
+        water.move_boat(boat_id=boat_id, x_m=float("nan"))
+    assert rejected.value.field == "move_boat.x_m"
+
+
 def test_a_room_that_does_not_exist_is_refused(server):
     with pytest.raises(spindrift.Refused, match="there is no such room"):
         server.connect(room="nowhere")
@@ -217,6 +278,25 @@ def test_it_goes_on_when_the_server_ends_and_comes_back():
             finally:
                 if again:
                     again.stop()
+
+
+def test_it_follows_a_draining_server_to_another_one():
+    scene = str(PROJECT / "python-client" / "tests" / "tank.textproto")
+    with spindrift.Server(scene, environment=ENVIRONMENT) as other:
+        options = ["--drain-s", "4", "--drain-to", other.url.rstrip("/").replace("http", "ws")]
+        with spindrift.Server(scene, environment=ENVIRONMENT, options=options) as first, first.connect(name="Ada", answer_within_s=60) as water:
+            before = water.surface()
+            first.stop()
+            kinds = []
+            for event in water.events():
+                kinds.append(event.kind)
+                if event.kind == "live" and "moving" in kinds:
+                    break
+            assert water.surface().heights_m.shape == before.heights_m.shape
+            assert water.splash(x_m=0).applied_tick >= 0
+            with other.connect(name="Ben") as ben:
+                while sorted(person.name for person in ben.people) != ["Ada", "Ben"]:
+                    next(ben.events())
 
 
 def test_a_server_that_does_not_start_says_why():

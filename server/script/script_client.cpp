@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <random>
 #include <utility>
 
+#include <spindrift/client/join.h>
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
-#include <spindrift/wire/client_message.h>
 
 namespace spindrift::script {
 
@@ -29,26 +28,21 @@ void ScriptClient::connect() {
       if (number == connection_number_) action(values...);
     };
   };
-  connection_ = pool_.connect(
-      url_, {},
-      {.opened = if_current([this] {
-         v1::ClientMessage message;
-         v1::Hello& hello = *message.mutable_hello();
-         hello.mutable_version()->set_major(wire::kWireMajor);
-         hello.mutable_version()->set_minor(wire::kWireMinor);
-         hello.set_client(listener_.message ? listener_.program : "spindrift script");
-         hello.set_name(setup_.person());
-         hello.set_resume_key(resume_key_);
-         if (const char* token = setup_.token_env().empty() ? nullptr : std::getenv(setup_.token_env().c_str())) {
-           hello.set_token(token);
-         }
-         send(message);
-         for (const auto& [layer, wanted] : std::exchange(subscriptions_, {})) subscribe(wanted);
-       }),
-       .message = if_current([this](core::ByteView bytes) { take(bytes); }),
-       .closed = if_current([this](std::uint16_t code, const std::string& reason) {
-         ended({code, refusal_.empty() ? reason : refusal_});
-       })});
+  connection_ = pool_.connect(url_, {},
+                              {.opened = if_current([this] {
+                                 const char* token =
+                                     setup_.token_env().empty() ? nullptr : std::getenv(setup_.token_env().c_str());
+                                 send(client::hello({.program = listener_.message ? listener_.program : "spindrift script",
+                                                     .name = setup_.person(),
+                                                     .token = token == nullptr ? "" : token,
+                                                     .resume_key = resume_key_}));
+                                 for (const auto& [layer, wanted] : std::exchange(subscriptions_, {}))
+                                   subscribe(wanted);
+                               }),
+                               .message = if_current([this](core::ByteView bytes) { take(bytes); }),
+                               .closed = if_current([this](std::uint16_t code, const std::string& reason) {
+                                 ended({code, refusal_.empty() ? reason : refusal_});
+                               })});
 }
 
 void ScriptClient::ended(const End& end) {
@@ -66,23 +60,12 @@ void ScriptClient::ended(const End& end) {
 
 void ScriptClient::planMove(const v1::Draining& draining) {
   constexpr std::chrono::seconds kPatience{30};
-  Move move{.url = url_, .next = {}, .gives_up = {}};
-  if (!draining.go_to().empty()) {
-    const auto url = net::ClientUrl::parse(draining.go_to());
-    if (!url) {
-      ++received.malformed_count;
-      return;
-    }
-    move.url = *url;
-    move.url.path = url_.path;
+  auto planned = client::planMove(draining, url_);
+  if (!planned) {
+    ++received.malformed_count;
+    return;
   }
-  const double range_s = std::max(0.0, draining.reconnect_after_max_s() - draining.reconnect_after_min_s());
-  std::uniform_real_distribution<double> share(0.0, 1.0);
-  std::random_device entropy;
-  const double wait_s = std::clamp(draining.reconnect_after_min_s() + range_s * share(entropy), 0.0, 60.0);
-  move.next = Clock::now() + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(wait_s));
-  move.gives_up = move.next + kPatience;
-  move_ = std::move(move);
+  move_ = Move{.url = std::move(planned->url), .next = planned->at, .gives_up = planned->at + kPatience};
 }
 
 void ScriptClient::followDraining() {

@@ -1,4 +1,6 @@
 // An edge over NATS, as a process: what its clients see of a room that another process runs.
+#include <cmath>
+#include <limits>
 #include <memory>
 #include <tuple>
 #include <utility>
@@ -64,6 +66,77 @@ TEST_F(ClusterTest, AnEdgeServesARoomLikeItsServer) {
   late.hello();
   late.subscribe(packedSurface());
   EXPECT_TRUE(late.nextFrame(v1::LAYER_SURFACE));
+}
+
+/// Points of a query; the last one is outside of the pool.
+v1::Command queryOfPoints(std::uint32_t query_id, std::uint32_t interval_ticks) {
+  v1::Command command;
+  v1::Query& query = *command.mutable_query();
+  query.set_query_id(query_id);
+  query.set_interval_ticks(interval_ticks);
+  for (const float x_m : {0.3f, -4.1f, 900.0f}) {
+    query.add_x_m(x_m);
+    query.add_z_m(0.5f);
+  }
+  return command;
+}
+
+v1::QueryAnswer nextAnswer(ScriptedClient& client) {
+  const auto message = client.waitFor([](const v1::ServerMessage& one) { return one.has_query_answer(); });
+  EXPECT_TRUE(message) << "no answer came";
+  return message ? message->query_answer() : v1::QueryAnswer();
+}
+
+TEST_F(ClusterTest, QueriesThroughAnEdgeAreAnsweredAsByTheServer) {
+  const Member s1 = server("s1");
+  const Member e1 = edge("e1");
+  ScriptedClient ada(e1.port);
+  ada.hello({.name = "Ada"});
+  ASSERT_TRUE(ada.apply(splash(0.1, 1.0)));
+  ada.subscribe(packedSurface());
+  for (int k = 0; k < 20; ++k) ASSERT_TRUE(ada.nextFrame(v1::LAYER_SURFACE));
+  ASSERT_TRUE(ada.apply(setPaused(true)));
+  const v1::ServerMessage ack = ada.ask(queryOfPoints(7, 0));
+  ASSERT_TRUE(ack.has_ack()) << ack.reject().message();
+  const v1::QueryAnswer answer = nextAnswer(ada);
+  EXPECT_EQ(answer.tick(), ack.ack().applied_tick());
+  ASSERT_EQ(answer.results_size(), 1);
+  EXPECT_EQ(answer.results(0).query_id(), 7u);
+  EXPECT_TRUE(answer.results(0).last());
+  EXPECT_THAT(answer.results(0).outside(), testing::ElementsAre(2u));
+  EXPECT_GT(std::abs(answer.results(0).elevation_m(0)), 1e-4f) << "the water moves";
+
+  // The server itself, and both by REST, say the same of the same tick.
+  ScriptedClient ben(s1.port, "main");
+  ben.hello({.name = "Ben"});
+  ASSERT_TRUE(ben.ask(queryOfPoints(8, 0)).has_ack());
+  v1::QueryAnswer direct = nextAnswer(ben);
+  direct.mutable_results(0)->set_query_id(7);
+  EXPECT_EQ(direct.SerializeAsString(), answer.SerializeAsString());
+  const std::string points = R"({"x_m": [0.3, -4.1, 900], "z_m": [0.5, 0.5, 0.5]})";
+  const HttpAnswer by_server = post(s1.port, "/api/v1/rooms/main/surface", points);
+  EXPECT_EQ(by_server.status, 200u) << by_server.body;
+  EXPECT_THAT(by_server.body, HasSubstr("\"tick\":\"" + std::to_string(answer.tick()) + "\""));
+  EXPECT_EQ(post(e1.port, "/api/v1/rooms/main/surface", points).body, by_server.body);
+
+  // A stream has every tick, and is refused, and ends, as at the server.
+  ASSERT_TRUE(ada.ask(queryOfPoints(9, 1)).has_ack());
+  std::uint64_t tick = nextAnswer(ada).tick();
+  for (int k = 0; k < 5; ++k) {
+    ASSERT_TRUE(ada.apply(step(1)));
+    EXPECT_EQ(nextAnswer(ada).tick(), ++tick);
+  }
+  v1::Command bad = queryOfPoints(10, 0);
+  bad.mutable_query()->set_x_m(1, std::numeric_limits<float>::infinity());
+  EXPECT_EQ(ada.rejected(bad).field(), "query.x_m[1]");
+  v1::Command end;
+  end.mutable_query()->set_query_id(9);
+  ASSERT_TRUE(ada.ask(end).has_ack());
+  ASSERT_TRUE(ada.apply(step(1)));
+  ASSERT_TRUE(ada.ask(queryOfPoints(11, 0)).has_ack());
+  const v1::QueryAnswer last = nextAnswer(ada);
+  ASSERT_EQ(last.results_size(), 1);
+  EXPECT_EQ(last.results(0).query_id(), 11u) << "the stream has ended";
 }
 
 TEST_F(ClusterTest, ClockIsHeldThroughAnEdge) {

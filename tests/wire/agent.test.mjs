@@ -50,7 +50,7 @@ async function agent(role, url = server.url) {
 describe("an agent", () => {
   it("finds rooms, scenes, commands and what a room is", async () => {
     const { client, call } = await agent("operator");
-    expect((await client.listTools()).tools.map(({ name }) => name).sort()).toEqual(["command", "commands", "gauge", "list_rooms", "list_scenes", "open_room", "parameters", "picture", "room"]);
+    expect((await client.listTools()).tools.map(({ name }) => name).sort()).toEqual(["command", "commands", "gauge", "list_rooms", "list_scenes", "open_room", "parameters", "picture", "query", "room"]);
     expect((await call("list_rooms")).value.map(({ name }) => name).sort()).toEqual(["main", "marina", "tank"]);
     expect((await call("list_scenes")).value).toContain("harbor");
     expect((await call("commands")).value).toMatch(/^splash\n {2}xM: x, -500 to 500 m; /);
@@ -99,6 +99,16 @@ describe("an agent", () => {
     do [parameter] = (await call("parameters", { room, contains: "damping" })).value;
     while (parameter.value !== 0.7);
     expect(parameter).toMatchObject({ path: "wave.damping_per_s", min: 0, unit: "1/s" });
+  });
+
+  it("asks for the water at points", async () => {
+    const { call } = await agent("viewer");
+    const { isError, value } = await call("query", { room: "marina", points: [[1, 2], [500, 0]] });
+    expect(isError).toBe(false);
+    expect(value).toMatchObject({ tick: expect.any(Number), outside: [0, 1], wetRatio: [1, 0] });
+    expect(value.depthM[0]).toBeGreaterThan(0);
+    expect((await call("query", { room: "marina", points: [] })).isError).toBe(true);
+    expect(await call("command", { room: "marina", command: "query" })).toMatchObject({ isError: true });
   });
 
   it("draws the particles of a room without a surface", async () => {

@@ -207,6 +207,91 @@ describe("commands", () => {
   });
 });
 
+describe("the water at points", () => {
+  it("agrees with the surface of its tick, and a stream has every tick", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    await water.setPaused({ paused: true });
+    await water.splash({ xM: 1, zM: 1, depthM: 0.3 });
+    const surface = await water.advance(20);
+    const points = [[1, 1], [-2.3, 0.4], [0.1, 500]];
+    const answer = await water.query(points);
+    expect([answer.tick, answer.stateId, answer.timeS, ...answer.outside]).toEqual([surface.tick, surface.stateId, surface.timeS, 0, 0, 1]);
+    for (const k of [0, 1]) expect(Math.abs(answer.elevationM[k] - surface.heightM(...points[k]))).toBeLessThanOrEqual(surface.quantumM);
+    expect(Math.abs(answer.elevationM[0])).toBeGreaterThan(0.001);
+    const ticks = [];
+    for await (const { tick, outside } of water.streamQuery(points, { velocities: [[0, 1]] })) {
+      expect([...outside]).toEqual([0, 0, 1]);
+      if (ticks.push(tick) === 5) break;
+      await water.step({ tickCount: 1 });
+    }
+    expect(ticks).toEqual([0, 1, 2, 3, 4].map((k) => answer.tick + k));
+    expect(await failure(water.query([[0, NaN]]))).toMatchObject({ name: "Rejected", field: "query.z_m[0]", value: NaN });
+    expect(await failure(water.query(new Float32Array(2 * 1025)))).toMatchObject({ name: "Rejected", message: expect.stringContaining("1024") });
+    await water.setPaused({ paused: false });
+  });
+});
+
+describe("a held clock", () => {
+  it("makes exactly the ticks that are asked for, and repeats", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    const hashes = [];
+    const clock = await water.takeClock();
+    let ack;
+    for (let k = 0; k < 2; ++k) {
+      await water.reset({ seed: 5 });
+      await water.splash({ xM: 1, zM: 1, depthM: 0.3 });
+      ack = await clock.step(40);
+      hashes.push(ack.stateHash);
+    }
+    expect(hashes[0]).toBe(hashes[1]);
+    expect(hashes[0]).not.toBe(0n);
+    const answer = await water.query([[1, 1]]);
+    expect(answer.tick).toBe(ack.appliedTick);
+    expect((await clock.step()).appliedTick).toBe(answer.tick + 1);
+    expect((await water.query([[1, 1]])).tick).toBe(answer.tick + 1);
+    expect(water.clockPersonIds).toEqual([water.personId]);
+    const other = await connected(server.url, { room: "marina" });
+    expect(await failure(other.setPaused({ paused: true }))).toMatchObject({ name: "Rejected", reason: "CLOCK_HELD" });
+    await clock.release();
+    while ((await water.query([[1, 1]])).tick < answer.tick + 10);
+    const short = await water.takeClock({ timeoutS: 0.2 });
+    while (water.clockPersonIds.length === 0) await water.once("roomState");
+    while (water.clockPersonIds.length > 0) await water.once("roomState");
+    expect(await failure(short.step())).toMatchObject({ name: "Rejected" });
+    await short.release();
+  });
+});
+
+describe("a moved boat", () => {
+  it("is where it was put, and gets the forces of the tick", async () => {
+    const water = await connected(server.url, { room: "marina" });
+    await water.setPaused({ paused: true });
+    const { boatId } = await water.spawnBoat({ boat: { xM: 2, zM: 2 } });
+    const own = () => water.boats.find((boat) => boat.boatId === boatId);
+    while (!own()) await water.once("boatList");
+    const { heightM, draughtM } = own();
+    const lifts = [];
+    let forces;
+    for (const deeperM of [0, 0.05]) {
+      const { appliedTick } = await water.moveBoat({ boatId, xM: 1.5, yM: heightM / 2 - draughtM - deeperM, zM: -1, headingRad: 0.5 });
+      await water.step({ tickCount: 1 });
+      forces = await water.hullForces();
+      expect([forces.tick, forces.hulls.map((hull) => hull.boatId)]).toEqual([appliedTick + 1, [boatId]]);
+      lifts.push(forces.hulls[0].hydrostatic.forceYN);
+    }
+    expect(lifts[0]).toBeGreaterThan(0);
+    expect(lifts[1]).toBeGreaterThan(lifts[0]);
+    let frame;
+    do frame = await water.next("bodies");
+    while (frame.tick < forces.tick);
+    expect(frame.boat(boatId)).toMatchObject({ xM: expect.closeTo(1.5, 2), zM: expect.closeTo(-1, 2), headingRad: expect.closeTo(0.5, 2) });
+    expect(await failure(water.moveBoat({ boatId, xM: NaN }))).toMatchObject({ name: "Rejected", field: "move_boat.x_m" });
+    await water.moveBoat({ boatId, ends: true });
+    await water.removeBoat({ boatId });
+    await water.setPaused({ paused: false });
+  });
+});
+
 describe("the connection", () => {
   const marina = ["--scene", `${repository}/tests/browser/marina.textproto`, "--grace", "60"];
 

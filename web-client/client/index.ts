@@ -14,6 +14,7 @@ export type { GameInfo } from "./codec/game";
 export { kWireMajor, kWireMinor, type BoatDetail, type GreetingInfo, type ParameterInfo } from "./codec/greeting";
 export type { GroundGrid } from "./codec/ground";
 export type { LayerName, LevelName } from "./codec/layers";
+export type { HullForceInfo, HullForcesInfo, WrenchInfo } from "./codec/hulls";
 export type { LessonInfo } from "./codec/lesson";
 export type { DrainingInfo } from "./codec/parse";
 export type { PersonInfo, RoleName, WelcomeInfo } from "./codec/people";
@@ -23,13 +24,16 @@ export { GameKind, StrokeTool, Team, Tool } from "./gen/spindrift/v1/wire_pb";
 export type { ParameterValue, RoomSummary, RoomWithTokens } from "./rest/rooms";
 export type { LinkStats } from "./session/events";
 export { kSessionTexts } from "./session/texts";
+export type { Clock, StepAck } from "./water/clock";
 export type { Ack, Commands } from "./water/commands";
 export { connect, type ConnectOptions, type WebSocketClass } from "./water/connect";
 export { ConnectionLost, NoAnswer, Refused, Rejected, SpindriftError, type Bound, type RejectReasonName } from "./water/errors";
 export type { WaterEvents } from "./water/events";
 export type { FrameStream } from "./water/frame_stream";
 export type { Boats, Diagnostics, Floaters, Foam, Frames, Particles, Surface } from "./water/frames";
-export type { GaugeRecord, LayerOptions, Water } from "./water/water";
+export type { Answer, Pairs, QueryStreamOptions } from "./water/queries";
+export type { GaugeRecord, LayerOptions } from "./water/options";
+export type { Water } from "./water/water";
 
 /** The rooms that this client may know of. Addresses as `connect` takes them. Throws an Error with the server's reason. */
 export function listRooms(url: string | URL, { token = "" } = {}): Promise<RoomSummary[]> {

@@ -43,6 +43,9 @@ describe("fields of commands", () => {
     expect(() => checkFields("spawnBoat", { boat: { x: 1 } })).toThrow(/^spawnBoat\.boat has no "x"; it has .*xM/);
     expect(() => checkFields("stroke", { points: [{ xM: 0 }, { xM: true }] })).toThrow(/^stroke\.points\[1\]\.xM takes a number, not true$/);
     expect(() => checkFields("stroke", { points: {} })).toThrow(/takes an array/);
+    for (const seed of [5, 5n]) expect(() => checkFields("reset", { seed })).not.toThrow();
+    expect(() => checkFields("reset", { seed: "5" })).toThrow(/^reset\.seed takes a number, not 5$/);
+    expect(() => checkFields("controlBoat", { boatId: 5n })).toThrow(/takes a number/);
     expect(() => checkFields("reset", null)).toThrow(/takes an object/);
   });
 

@@ -97,7 +97,7 @@ describe("parse", () => {
       parse(encode({ case: "reject", value: { commandId: 4n, reason: RejectReason.OUT_OF_RANGE, field: "splash.radius_m", message: "too wide" } })),
     ).toEqual({ kind: "reject", commandId: 4n, reason: "OUT_OF_RANGE", field: "splash.radius_m", message: "too wide" });
     expect(parse(encode({ case: "parameterChanged", value: { path: "p", value: 2, appliedTick: 5n } }))).toEqual({ kind: "parameterChanged", path: "p", value: 2, appliedTick: 5n });
-    expect(parse(encode({ case: "roomState", value: { paused: true, speed: 2, personId: 7 } }))).toEqual({ kind: "roomState", paused: true, speed: 2, personId: 7 });
+    expect(parse(encode({ case: "roomState", value: { paused: true, speed: 2, personId: 7, clockPersonIds: [7] } }))).toEqual({ kind: "roomState", paused: true, speed: 2, personId: 7, clockPersonIds: [7] });
     expect(parse(encode({ case: "pong", value: { clientTimeS: 1, serverTimeS: 2 } }))).toEqual({ kind: "pong", clientTimeS: 1, serverTimeS: 2 });
     expect(parse(encode({ case: "refusal", value: { message: "no" } }))).toEqual({ kind: "refusal", message: "no" });
     const parsed = parse(encode({ case: "diagnostics", value: { tick: 6n, stepMs: 4.5, nonfiniteCount: 1n, passes: [{ name: "sph", ms: 3 }] } }));

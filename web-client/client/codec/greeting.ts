@@ -27,7 +27,7 @@ import {
 
 /** Version of the wire that this client speaks. */
 export const kWireMajor = 1;
-export const kWireMinor = 10;
+export const kWireMinor = 11;
 
 export interface ParameterInfo {
   path: string;
@@ -122,6 +122,8 @@ export interface GreetingInfo {
   parameters: ParameterInfo[];
   paused: boolean;
   speed: number;
+  /** Those who hold the room's clock. */
+  clockPersonIds: number[];
 }
 
 /** Returns the boats, or why the list cannot be trusted. */
@@ -226,6 +228,7 @@ export function readGreeting(greeting: Greeting): { greeting: GreetingInfo } | M
         })),
       paused: greeting.roomState?.paused ?? false,
       speed: greeting.roomState?.speed ?? 1,
+      clockPersonIds: greeting.roomState?.clockPersonIds ?? [],
     },
   };
 }

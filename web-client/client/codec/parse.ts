@@ -10,27 +10,29 @@ import type { PackedFrame, PlainFrame } from "./frame_types";
 import { readGame } from "./game";
 import { readBoatList, readGreeting } from "./greeting";
 import { levelName } from "./layers";
+import { readHullForces } from "./hulls";
 import { readLesson } from "./lesson";
 import { isMalformed, malformed, type Malformed } from "./malformed";
 import { parseFrame } from "./parse_frame";
 import { readPeople, readWelcome } from "./people";
+import { readQueryAnswer } from "./query";
 import { isPlace, kMaxGaugeCount } from "./scene_info";
 import { readStrokes } from "./strokes";
 
 type WireMessage = Exclude<ServerMessage["message"], { case: undefined }>;
-/** Frames have parseFrame(); the page asks no queries. */
-type Kind = Exclude<WireMessage["case"], "frame" | "queryAnswer">;
+/** Frames have parseFrame(). */
+type Kind = Exclude<WireMessage["case"], "frame">;
 type ReaderOf<K extends Kind> = (value: Extract<WireMessage, { case: K }>["value"]) => object;
 
 /** Each returns plain data that survives postMessage, or why it cannot be trusted. */
 const kReaders = {
   greeting: (greeting) => readGreeting(greeting),
   diagnostics: (diagnostics) => ({ diagnostics: readDiagnostics(diagnostics) }),
-  ack: ({ commandId, appliedTick, boatId, floaterId, gaugeId }) => ({ commandId, appliedTick, boatId, floaterId, gaugeId }),
+  ack: ({ commandId, appliedTick, boatId, floaterId, gaugeId, stateHash }) => ({ commandId, appliedTick, boatId, floaterId, gaugeId, stateHash }),
   reject: ({ commandId, reason, field, message }) => ({ commandId, reason: RejectReason[reason] ?? `${reason}`, field, message }),
   parameterChanged: ({ path, value, appliedTick }) =>
     Number.isFinite(value) ? { path, value, appliedTick } : malformed(`parameter ${path} is ${value}`),
-  roomState: ({ paused, speed, personId }) => ({ paused, speed, personId }),
+  roomState: ({ paused, speed, personId, clockPersonIds }) => ({ paused, speed, personId, clockPersonIds }),
   boatList: (list) => {
     const boats = readBoatList(list);
     return typeof boats === "string" ? malformed(boats) : { boats };
@@ -41,6 +43,8 @@ const kReaders = {
   strokes: (strokes) => readStrokes(strokes),
   lesson: (lesson) => readLesson(lesson),
   game: (game) => readGame(game),
+  queryAnswer: (answer) => readQueryAnswer(answer),
+  hullForces: (forces) => readHullForces(forces),
   levelChanged: ({ level }) => ({ level: levelName(level) }),
   draining: (draining) => readDraining(draining),
   pong: ({ clientTimeS, serverTimeS }) => ({ clientTimeS, serverTimeS }),
@@ -57,7 +61,7 @@ export function parse(buffer: ArrayBuffer): ParsedMessage {
   try {
     const { message } = fromBinary(ServerMessageSchema, new Uint8Array(buffer));
     // A message that only a newer server knows, or an empty one: the wire says to ignore it.
-    if (message.case === undefined || message.case === "queryAnswer") return { kind: "unknown" };
+    if (message.case === undefined) return { kind: "unknown" };
     if (message.case === "frame") return parseFrame(message.value);
     const read = (kReaders[message.case] as (value: unknown) => object)(message.value);
     return isMalformed(read) ? read : ({ kind: message.case, ...read } as ParsedEvent);
@@ -79,9 +83,10 @@ function readDiagnostics({ $typeName: _, $unknown: __, passes, gauges, ...number
   };
 }
 
-function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "fidelity" | "other" {
+function roomEventName(kind: RoomEventKind): "recovered" | "reset" | "fidelity" | "clock" | "other" {
   if (kind === RoomEventKind.RECOVERED) return "recovered";
   if (kind === RoomEventKind.FIDELITY) return "fidelity";
+  if (kind === RoomEventKind.CLOCK) return "clock";
   return kind === RoomEventKind.RESET ? "reset" : "other";
 }
 

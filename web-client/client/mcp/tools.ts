@@ -13,6 +13,7 @@ import type { Rooms } from "./rooms";
 /** Values of a series that are sent at most. */
 const kSeriesMaxCount = 512;
 const kPictureMaxPx = 1024;
+const kPointsMaxCount = 256;
 const kInstructions =
   "Water that people share: rooms with a simulated surface, particles, boats and objects. Lengths are in metres, x to the right and z down in pictures, " +
   "y up from the water at rest, headings from +x toward +z. What you may do depends on the token: viewers look, players act, operators change everything. " +
@@ -58,7 +59,16 @@ export function waterTools(rooms: Rooms, version: string): McpServer {
       annotations: looks,
     },
     ({ room, gauge, count }) =>
-      answer(async () => text(Object.fromEntries(Object.entries(await (await rooms.water(room)).gauge(gauge)).map(([name, values]: [string, Float64Array]) => [name, [...values.slice(-count)].map((value) => Number(value.toPrecision(6)))])))),
+      answer(async () => text(rounded(Object.fromEntries(Object.entries(await (await rooms.water(room)).gauge(gauge)).map(([name, values]: [string, Float64Array]) => [name, values.slice(-count)]))))),
+  );
+  server.registerTool(
+    "query",
+    {
+      description: "The water at points now: elevation over the water at rest, its vertical speed, velocity of the flow, slope, depth, share of wet ground and of foam. outside: 1 where there is no water.",
+      inputSchema: z.object({ room, points: z.array(z.tuple([z.number(), z.number()])).min(1).max(kPointsMaxCount).describe("[[xM, zM], ...]") }),
+      annotations: looks,
+    },
+    ({ room, points }) => answer(async () => text(rounded(await (await rooms.water(room)).query(points)))),
   );
   server.registerTool(
     "picture",
@@ -70,6 +80,12 @@ export function waterTools(rooms: Rooms, version: string): McpServer {
     ({ room, widthPx }) => answer(async () => pictureOf(await rooms.water(room), widthPx)),
   );
   return server;
+}
+
+/** Arrays as lists of numbers with six digits. */
+function rounded(values: object): object {
+  const list = (value: unknown): unknown => (ArrayBuffer.isView(value) ? Array.from(value as unknown as ArrayLike<number>, (each) => Number(each.toPrecision(6))) : value);
+  return Object.fromEntries(Object.entries(values).map(([name, value]) => [name, list(value)]));
 }
 
 async function aboutRoom(water: Water): Promise<object> {
@@ -95,7 +111,7 @@ async function pictureOf(water: Water, widthPx: number): Promise<CallToolResult>
 }
 
 function text(value: object): CallToolResult {
-  return { content: [{ type: "text", text: JSON.stringify(value) }] };
+  return { content: [{ type: "text", text: JSON.stringify(value, (_, each: unknown) => (typeof each === "bigint" ? String(each) : each)) }] };
 }
 
 /** What goes wrong is an answer, from which an agent can learn what to do. */

@@ -25,7 +25,7 @@ const kFirstPings = 5;
 const kHousekeepingEveryMs = 500;
 /** Without a greeting, or without any message, for this long the connection counts as lost. */
 const kSilenceMs = 10_000;
-/** The server builds water for these, as long as that takes; meanwhile everything else continues, and a lost connection ends the wait. */
+/** The server builds water for these, and waits for ticks in `step` that waits, as long as that takes; meanwhile everything else continues, and a lost connection ends the wait. */
 const kSlowActions: readonly CommandAction["case"][] = ["changeScene", "setParameter"];
 const kMaxUnsentBytes = 256 * 1024;
 /** Shortest interval between two requests for a keyframe. */
@@ -124,7 +124,8 @@ export class Connection {
       return this.rejectHere(commandId, "NOT_SENT", kSessionTexts.congested);
     // Throws for a value that its field cannot hold.
     const bytes = encode({ case: "command", value: { commandId: BigInt(commandId), action } });
-    this.pending.add(commandId, kSlowActions.includes(action.case) ? Infinity : this.world.nowMs() + this.options.answerWithinS * 1000);
+    const isSlow = kSlowActions.includes(action.case) || (action.case === "step" && action.value.waits);
+    this.pending.add(commandId, isSlow ? Infinity : this.world.nowMs() + this.options.answerWithinS * 1000);
     this.socket!.send(bytes);
   }
 
@@ -201,6 +202,10 @@ export class Connection {
         return void this.addRooms();
       case "greeting":
         return this.greeted(parsed.greeting);
+      case "queryAnswer":
+        return this.sink.queryAnswer?.(parsed);
+      case "hullForces":
+        return this.sink.hullForces?.(parsed);
       case "diagnostics":
         this.meter.diagnostics();
         return this.sink.event(parsed);

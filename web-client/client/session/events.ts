@@ -59,7 +59,7 @@ export interface LinkStats {
 export type LocalReason = "NOT_SENT" | "LOST" | "NO_ANSWER";
 
 /** Messages that the connection handles itself. */
-type Handled = PlainFrame | PackedFrame | Malformed | { kind: "unknown" | "levelChanged" | "pong" | "refusal" };
+type Handled = PlainFrame | PackedFrame | Malformed | { kind: "unknown" | "levelChanged" | "pong" | "refusal" | "queryAnswer" | "hullForces" };
 
 /** What the connection reports besides frames. A reject may be one of its own, with a LocalReason. */
 export type ConnectionEvent =

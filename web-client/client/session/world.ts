@@ -1,5 +1,7 @@
 // What a connection uses of its surroundings, so that tests need no network.
 import type { PlainFrame } from "../codec/frame_types";
+import type { HullForcesInfo } from "../codec/hulls";
+import type { QueryAnswerInfo } from "../codec/query";
 import type { ConnectionEvent } from "./events";
 import type { MissingRoom } from "./missing_room";
 
@@ -36,4 +38,8 @@ export interface ConnectionSink<E = ConnectionEvent> {
   event(event: E): void;
   /** The payload is valid until the call returns. */
   frame(frame: PlainFrame): void;
+  /** Absent: nobody asks queries. */
+  queryAnswer?(answer: QueryAnswerInfo): void;
+  /** Absent: nobody moves boats. */
+  hullForces?(forces: HullForcesInfo): void;
 }

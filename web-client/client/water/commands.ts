@@ -3,9 +3,9 @@ import { getOption, hasOption, ScalarType, type DescField, type DescMessage } fr
 
 import type { ParameterInfo } from "../codec/greeting";
 import { parameter } from "../gen/spindrift/v1/options_pb";
-import { CommandSchema } from "../gen/spindrift/v1/wire_pb";
-import type { CommandAction } from "../session/events";
-import type { Bound } from "./errors";
+import { CommandSchema, RejectReason } from "../gen/spindrift/v1/wire_pb";
+import type { CommandAction, ConnectionEvent } from "../session/events";
+import { ConnectionLost, NoAnswer, Rejected, SpindriftError, type Bound, type RejectReasonName } from "./errors";
 
 /** The server's answer to a command that it carried out. */
 export interface Ack {
@@ -15,20 +15,23 @@ export interface Ack {
   boatId: number;
   floaterId: number;
   gaugeId: number;
+  /** Of a step that waits: of the state after appliedTick. */
+  stateHash: bigint | undefined;
 }
 
-/** A query's answer is a message of its own, which this client does not read: docs/javascript.md says how to ask. */
-const kWithoutMethod = "query";
-type CommandName = Exclude<CommandAction["case"], typeof kWithoutMethod>;
+/** The answer to a query is another message than its Ack: Water.query. */
+type CommandName = Exclude<CommandAction["case"], "query">;
 
-type Fields<K extends CommandAction["case"]> = Extract<CommandAction, { case: K }>["value"];
+/** 64-bit numbers may be given as a number or a bigint. */
+type Wide<V> = { [P in keyof V]: bigint extends V[P] ? V[P] | number : V[P] };
+type Fields<K extends CommandAction["case"]> = Wide<Extract<CommandAction, { case: K }>["value"]>;
 
 /** Each sends its command. The promise is resolved when the server has carried it out, and rejected with Rejected, ConnectionLost or
  *  NoAnswer; fields that the command does not have are a TypeError. Units and bounds stand at the fields. */
 export type Commands = { [K in CommandName]: (fields?: Fields<K>) => Promise<Ack> };
 
 /** The commands, by name. */
-export const kActions: ReadonlyMap<string, DescField> = new Map(CommandSchema.oneofs[0]!.fields.filter(({ localName }) => localName !== kWithoutMethod).map((field) => [field.localName, field]));
+export const kActions: ReadonlyMap<string, DescField> = new Map(CommandSchema.oneofs[0]!.fields.filter(({ localName }) => localName !== "query").map((field) => [field.localName, field]));
 
 /** Names of all commands. */
 export const kCommandNames = [...kActions.keys()] as CommandName[];
@@ -49,11 +52,15 @@ function checkMessage(message: DescMessage, value: unknown, path: string): void 
     if (field.fieldKind === "message") checkMessage(field.message, each, `${path}.${name}`);
     else if (field.fieldKind === "list" && !Array.isArray(each)) throw new TypeError(`${path}.${name} takes an array, not ${String(each)}`);
     else if (field.fieldKind === "list" && field.listKind === "message") (each as unknown[]).forEach((one, k) => checkMessage(field.message, one, `${path}.${name}[${k}]`));
-    else if (field.fieldKind === "scalar" && typeof each !== typeOf(field.scalar)) throw new TypeError(`${path}.${name} takes a ${typeOf(field.scalar)}, not ${String(each)}`);
+    else if (field.fieldKind === "scalar" && typeof each !== typeOf(field.scalar) && !(is64Bits(field.scalar) && typeof each === "bigint")) throw new TypeError(`${path}.${name} takes a ${typeOf(field.scalar)}, not ${String(each)}`);
   }
 }
 
-/** Commands have neither 64-bit numbers nor bytes. */
+function is64Bits(scalar: ScalarType): boolean {
+  return scalar === ScalarType.UINT64 || scalar === ScalarType.FIXED64;
+}
+
+/** Commands have no bytes. */
 function typeOf(scalar: ScalarType): "boolean" | "string" | "number" {
   return scalar === ScalarType.BOOL ? "boolean" : scalar === ScalarType.STRING ? "string" : "number";
 }
@@ -65,7 +72,7 @@ export function offence({ case: name, value: fields }: CommandAction, field: str
     return { value: fields.value, bound: described && boundOf(described) };
   }
   const [head, ...path] = field.split(".");
-  const action = kActions.get(name)!;
+  const action = CommandSchema.field[name]!;
   if (head !== action.name) return { value: undefined, bound: undefined };
   let message = action.message;
   let value: unknown = fields;
@@ -80,6 +87,16 @@ export function offence({ case: name, value: fields }: CommandAction, field: str
     message = at.message;
   }
   return { value, bound };
+}
+
+/** Why a command was not carried out, or may not have been. `live`: whether commands can be sent at present. */
+export function errorOf({ reason, field, message }: Extract<ConnectionEvent, { kind: "reject" }>, action: CommandAction, parameters: ReadonlyMap<string, ParameterInfo>, live: boolean): SpindriftError {
+  const name = action.case;
+  if (reason === "LOST") return new ConnectionLost(`${message}; ${name} may or may not have been carried out`, true);
+  if (reason === "NO_ANSWER") return new NoAnswer(`${message} to ${name}; it may still be carried out`);
+  if (reason === "NOT_SENT") return live ? new SpindriftError(`${name} was not sent: ${message}`) : new ConnectionLost(`${name} was not sent: ${message}`);
+  const { value, bound } = offence(action, field, parameters);
+  return new Rejected(message, reason in RejectReason && !/^\d/.test(reason) ? (reason as RejectReasonName) : "OTHER", field, value, bound);
 }
 
 function boundOf({ min, max, unit }: Bound): Bound {

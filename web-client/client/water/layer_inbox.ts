@@ -31,6 +31,14 @@ export class LayerInbox<F> {
     return stream;
   }
 
+  /** Ends readers and streams with the error. Returns an inbox for those that follow, which counts on. */
+  endedBy(error: Error): LayerInbox<F> {
+    const next = new LayerInbox<F>();
+    next.droppedBefore = this.dropped;
+    this.finish(error, true);
+    return next;
+  }
+
   /** Nothing comes any more. Streams end with the error, or without one; waiting for a frame is an error in any case. */
   finish(error: Error, isFailure: boolean): void {
     this.newest.finish(error);

@@ -2,11 +2,11 @@
 import type { BoatDetail, GreetingInfo, ParameterInfo } from "../codec/greeting";
 import type { GameInfo } from "../codec/game";
 import type { GroundGrid } from "../codec/ground";
-import { kLayerNames, type LayerName, type LevelName } from "../codec/layers";
+import type { HullForcesInfo } from "../codec/hulls";
+import { kLayerNames, type LayerName } from "../codec/layers";
 import { kFreeLesson, type LessonInfo } from "../codec/lesson";
 import type { PersonInfo, RoleName, WelcomeInfo } from "../codec/people";
 import type { GaugeInfo } from "../codec/scene_info";
-import { RejectReason } from "../gen/spindrift/v1/wire_pb";
 import { requestSeries } from "../rest/gauge_series";
 import { requestGround } from "../rest/ground";
 import { Connection } from "../session/connection";
@@ -14,52 +14,21 @@ import type { CommandAction, ConnectionEvent, Subscription } from "../session/ev
 import { kSessionTexts } from "../session/texts";
 import type { ConnectionWorld } from "../session/world";
 import { restBase } from "./address";
-import { checkFields, kCommandNames, offence, type Ack, type Commands } from "./commands";
-import { ConnectionLost, NoAnswer, Refused, Rejected, SpindriftError, type RejectReasonName } from "./errors";
+import { Clock, kStepTicksMax } from "./clock";
+import { checkFields, errorOf, kCommandNames, type Ack, type Commands } from "./commands";
+import { ConnectionLost, Refused, SpindriftError } from "./errors";
 import { Listeners, type WaterEvents } from "./events";
 import type { FrameStream } from "./frame_stream";
 import { diagnosticsOf, frameOf, type Frames, type Surface } from "./frames";
 import { LayerInbox } from "./layer_inbox";
+import type { GaugeRecord, LayerOptions, WaterSettings } from "./options";
+import { Queries, type Answer, type Pairs, type QueryStreamOptions } from "./queries";
 
 /** Frames of one stream that wait unless its reader says otherwise. */
 const kWaitingFrames = 16;
 const kRateMaxHz = 240;
-/** As the server's rules for `step`. */
-const kStepTicksMax = 600;
 
-/** How a layer is wanted. */
-export interface LayerOptions {
-  /** Frames per second, at most 240; 0 ends them. 60 if left out. */
-  rateHz?: number;
-  /** A tenth of the bytes; the same surfaces, foam and boats, coarser particles. True if left out. */
-  packed?: boolean;
-  /** "full" if left out. */
-  level?: LevelName;
-  /** The server may send coarser levels while the connection is slow. False if left out. */
-  adapts?: boolean;
-}
-
-/** What a gauge measured at the last ticks, oldest first: arrays of one length. */
-export interface GaugeRecord {
-  /** Simulation time since the scene began or was reset. */
-  timeS: Float64Array;
-  /** Over the water at rest. */
-  elevationM: Float64Array;
-  /** Of the flow, as a mean over its depth. */
-  velocityXMps: Float64Array;
-  velocityZMps: Float64Array;
-}
-
-export interface WaterSettings {
-  socketUrl: string;
-  name: string;
-  token: string;
-  resumeKey: string;
-  client: string;
-  answerWithinS: number;
-}
-
-interface Answer {
+interface PendingAnswer {
   action: CommandAction;
   resolve(ack: Ack): void;
   reject(error: Error): void;
@@ -80,6 +49,8 @@ export class Water {
   isPaused = false;
   /** Simulated seconds per second, as set. */
   speed = 1;
+  /** Those who hold the room's clock; nobody: it runs by itself. */
+  clockPersonIds: readonly number[] = [];
   /** What setParameter takes, by path: label, unit, bounds and present value. */
   readonly parameters = new Map<string, ParameterInfo>();
   /** Messages that could not be read. */
@@ -90,9 +61,11 @@ export class Water {
   private lastWhy = "";
   private lastUrl: string;
   private nextCommandId = 1;
-  private readonly answers = new Map<number, Answer>();
+  private readonly answers = new Map<number, PendingAnswer>();
   private readonly wanted = new Map<LayerName, Subscription>();
   private readonly inboxes: { [L in LayerName]?: LayerInbox<Frames[L]> } = {};
+  private hulls = new LayerInbox<HullForcesInfo>();
+  private readonly queries = new Queries((action) => this.send(action));
   private readonly listeners = new Listeners();
   private readonly connection: Connection;
   private readonly first: Promise<void>;
@@ -110,6 +83,8 @@ export class Water {
     this.connection = new Connection(options, world, {
       event: (event) => this.take(event),
       frame: (frame) => (this.inboxes[frame.kind] as LayerInbox<unknown> | undefined)?.put(frameOf(frame)),
+      queryAnswer: (answer) => this.queries.take(answer),
+      hullForces: ({ tick, timeS, stateId, hulls }) => this.hulls.put({ tick, timeS, stateId, hulls }),
     });
   }
 
@@ -161,9 +136,10 @@ export class Water {
     return this.greeting.gauges;
   }
 
-  /** By layer: frames that streams dropped for newer ones because nobody took them in time. */
-  get dropped(): Partial<Record<LayerName, number>> {
-    return Object.fromEntries(Object.entries(this.inboxes).map(([layer, inbox]) => [layer, inbox.dropped]));
+  /** By layer: frames that streams dropped for newer ones because nobody took them in time. "hullForces": of streams of those. */
+  get dropped(): Partial<Record<LayerName | "hullForces", number>> {
+    const hulls = this.hulls.dropped > 0 ? { hullForces: this.hulls.dropped } : {};
+    return Object.fromEntries([...Object.entries(this.inboxes).map(([layer, inbox]) => [layer, inbox.dropped]), ...Object.entries(hulls)]);
   }
 
   /** Returns what takes the listener away again. */
@@ -223,6 +199,10 @@ export class Water {
   async command<K extends keyof Commands>(name: K, fields?: Parameters<Commands[K]>[0]): Promise<Ack> {
     const action = { case: name, value: fields ?? {} } as CommandAction;
     checkFields(name, action.value);
+    return this.send(action);
+  }
+
+  private async send(action: CommandAction): Promise<Ack> {
     if (this.failure) throw this.failure;
     const commandId = this.nextCommandId++;
     return new Promise<Ack>((resolve, reject) => {
@@ -234,6 +214,38 @@ export class Water {
         reject(new TypeError(error instanceof Error ? error.message : String(error)));
       }
     });
+  }
+
+  /** Stops the room's clock: from now on it advances only by steps of those who hold the clock. For operators, and for players who are alone in
+   *  their room. `speed`: simulated seconds per second of the steps, 0: as fast as the machine can. `timeoutS`: a holder who sends no
+   *  step for so long, while the room waits for it, loses the clock. Rejects as commands do. */
+  async takeClock(fields?: Parameters<Commands["takeClock"]>[0]): Promise<Clock> {
+    await this.command("takeClock", fields);
+    return new Clock(this);
+  }
+
+  /** The water at points now, at most 1,024 of all queries that wait or stream. Points outside of the water are marked. Rejects as commands do,
+   *  and with TypeError and RangeError for points that are none. */
+  async query(points: Pairs): Promise<Answer> {
+    return this.queries.once(points, this.settings.answerWithinS);
+  }
+
+  /** An answer now, and one whenever `intervalTicks` have passed, until the loop is left. The loop ends with ConnectionLost when the connection is
+   *  lost, and with SpindriftError when the scene changes: ask again then. Throws TypeError and RangeError. */
+  streamQuery(points: Pairs, options: QueryStreamOptions = {}): FrameStream<Answer> {
+    return this.queries.stream(points, options);
+  }
+
+  /** The newest forces on the boats that this client moves (moveBoat) that this did not return before; waits for some. Rejects with ConnectionLost
+   *  when the connection is lost: move the boats again then. */
+  hullForces(): Promise<HullForcesInfo> {
+    return this.failure ? Promise.reject(this.failure) : this.hulls.next();
+  }
+
+  /** Those of every tick, in order; at most `capacity` (1 to 4096) wait, then the oldest are dropped and counted. Ends as hullForces. */
+  streamHullForces({ capacity = kWaitingFrames } = {}): FrameStream<HullForcesInfo> {
+    if (this.failure) throw this.failure;
+    return this.hulls.stream(capacity);
   }
 
   /** Advances a paused room by so many ticks and returns the surface after the last of them. */
@@ -306,6 +318,7 @@ export class Water {
     this.boats = greeting.boats;
     this.isPaused = greeting.paused;
     this.speed = greeting.speed;
+    this.clockPersonIds = greeting.clockPersonIds;
     this.parameters.clear();
     for (const each of greeting.parameters) this.parameters.set(each.path, each);
   }
@@ -315,7 +328,7 @@ export class Water {
     else if (event.kind === "boatList") this.boats = event.boats;
     else if (event.kind === "lesson") this.lesson = event.lesson;
     else if (event.kind === "game") this.game = event.game;
-    else if (event.kind === "roomState") [this.isPaused, this.speed] = [event.paused, event.speed];
+    else if (event.kind === "roomState") [this.isPaused, this.speed, this.clockPersonIds] = [event.paused, event.speed, event.clockPersonIds];
     else if (event.kind === "parameterChanged") {
       const described = this.parameters.get(event.path);
       if (described) described.value = event.value;
@@ -334,6 +347,9 @@ export class Water {
   private changeState(state: Extract<ConnectionEvent, { kind: "state" }>["state"]): void {
     if (state.name === "live") return;
     this.live = false;
+    const lost = new ConnectionLost("the connection was lost", true);
+    this.queries.endAll(lost);
+    this.hulls = this.hulls.endedBy(lost);
     if (state.name === "refused") return this.end(new Refused(state.reason, state.rooms));
     if (state.name !== "retrying") return;
     this.lastWhy = state.why;
@@ -345,16 +361,10 @@ export class Water {
     if (!answer) return;
     this.answers.delete(Number(event.commandId));
     if (event.kind === "ack") {
-      const { appliedTick, boatId, floaterId, gaugeId } = event;
-      return answer.resolve({ appliedTick: Number(appliedTick), boatId, floaterId, gaugeId });
+      const { appliedTick, boatId, floaterId, gaugeId, stateHash } = event;
+      return answer.resolve({ appliedTick: Number(appliedTick), boatId, floaterId, gaugeId, stateHash });
     }
-    const { reason, field, message } = event;
-    const name = answer.action.case;
-    if (reason === "LOST") return answer.reject(new ConnectionLost(`${message}; ${name} may or may not have been carried out`, true));
-    if (reason === "NO_ANSWER") return answer.reject(new NoAnswer(`${message} to ${name}; it may still be carried out`));
-    if (reason === "NOT_SENT") return answer.reject(this.live ? new SpindriftError(`${name} was not sent: ${message}`) : new ConnectionLost(`${name} was not sent: ${message}`));
-    const { value, bound } = offence(answer.action, field, this.parameters);
-    answer.reject(new Rejected(message, reason in RejectReason && !/^\d/.test(reason) ? (reason as RejectReasonName) : "OTHER", field, value, bound));
+    answer.reject(errorOf(event, answer.action, this.parameters, this.live));
   }
 
   /** Ends for good, once. `error` undefined: as the program wanted. */
@@ -363,16 +373,17 @@ export class Water {
     this.failure = error ?? new ConnectionLost(kSessionTexts.closedHere);
     this.live = false;
     this.connection.stop();
-    for (const inbox of Object.values(this.inboxes)) inbox.finish(this.failure, error !== undefined);
+    for (const inbox of [...Object.values(this.inboxes), this.hulls]) inbox.finish(this.failure, error !== undefined);
+    this.queries.endAll(error);
     this.settleFirst.reject(this.failure);
     this.listeners.emit("closed", { error });
   }
 }
 
 /** A method for each command of the wire. */
-export interface Water extends Commands {}
+export interface Water extends Omit<Commands, "takeClock"> {}
 
-for (const name of kCommandNames)
+for (const name of kCommandNames.filter((name) => !(name in Water.prototype)))
   Object.defineProperty(Water.prototype, name, {
     value(this: Water, fields?: never): Promise<Ack> {
       return this.command(name, fields);

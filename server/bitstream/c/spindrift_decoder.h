@@ -5,8 +5,8 @@
  * Functions that read return 1, or 0 if the payload is damaged, a number is outside of its bounds, a delta has no frame
  * before it, or there is no memory. After 0 a reader waits for a keyframe. No function keeps a pointer of the caller. A
  * reader is used by one thread at a time; different readers are independent. */
-#ifndef SPINDRIFT_CLIENT_H
-#define SPINDRIFT_CLIENT_H
+#ifndef SPINDRIFT_DECODER_H
+#define SPINDRIFT_DECODER_H
 
 #include <stddef.h>
 #include <stdint.h>

@@ -1,4 +1,4 @@
-#include "spindrift_client.h"
+#include "spindrift_decoder.h"
 
 #include <algorithm>
 #include <cstring>
