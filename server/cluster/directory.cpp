@@ -75,7 +75,7 @@ core::Result<std::vector<rooms::RoomSetup>> Directory::claim(std::vector<rooms::
   return out;
 }
 
-void Directory::open(rooms::RoomSetup setup, rooms::SimulationThread::Done done) {
+void Directory::open(rooms::RoomSetup setup, rooms::RoomHost::Done done) {
   {
     const std::lock_guard lock(mutex_);
     opening_.insert(setup.name);

@@ -13,7 +13,7 @@
 
 #include <spindrift/bus/key_values.h>
 #include <spindrift/core/worker.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/v1/cluster.pb.h>
 
 #include "placement.h"
@@ -38,9 +38,9 @@ class Directory {
 
   /// As Node::claim(); on the calling thread, before serve().
   core::Result<std::vector<rooms::RoomSetup>> claim(std::vector<rooms::RoomSetup> rooms);
-  void serve(rooms::SimulationThread& simulation) { simulation_ = &simulation; }
+  void serve(rooms::RoomHost& simulation) { simulation_ = &simulation; }
   /// Enters the room and opens it here; removes the entry if that fails.
-  void open(rooms::RoomSetup setup, rooms::SimulationThread::Done done);
+  void open(rooms::RoomSetup setup, rooms::RoomHost::Done done);
   /// The room was closed for good here. Its entry stays if it is another server's.
   void remove(const std::string& room);
   /// Looks for rooms that nobody runs and takes those that fall to this server. One review at a time; further calls
@@ -81,7 +81,7 @@ class Directory {
   const std::unique_ptr<bus::KeyValues> values_;
   const std::string self_;
   const Hooks hooks_;
-  rooms::SimulationThread* simulation_ = nullptr;
+  rooms::RoomHost* simulation_ = nullptr;
   std::atomic<bool> leaving_{false};
   std::atomic<bool> reviewing_{false};
   std::atomic<std::uint64_t> taken_count_{0};

@@ -41,7 +41,7 @@ v1::ReducedCounts toWire(const core::ReducedCounts& counts) {
 
 }  // namespace
 
-void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
+void Feed::review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::RoomHost& simulation,
                   Clock::time_point now) {
   std::vector<std::unique_ptr<bus::Subscription>> ended;  // destroyed without the lock, which their handlers take
   const std::lock_guard lock(mutex_);

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include <spindrift/bus/bus.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/v1/cluster.pb.h>
 
@@ -49,7 +49,7 @@ class Feed final : public service::RemoteAudience {
 
   /// Opens the rooms that are new to the nodes, drops silent links, sends pulses, counts who only watches. Call it some
   /// twenty times per second.
-  void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::SimulationThread& simulation,
+  void review(const std::vector<std::shared_ptr<rooms::Room>>& rooms, const rooms::RoomHost& simulation,
               Clock::time_point now);
   /// The room continues at another server, to which the nodes attach: they are not told that it was closed.
   void giveUp(const std::string& name);

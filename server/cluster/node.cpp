@@ -67,7 +67,7 @@ class NodeImpl final : public Node {
   std::shared_ptr<service::Venue> find(const std::string& room) override;
   core::Result<void> accept(const std::string& room) override;
   bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) override;
-  void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) override {
+  void openRoom(rooms::RoomSetup setup, const rooms::RoomHost::Done& done) override {
     directory_->open(std::move(setup), done);
   }
 
@@ -96,8 +96,8 @@ class NodeImpl final : public Node {
   std::unique_ptr<Directory> directory_;  ///< of a server
   Requests requests_;
   service::Sessions* sessions_ = nullptr;
-  rooms::SimulationThread* simulation_ = nullptr;  ///< of a server
-  rooms::RoomOutlets* outlets_ = nullptr;          ///< likewise
+  rooms::RoomHost* simulation_ = nullptr;  ///< of a server
+  rooms::RoomOutlets* outlets_ = nullptr;  ///< likewise
   Answer answer_;
   std::atomic<bool> leaving_{false};
   std::atomic<bool> serving_{false};

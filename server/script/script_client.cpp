@@ -28,21 +28,20 @@ void ScriptClient::connect() {
       if (number == connection_number_) action(values...);
     };
   };
-  connection_ = pool_.connect(url_, {},
-                              {.opened = if_current([this] {
-                                 const char* token =
-                                     setup_.token_env().empty() ? nullptr : std::getenv(setup_.token_env().c_str());
-                                 send(client::hello({.program = listener_.message ? listener_.program : "spindrift script",
-                                                     .name = setup_.person(),
-                                                     .token = token == nullptr ? "" : token,
-                                                     .resume_key = resume_key_}));
-                                 for (const auto& [layer, wanted] : std::exchange(subscriptions_, {}))
-                                   subscribe(wanted);
-                               }),
-                               .message = if_current([this](core::ByteView bytes) { take(bytes); }),
-                               .closed = if_current([this](std::uint16_t code, const std::string& reason) {
-                                 ended({code, refusal_.empty() ? reason : refusal_});
-                               })});
+  connection_ = pool_.connect(
+      url_, {},
+      {.opened = if_current([this] {
+         const char* token = setup_.token_env().empty() ? nullptr : std::getenv(setup_.token_env().c_str());
+         send(client::hello({.program = listener_.message ? listener_.program : "spindrift script",
+                             .name = setup_.person(),
+                             .token = token == nullptr ? "" : token,
+                             .resume_key = resume_key_}));
+         for (const auto& [layer, wanted] : std::exchange(subscriptions_, {})) subscribe(wanted);
+       }),
+       .message = if_current([this](core::ByteView bytes) { take(bytes); }),
+       .closed = if_current([this](std::uint16_t code, const std::string& reason) {
+         ended({code, refusal_.empty() ? reason : refusal_});
+       })});
 }
 
 void ScriptClient::ended(const End& end) {

@@ -10,7 +10,7 @@ namespace {
 class LocalRoom final : public Venue {
  public:
   /// `rooms` and `sessions` outlive it.
-  LocalRoom(std::shared_ptr<rooms::Room> room, const rooms::SimulationThread& rooms, Sessions& sessions)
+  LocalRoom(std::shared_ptr<rooms::Room> room, const rooms::RoomHost& rooms, Sessions& sessions)
       : room_(std::move(room)), rooms_(rooms), sessions_(sessions) {}
 
   [[nodiscard]] const std::string& name() const override { return room_->name(); }
@@ -35,7 +35,7 @@ class LocalRoom final : public Venue {
 
  private:
   const std::shared_ptr<rooms::Room> room_;
-  const rooms::SimulationThread& rooms_;
+  const rooms::RoomHost& rooms_;
   Sessions& sessions_;
 };
 
@@ -54,7 +54,7 @@ Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsS
           access_, counters_, sources, recordings_, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },
           std::move(on_drain)) {}
 
-void Gateway::serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder) {
+void Gateway::serve(rooms::RoomHost& rooms, rooms::EncoderThread& encoder) {
   rooms_ = &rooms;
   encoder_ = &encoder;
   rest_.serve(rooms);

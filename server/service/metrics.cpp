@@ -209,7 +209,7 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   for (const auto& [code, count] : stats.closed_by_code) page.sample(metricLabel("code", std::to_string(code)), count);
 }
 
-void writeFaults(Page& page, const rooms::SimulationThread& rooms) {
+void writeFaults(Page& page, const rooms::RoomHost& rooms) {
   using core::ErrorCode;
   page.head("water_failures_total", "counter", "Waters of rooms that could not be built, by cause.");
   for (const auto& [cause, code] :
@@ -290,8 +290,8 @@ std::string metric(const char* name, const char* type, const char* help, double 
   return page.take();
 }
 
-std::string metricsText(const rooms::SimulationThread& rooms, const CommandCounters& commands,
-                        const AccessControl& access, const MetricsSources& sources) {
+std::string metricsText(const rooms::RoomHost& rooms, const CommandCounters& commands, const AccessControl& access,
+                        const MetricsSources& sources) {
   const rooms::EncoderThread* const encoder = sources.encoder;
   std::vector<RoomSample> samples;
   for (const auto& room : rooms.rooms()) {

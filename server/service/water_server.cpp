@@ -31,8 +31,8 @@ core::Result<std::unique_ptr<WaterServer>> WaterServer::start(WaterServerOptions
       });
   self->encoder_ = std::make_unique<rooms::EncoderThread>(*self->gateway_);
   self->sources_.encoder = self->encoder_.get();
-  auto simulation = rooms::SimulationThread::start(options.device, std::move(options.rooms), std::move(options.rules),
-                                                   options.max_room_count, *self->gateway_);
+  auto simulation = rooms::RoomHost::start(options.device, std::move(options.rooms), std::move(options.rules),
+                                           options.max_room_count, *self->gateway_);
   if (!simulation) return simulation.error();
   self->simulation_ = *std::move(simulation);
   self->gateway_->serve(*self->simulation_, *self->encoder_);

@@ -15,7 +15,7 @@
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/files.h>
 #include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/scene/scene_loader.h>
 
 #include "silent_outlets.h"
@@ -79,9 +79,9 @@ core::Result<Measured> measure(const v1::Scene& scene, std::size_t count, bool i
   std::vector<rooms::RoomSetup> setups;
   for (std::size_t k = 0; k < count; ++k) setups.push_back({.name = fmt::format("room{}", k), .scene = scene});
   Encoded outlets;
-  auto started = rooms::SimulationThread::start(device, std::move(setups), {}, kRoomMaxCount, outlets);
+  auto started = rooms::RoomHost::start(device, std::move(setups), {}, kRoomMaxCount, outlets);
   if (!started) return started.error();
-  rooms::SimulationThread& simulation = **started;
+  rooms::RoomHost& simulation = **started;
   const auto all = simulation.rooms();
   if (is_watched) std::ranges::for_each(all, [](const auto& room) { watch(*room); });
   simulation.run();

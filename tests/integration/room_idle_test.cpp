@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 
@@ -43,7 +43,7 @@ class IdleRooms : public testing::Test {
       ASSERT_TRUE(scene) << scene.error().message;
       setups.push_back({.name = "room" + std::to_string(k), .scene = *std::move(scene)});
     }
-    auto started = rooms::SimulationThread::start(device, std::move(setups), {}, kRoomCount, outlets_);
+    auto started = rooms::RoomHost::start(device, std::move(setups), {}, kRoomCount, outlets_);
     if (!started && started.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << started.error().message;
     ASSERT_TRUE(started) << started.error().message;
     simulation_ = *std::move(started);
@@ -81,7 +81,7 @@ class IdleRooms : public testing::Test {
   }
 
   CountingOutlets outlets_;
-  std::unique_ptr<rooms::SimulationThread> simulation_;
+  std::unique_ptr<rooms::RoomHost> simulation_;
   std::uint64_t last_id_ = 0;
 };
 

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 
 namespace spindrift::rooms {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include <spindrift/core/result.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/sessions.h>
 
@@ -44,7 +44,7 @@ class Node : public service::Cluster {
   using Answer = std::function<void(const net::HttpRequest&, net::HttpResponder, const std::optional<access::Grant>&)>;
   /// Parts that a server has and an edge has not.
   struct ServerParts {
-    rooms::SimulationThread* simulation = nullptr;
+    rooms::RoomHost* simulation = nullptr;
     rooms::RoomOutlets* outlets = nullptr;  ///< of the rooms
     Answer answer{};                        ///< to requests
   };

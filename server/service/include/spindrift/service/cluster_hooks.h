@@ -8,7 +8,7 @@
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/core/bytes.h>
 #include <spindrift/net/server.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/venue.h>
 
 namespace spindrift::service {
@@ -45,8 +45,8 @@ class Cluster {
   /// Takes a request that another server has to answer, or several together; returns false if this process should.
   virtual bool takeRequest(const net::HttpRequest& request, const net::HttpResponder& respond) = 0;
   /// Opens a room on this server, under a name that no server of the cluster uses. Errors: as
-  /// SimulationThread::openRoom(), and kUnavailable when the directory of rooms does not answer.
-  virtual void openRoom(rooms::RoomSetup setup, const rooms::SimulationThread::Done& done) = 0;
+  /// RoomHost::openRoom(), and kUnavailable when the directory of rooms does not answer.
+  virtual void openRoom(rooms::RoomSetup setup, const rooms::RoomHost::Done& done) = 0;
 };
 
 /// All empty: the server is alone.

@@ -8,8 +8,8 @@
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/rooms/room_outlets.h>
-#include <spindrift/rooms/simulation_thread.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/metrics.h>
 #include <spindrift/service/recordings.h>
@@ -27,7 +27,7 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
   [[nodiscard]] AccessControl& access() { return access_; }
   /// Sets the rooms and the encoder of their frames; call it before the network starts. Both must exist as long as the
   /// network calls the gateway, though their threads may have ended.
-  void serve(rooms::SimulationThread& rooms, rooms::EncoderThread& encoder);
+  void serve(rooms::RoomHost& rooms, rooms::EncoderThread& encoder);
   /// Makes the server part of a cluster; call it before the network starts. What the hooks point to outlives the rooms
   /// and the network.
   void join(const ClusterHooks& cluster);
@@ -78,15 +78,15 @@ class Gateway final : public net::Application, public rooms::RoomOutlets, public
 
  private:
   [[nodiscard]] net::Hub& hub() const { return sessions_.hub(); }
-  [[nodiscard]] rooms::SimulationThread& simulation() const { return *rooms_; }
+  [[nodiscard]] rooms::RoomHost& simulation() const { return *rooms_; }
   /// Returns the room of that name, here or in the cluster; null if it does not exist.
   [[nodiscard]] std::shared_ptr<Venue> find(const std::string& room);
   /// Sends a state message to all sessions of the room, in this process and in others.
   void tell(const rooms::Room& room, const net::StateTopic& topic, const core::SharedBytes& message);
 
-  rooms::SimulationThread* rooms_ = nullptr;  ///< set before any session exists
-  rooms::EncoderThread* encoder_ = nullptr;   ///< set before any session exists
-  ClusterHooks cluster_;                      ///< set before any session exists
+  rooms::RoomHost* rooms_ = nullptr;         ///< set before any session exists
+  rooms::EncoderThread* encoder_ = nullptr;  ///< set before any session exists
+  ClusterHooks cluster_;                     ///< set before any session exists
   CommandCounters counters_;
   AccessControl access_;
   Sessions sessions_;

@@ -9,7 +9,7 @@
 
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/access_control.h>
 #include <spindrift/v1/wire.pb.h>
 
@@ -50,7 +50,7 @@ std::string metricsText(const net::ServerStats& network, const CommandCounters& 
 std::string metric(const char* name, const char* type, const char* help, double value);
 
 /// Returns the whole page. Times in seconds, sizes in bytes; names of counters end in _total.
-std::string metricsText(const rooms::SimulationThread& rooms, const CommandCounters& commands,
-                        const AccessControl& access, const MetricsSources& sources);
+std::string metricsText(const rooms::RoomHost& rooms, const CommandCounters& commands, const AccessControl& access,
+                        const MetricsSources& sources);
 
 }  // namespace spindrift::service

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include <spindrift/net/server.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/access_control.h>
 #include <spindrift/service/cluster_hooks.h>
 #include <spindrift/service/ground_answers.h>
@@ -34,7 +34,7 @@ class RestApi {
           std::function<void(const rooms::Room&)> dismiss, std::function<void()> on_drain);
 
   /// Sets the rooms; call it before the network starts.
-  void serve(rooms::SimulationThread& rooms) { rooms_ = &rooms; }
+  void serve(rooms::RoomHost& rooms) { rooms_ = &rooms; }
   /// Makes the server part of a cluster; call it before the network starts.
   void join(const ClusterHooks& cluster) { cluster_ = cluster; }
   /// Sets what GET /api/v1/join answers; call it before the network starts.
@@ -96,7 +96,7 @@ class RestApi {
   const std::function<void(const rooms::Room&)> dismiss_;
   const std::function<void()> on_drain_;
   std::atomic<bool> is_draining_{false};
-  rooms::SimulationThread* rooms_ = nullptr;            ///< set before any request arrives
+  rooms::RoomHost* rooms_ = nullptr;                    ///< set before any request arrives
   ClusterHooks cluster_;                                ///< set before any request arrives
   std::function<std::vector<std::string>()> pad_urls_;  ///< set before any request arrives
   GroundAnswers ground_;

@@ -11,7 +11,7 @@
 #include <spindrift/gpu/device.h>
 #include <spindrift/net/server.h>
 #include <spindrift/rooms/encoder_thread.h>
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 #include <spindrift/service/gateway.h>
 
 namespace spindrift::service {
@@ -47,7 +47,7 @@ class WaterServer {
   [[nodiscard]] net::Server& network() { return *network_; }
   [[nodiscard]] std::uint16_t port() const { return network_->port(); }
   [[nodiscard]] Gateway& gateway() { return *gateway_; }
-  [[nodiscard]] rooms::SimulationThread& simulation() { return *simulation_; }
+  [[nodiscard]] rooms::RoomHost& simulation() { return *simulation_; }
   [[nodiscard]] net::ServerStats networkStats() const { return network_->stats(); }
   [[nodiscard]] const rooms::EncoderThread& encoder() const { return *encoder_; }
 
@@ -57,7 +57,7 @@ class WaterServer {
   MetricsSources sources_;
   std::unique_ptr<Gateway> gateway_;
   std::unique_ptr<rooms::EncoderThread> encoder_;
-  std::unique_ptr<rooms::SimulationThread> simulation_;
+  std::unique_ptr<rooms::RoomHost> simulation_;
   std::unique_ptr<net::Server> network_;
 };
 

@@ -7,7 +7,7 @@
 #include <fmt/ranges.h>
 #include <spdlog/spdlog.h>
 
-#include <spindrift/rooms/simulation_thread.h>
+#include <spindrift/rooms/room_host.h>
 
 namespace spindrift::rooms {
 namespace {
@@ -23,11 +23,10 @@ constexpr std::chrono::milliseconds kRestoringSlice{20};
 
 }  // namespace
 
-core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gpu::DeviceChoice& device,
-                                                                        std::vector<RoomSetup> setups, RoomRules rules,
-                                                                        std::size_t max_room_count,
-                                                                        RoomOutlets& outlets) {
-  auto self = std::unique_ptr<SimulationThread>(new SimulationThread(outlets));
+core::Result<std::unique_ptr<RoomHost>> RoomHost::start(const gpu::DeviceChoice& device, std::vector<RoomSetup> setups,
+                                                        RoomRules rules, std::size_t max_room_count,
+                                                        RoomOutlets& outlets) {
+  auto self = std::unique_ptr<RoomHost>(new RoomHost(outlets));
   self->rules_ = std::move(rules);
   self->max_room_count_ = max_room_count;
   self->builder_ =
@@ -50,11 +49,11 @@ core::Result<std::unique_ptr<SimulationThread>> SimulationThread::start(const gp
   return self;
 }
 
-SimulationThread::~SimulationThread() {
+RoomHost::~RoomHost() {
   stop();
 }
 
-core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
+core::Result<void> RoomHost::build(std::vector<RoomSetup> setups) {
   if (!setups.empty()) default_room_ = setups.front().name;
   std::set<std::string> names;
   for (RoomSetup& setup : setups) {
@@ -100,7 +99,7 @@ core::Result<void> SimulationThread::build(std::vector<RoomSetup> setups) {
   return outcome;
 }
 
-Error SimulationThread::tooManyRooms(const std::set<std::string>& names) const {
+Error RoomHost::tooManyRooms(const std::set<std::string>& names) const {
   return {ErrorCode::kInvalidInput,
           fmt::format("{} rooms would be opened ({}), but --max-rooms is {}: start with --max-rooms {}{}", names.size(),
                       fmt::join(names, ", "), max_room_count_, names.size(),
@@ -109,7 +108,7 @@ Error SimulationThread::tooManyRooms(const std::set<std::string>& names) const {
                                     : ", or name fewer with --room")};
 }
 
-void SimulationThread::run() {
+void RoomHost::run() {
   {
     const std::lock_guard lock(mutex_);
     running_ = true;
@@ -118,7 +117,7 @@ void SimulationThread::run() {
   wake_.notify_one();
 }
 
-void SimulationThread::wake() {
+void RoomHost::wake() {
   {
     const std::lock_guard lock(mutex_);
     is_woken_ = true;
@@ -128,7 +127,7 @@ void SimulationThread::wake() {
   for (const auto& thread : threads_) thread->wake();
 }
 
-void SimulationThread::stop() {
+void RoomHost::stop() {
   {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
@@ -138,26 +137,26 @@ void SimulationThread::stop() {
   builder_->end();
 }
 
-std::vector<std::shared_ptr<Room>> SimulationThread::rooms() const {
+std::vector<std::shared_ptr<Room>> RoomHost::rooms() const {
   const std::lock_guard lock(rooms_mutex_);
   std::vector<std::shared_ptr<Room>> out;
   for (const auto& thread : threads_) out.push_back(thread->room());
   return out;
 }
 
-std::shared_ptr<Room> SimulationThread::find(const std::string& name) const {
+std::shared_ptr<Room> RoomHost::find(const std::string& name) const {
   const std::lock_guard lock(rooms_mutex_);
   const auto it = std::ranges::find_if(
       threads_, [&](const auto& thread) { return name.empty() || thread->room()->name() == name; });
   return it == threads_.end() ? nullptr : (*it)->room();
 }
 
-std::string SimulationThread::deviceLine() const {
+std::string RoomHost::deviceLine() const {
   const std::lock_guard lock(rooms_mutex_);
   return device_line_;
 }
 
-double SimulationThread::sinceLastRound_s() const {
+double RoomHost::sinceLastRound_s() const {
   double since_s = 0.0;
   {
     const std::lock_guard lock(mutex_);
@@ -168,14 +167,14 @@ double SimulationThread::sinceLastRound_s() const {
   return since_s;
 }
 
-double SimulationThread::busyShare() const {
+double RoomHost::busyShare() const {
   double sum = 0.0;
   const std::lock_guard lock(rooms_mutex_);
   for (const auto& thread : threads_) sum += thread->busyShare();
   return sum / std::max(1u, std::thread::hardware_concurrency());
 }
 
-ServerLoad SimulationThread::loadOf(const RoomThread& thread) const {
+ServerLoad RoomHost::loadOf(const RoomThread& thread) const {
   ServerLoad load{.busy_share = std::max(thread.busyShare(), busyShare())};
   for (const auto& room : rooms()) load.people_count += room->roster().presentCount();
   return load;
@@ -183,16 +182,16 @@ ServerLoad SimulationThread::loadOf(const RoomThread& thread) const {
 
 // Opening and closing
 
-void SimulationThread::openRoom(RoomSetup setup, const Done& done) {
+void RoomHost::openRoom(RoomSetup setup, const Done& done) {
   auto shared = std::make_shared<RoomSetup>(std::move(setup));
   carryOut({[this, shared, done] { open(std::move(*shared), done); }, done});
 }
 
-void SimulationThread::closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
+void RoomHost::closeRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
   carryOut({[this, name = std::move(name), before = std::move(before), done] { done(close(name, before)); }, done});
 }
 
-void SimulationThread::giveUpRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
+void RoomHost::giveUpRoom(std::string name, std::function<void(const Room&)> before, const Done& done) {
   carryOut({[this, name = std::move(name), before = std::move(before), done] {
               if (const auto room = find(name)) end(room, before);
               done({});
@@ -200,7 +199,7 @@ void SimulationThread::giveUpRoom(std::string name, std::function<void(const Roo
             done});
 }
 
-void SimulationThread::carryOut(Change change) {
+void RoomHost::carryOut(Change change) {
   {
     const std::lock_guard lock(mutex_);
     if (!stopping_ && changes_.size() < kChangeMaxCount) {
@@ -212,7 +211,7 @@ void SimulationThread::carryOut(Change change) {
   change.done(core::unavailable("too many rooms are being opened or closed: try again"));
 }
 
-void SimulationThread::open(RoomSetup setup, Done done) {
+void RoomHost::open(RoomSetup setup, Done done) {
   if (rooms().size() + openings_.size() >= max_room_count_) {
     return done(
         core::unavailable(fmt::format("the limit of {} rooms is reached: close one, or start the server with more "
@@ -229,7 +228,7 @@ void SimulationThread::open(RoomSetup setup, Done done) {
   openings_.back().done = std::move(done);
 }
 
-void SimulationThread::advanceOpenings() {
+void RoomHost::advanceOpenings() {
   for (auto opening = openings_.begin(); opening != openings_.end();) {
     const auto is_open = advance(*opening);
     if (is_open && !*is_open) {
@@ -248,13 +247,13 @@ void SimulationThread::advanceOpenings() {
   }
 }
 
-core::Result<bool> SimulationThread::advance(RoomOpener::Opening& opening) {
+core::Result<bool> RoomHost::advance(RoomOpener::Opening& opening) {
   const auto now = Clock::now();
   auto restored = opener_->restore(opening, now + kRestoringSlice);
   return restored && *restored ? opening.room->isOnDisk(now) : restored;
 }
 
-void SimulationThread::add(std::shared_ptr<Room> room) {
+void RoomHost::add(std::shared_ptr<Room> room) {
   room->unbind();
   auto thread = std::make_unique<RoomThread>(room);
   room->loadFrom([this, own = thread.get()] { return loadOf(*own); });
@@ -263,7 +262,7 @@ void SimulationThread::add(std::shared_ptr<Room> room) {
   threads_.push_back(std::move(thread));
 }
 
-core::Result<void> SimulationThread::close(const std::string& name, const std::function<void(const Room&)>& before) {
+core::Result<void> RoomHost::close(const std::string& name, const std::function<void(const Room&)>& before) {
   const auto room = find(name);
   if (!room) return core::invalid("there is no room '" + name + "'");
   if (name == default_room_) {
@@ -273,7 +272,7 @@ core::Result<void> SimulationThread::close(const std::string& name, const std::f
   return rules_.states ? rules_.states->remove(name) : core::Result<void>{};
 }
 
-void SimulationThread::end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before) {
+void RoomHost::end(const std::shared_ptr<Room>& room, const std::function<void(const Room&)>& before) {
   std::unique_ptr<RoomThread> thread;
   {
     const std::lock_guard lock(rooms_mutex_);
@@ -289,7 +288,7 @@ void SimulationThread::end(const std::shared_ptr<Room>& room, const std::functio
   room->releaseDevice();
 }
 
-void SimulationThread::loop() {
+void RoomHost::loop() {
   std::unique_lock lock(mutex_);
   wake_.wait(lock, [&] { return stopping_ || running_; });
   const auto startThreads = [this] {

@@ -48,16 +48,16 @@ class ClockWatch {
   std::optional<Seconds> offset_;
 };
 
-class SimulationThread {
+class RoomHost {
  public:
   /// Makes the rooms and waits for them, with RoomRules::states also those that were kept on disk. They call `outlets`
   /// only after run(). Errors: those of the device and the rooms; kInvalidInput for more rooms than `max_room_count`.
-  static core::Result<std::unique_ptr<SimulationThread>> start(const gpu::DeviceChoice& device,
-                                                               std::vector<RoomSetup> setups, RoomRules rules,
-                                                               std::size_t max_room_count, RoomOutlets& outlets);
-  ~SimulationThread();
-  SimulationThread(const SimulationThread&) = delete;
-  SimulationThread& operator=(const SimulationThread&) = delete;
+  static core::Result<std::unique_ptr<RoomHost>> start(const gpu::DeviceChoice& device, std::vector<RoomSetup> setups,
+                                                       RoomRules rules, std::size_t max_room_count,
+                                                       RoomOutlets& outlets);
+  ~RoomHost();
+  RoomHost(const RoomHost&) = delete;
+  RoomHost& operator=(const RoomHost&) = delete;
 
   /// Starts simulated time; `outlets` must live until stop().
   void run();
@@ -107,7 +107,7 @@ class SimulationThread {
     Done done;
   };
 
-  explicit SimulationThread(RoomOutlets& outlets) : outlets_(outlets) {}
+  explicit RoomHost(RoomOutlets& outlets) : outlets_(outlets) {}
   core::Result<void> build(std::vector<RoomSetup> setups);
   [[nodiscard]] core::Error tooManyRooms(const std::set<std::string>& names) const;
   void loop();
