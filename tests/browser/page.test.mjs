@@ -158,6 +158,8 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
     const clicked = await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
     assert.equal(clicked.view, "start");
+    // The dent is a few pixels wide at first.
+    await waitFor(page, "the ring to spread", (stats) => stats.simTime > clicked.simTime + 0.3);
     await newestIsDrawn(page);
     const picture = await measure(page, before_click, await shootWater(page));
     // A picture of this run for the report.
