@@ -5,16 +5,22 @@ import type { Frame, GroundAnswer, PageEvent, PageEventHandlers, PageWishes, Ses
 import type { RoomWish } from "../../client/rest/rooms";
 import { roomOf } from "./room_address";
 
-let worker: Worker | undefined;
+let prepared: Worker | undefined;
 
 /** Starts the worker, so that it is loaded while the page makes its WebGL context: in software that takes as long. */
-export function prepareWorker(): Worker {
-  return (worker ??= new Worker(new URL("./worker.ts", import.meta.url), { type: "module" }));
+export function prepareWorker(): void {
+  prepared ??= newWorker();
 }
 
-/** The page calls it once. */
+function newWorker(): Worker {
+  return new Worker(new URL("./worker.ts", import.meta.url), { type: "module" });
+}
+
+/** Each client has a worker of its own: the front page has one per room. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
-  return new WaterClient(prepareWorker(), handlers);
+  const worker = prepared ?? newWorker();
+  prepared = undefined;
+  return new WaterClient(worker, handlers);
 }
 
 export class WaterClient {
