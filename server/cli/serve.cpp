@@ -129,7 +129,7 @@ void leaveBuilds(service::WaterServer& server) {
 }
 
 int serve(ServeOptions options) {
-  gpu::prepareSoftwareDisplays(std::thread::hardware_concurrency());
+  gpu::chooseRasterThreads(std::thread::hardware_concurrency());
   StopSignals signals;
   auto inherited = takeInheritedSocket();
   if (!inherited) return fail(inherited.error());

@@ -62,7 +62,7 @@ struct ServeOptions : FrontOptions {
   double grace_s = 20.0;      ///< how long the boat of a lost connection is kept
   std::string record_folder;  ///< folder for the logs of the rooms; empty: no logs
   std::uint32_t hash_interval_ticks = 60;
-  std::string recordings_folder;  ///< for recordings that operators ask for; empty: there are none
+  std::string recordings_folder;  ///< for recordings that operators ask for; empty: recordings are refused
   std::uint64_t recordings_max_mib = 16'384;
   std::string state_folder;  ///< folder in which the rooms are kept; empty: nowhere
   double snapshot_interval_s = 10.0;

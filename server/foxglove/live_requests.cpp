@@ -28,7 +28,7 @@ std::optional<std::string> textIn(const json::object& object, std::string_view n
   return std::string(value->get_string());
 }
 
-/// Returns the array of this name, empty if there is none.
+/// Returns the array of this name, or an empty one.
 const json::array& listIn(const json::object& object, std::string_view name) {
   static const json::array none;
   const json::value* const value = object.if_contains(name);

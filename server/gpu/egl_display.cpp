@@ -48,8 +48,11 @@ std::string eglErrorText() {
   return "EGL error " + std::to_string(code);
 }
 
-/// Displays of the software rasteriser: the device's and the surfaceless platform's, twice each. Mesa carries out one
-/// dispatch at a time per display where the rasteriser computes on the calling thread.
+/// Of Mesa: threads of its software rasteriser. 0: it computes on the calling thread.
+constexpr const char* kRasterThreads = "LP_NUM_THREADS";
+
+/// Displays of the software rasteriser: the device's and the surfaceless platform's, twice each. Where it computes on
+/// the calling thread, Mesa carries out one dispatch at a time per display.
 constexpr int kLaneCount = 4;
 /// Contexts that exist in each.
 std::array<std::atomic<int>, kLaneCount> lane_context_counts{};
@@ -151,17 +154,25 @@ std::string olderVersion(EGLDisplay display) {
   return out;
 }
 
-/// Returns the software candidates once per display that they lead to, those with the fewest contexts first.
+/// Returns whether contexts on several threads compute at the same time only if they have displays of their own.
+bool computesOnCaller() {
+  const char* const count = std::getenv(kRasterThreads);
+  return count && std::string_view(count) == "0";
+}
+
+/// Returns the software candidates once per display that they lead to, those with the fewest contexts first. Where the
+/// rasteriser has threads, all contexts share the first display and its threads.
 std::vector<Candidate> lanesOf(const std::vector<Candidate>& software) {
   std::vector<std::pair<int, Candidate>> lanes;
   for (const int first_lane : {0, kEmptyListLane}) {
+    if (first_lane > 0 && !computesOnCaller()) break;
     for (int k = 0; k < std::min<int>(kEmptyListLane, static_cast<int>(software.size())); ++k) {
       Candidate candidate = software[static_cast<std::size_t>(k)];
       candidate.lane = first_lane + k;
       lanes.emplace_back(lane_context_counts[static_cast<std::size_t>(candidate.lane)], candidate);
     }
   }
-  std::ranges::stable_sort(lanes, {}, &std::pair<int, Candidate>::first);
+  if (computesOnCaller()) std::ranges::stable_sort(lanes, {}, &std::pair<int, Candidate>::first);
   std::vector<Candidate> out;
   for (auto& [count, candidate] : lanes) out.push_back(std::move(candidate));
   return out;
@@ -282,15 +293,8 @@ CurrentGuard::~CurrentGuard() {
 
 namespace spindrift::gpu {
 
-void prepareSoftwareDisplays(unsigned processor_count) {
-  constexpr const char* kThreadCount = "LP_NUM_THREADS";  // Mesa reads it when it initialises a display
-  if (std::getenv(kThreadCount)) return;
-  if (processor_count > 2) {
-    for (const egl::Candidate& candidate : egl::candidates()) {
-      if (candidate.lane == 0) (void)eglInitialize(egl::displayOf(candidate), nullptr, nullptr);
-    }
-  }
-  ::setenv(kThreadCount, "0", 0);
+void chooseRasterThreads(unsigned processor_count) {
+  if (processor_count <= 2) ::setenv(egl::kRasterThreads, "0", 0);
 }
 
 }  // namespace spindrift::gpu

@@ -30,7 +30,7 @@ class SessionPlace {
   [[nodiscard]] bool isFree() const { return is_free_; }
   /// Returns whether it is also below the address's limit.
   [[nodiscard]] bool isInShare() const { return is_in_share_; }
-  /// Takes a place among the sessions at /foxglove as well; call it once. False: there is none.
+  /// Takes a place among the sessions at /foxglove as well; call it once. Returns whether one was free.
   [[nodiscard]] bool takeFoxglove() {
     is_at_foxglove_ = ++context_.foxglove_session_count <= context_.options.foxglove_session_max_count;
     if (!is_at_foxglove_) --context_.foxglove_session_count;

@@ -229,7 +229,7 @@ class Runner {
     }
   }
 
-  /// Sends a command. Returns its answer; null with the reason in `why` if there is none.
+  /// Sends a command. Returns its answer, or null with the reason in `why`.
   const v1::ServerMessage* ask(ScriptClient& client, v1::Command command, double within_s, Outcome& why) {
     const std::uint64_t id = client.command(std::move(command));
     const Outcome answered = await(

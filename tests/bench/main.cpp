@@ -89,7 +89,7 @@ int benchQueries(const BenchOptions& options, const gpu::DeviceChoice& device, c
 }
 
 int benchRooms(const BenchOptions& options, const gpu::DeviceChoice& device) {
-  gpu::prepareSoftwareDisplays(std::thread::hardware_concurrency());
+  gpu::chooseRasterThreads(std::thread::hardware_concurrency());
   auto result = bench::measureRooms(device, options.seconds, options.json_file == "-" ? stderr : stdout);
   if (!result) return fail(result.error());
   if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());

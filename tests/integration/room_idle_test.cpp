@@ -3,6 +3,8 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <thread>
 #include <vector>
 
@@ -26,7 +28,14 @@ constexpr const char* kStillPool = "wave { resolution_count: 32 side_m: 8 depth_
 struct CountingOutlets final : SilentOutlets {
   std::atomic<int> answer_count{0};
 
-  void commandApplied(const rooms::Command&, const v1::Ack&) override { ++answer_count; }
+  std::mutex mutex;
+  std::set<std::thread::id> threads;  ///< that answered
+
+  void commandApplied(const rooms::Command&, const v1::Ack&) override {
+    const std::lock_guard lock(mutex);
+    threads.insert(std::this_thread::get_id());
+    ++answer_count;
+  }
   void commandRejected(const rooms::Command&, const wire::CommandRejection&) override { ++answer_count; }
 };
 
@@ -105,6 +114,14 @@ TEST_F(IdleRooms, AnswerCommandsWithoutWaitingForTheirNextTurn) {
   const auto begin = std::chrono::steady_clock::now();
   for (int k = 0; k < 20; ++k) ASSERT_NO_FATAL_FAILURE(send(*simulation_->rooms()[1], splash()));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 8s);
+}
+
+TEST_F(IdleRooms, EachRunOnAThreadOfItsOwn) {
+  for (int turn = 0; turn < 2; ++turn) {
+    for (const auto& room : simulation_->rooms()) ASSERT_NO_FATAL_FAILURE(send(*room, splash()));
+  }
+  const std::lock_guard lock(outlets_.mutex);
+  EXPECT_EQ(outlets_.threads.size(), std::size_t{kRoomCount});
 }
 
 TEST_F(IdleRooms, WakeUpWhenASessionComes) {

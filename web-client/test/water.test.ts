@@ -87,7 +87,7 @@ describe("a query", () => {
     expect(await failure(flat)).toBeInstanceOf(ConnectionLost);
   });
 
-  it("is rejected by the server, without an answer, and for points that are none", async () => {
+  it("is rejected by the server, without an answer, and for anything but points", async () => {
     const room = await Room.live(0.05);
     const bad = room.water.query([[NaN, 0]]);
     const { commandId } = room.sent("query");

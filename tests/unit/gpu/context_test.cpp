@@ -1,6 +1,12 @@
 #include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <set>
+#include <string_view>
 #include <thread>
+#include <vector>
 
+#include <EGL/egl.h>
 #include <glad/gl.h>
 #include <gmock/gmock.h>
 
@@ -45,6 +51,21 @@ TEST_F(ContextTest, SoftwareMeansARendererWithoutHardware) {
   if (!software) GTEST_SKIP() << software.error().message;
   EXPECT_TRUE((*software)->device().is_software);
   EXPECT_EQ((*software)->device().index, -1);
+}
+
+TEST_F(ContextTest, SoftwareContextsComputeSideBySide) {
+  const char* const threads = std::getenv("LP_NUM_THREADS");
+  if (!threads || std::string_view(threads) != "0") GTEST_SKIP() << "needs LP_NUM_THREADS=0";
+  // Mesa carries out one dispatch at a time per display.
+  std::vector<std::unique_ptr<Context>> contexts;
+  std::set<EGLDisplay> displays;
+  for (int k = 0; k < 4; ++k) {
+    auto context = Context::create({DeviceChoice::Kind::kSoftware, 0});
+    ASSERT_TRUE(context) << context.error().message;
+    contexts.push_back(*std::move(context));
+    displays.insert(eglGetCurrentDisplay());
+  }
+  EXPECT_EQ(displays.size(), contexts.size());
 }
 
 TEST_F(ContextTest, SecondContextDoesNotDamageTheFirst) {

@@ -32,7 +32,7 @@ export interface ConnectOptions {
 }
 
 /** Connects with a room. `url`: "host:port", the address of the page (with its room and token), or a ws address. Rejects with Refused,
- *  ConnectionLost, or TypeError for an address that is none. */
+ *  ConnectionLost, or TypeError for an invalid address. */
 export async function connect(url: string | URL, options: ConnectOptions = {}): Promise<Water> {
   const { room, name = "", resumeKey = "", client = `spindrift-javascript ${__PROGRAM_VERSION__}`, patienceS = 10, answerWithinS = 10 } = options;
   const Socket = options.WebSocket ?? globalThis.WebSocket;

@@ -110,10 +110,10 @@ export class Queries {
   }
 }
 
-/** Throws a TypeError for what are no pairs, and a RangeError for counts that do not fit. */
+/** Throws a TypeError for anything but pairs, and a RangeError for counts that do not fit. */
 function fieldsOf(points: Pairs, velocities?: Pairs): { xM: number[]; zM: number[]; velocityXMps?: number[]; velocityZMps?: number[] } {
   const [xM, zM] = columnsOf(points, "points");
-  if (xM.length === 0) throw new RangeError("points: there is none");
+  if (xM.length === 0) throw new RangeError("points: the list is empty, give at least one [x, z]");
   if (!velocities) return { xM, zM };
   const [velocityXMps, velocityZMps] = columnsOf(velocities, "velocities");
   if (velocityXMps.length !== 1 && velocityXMps.length !== xM.length) throw new RangeError(`velocities: ${velocityXMps.length} pairs for ${xM.length} points; expected 1 or ${xM.length}`);

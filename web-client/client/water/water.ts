@@ -225,7 +225,7 @@ export class Water {
   }
 
   /** The water at points now, at most 1,024 of all queries that wait or stream. Points outside of the water are marked. Rejects as commands do,
-   *  and with TypeError and RangeError for points that are none. */
+   *  and with TypeError and RangeError for anything but points. */
   async query(points: Pairs): Promise<Answer> {
     return this.queries.once(points, this.settings.answerWithinS);
   }

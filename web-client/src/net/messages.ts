@@ -36,7 +36,7 @@ export type PageEvent =
   /** `supersededCount`: frames dropped for newer ones because the page was busy. */
   | { kind: "stats"; stats: LinkStats; supersededCount: number };
 
-/** What the worker says to a request for the ground: the ground, or why there is none, for people. */
+/** What the worker says to a request for the ground: the ground, or the reason why it cannot be had, for people. */
 export type GroundAnswer = { kind: "ground"; requestId: number } & ({ ground: GroundGrid } | { why: string });
 
 /** One handler per event; a missing one does not compile. */

@@ -32,10 +32,10 @@ struct DeviceChoice {
 /// or without "GPU-". Error kInvalidInput otherwise.
 core::Result<DeviceChoice> parseDeviceChoice(std::string_view text);
 
-/// For a program whose contexts work side by side on threads of their own; call it before the first thread starts. The
-/// software rasteriser then computes on the thread of each context, and keeps threads for all processors only for the
-/// first one, where there are more than two. Does nothing where LP_NUM_THREADS is set; hardware is not affected.
-void prepareSoftwareDisplays(unsigned processor_count);
+/// For a program whose contexts work side by side on threads of their own; call it before the first thread starts. On
+/// up to two processors the software rasteriser then computes on the thread of each context; on more it keeps its
+/// threads for all processors. LP_NUM_THREADS in the environment overrides it; hardware is not affected.
+void chooseRasterThreads(unsigned processor_count);
 
 /// Limits of a device's context; all zero for a device that does not work.
 struct DeviceLimits {

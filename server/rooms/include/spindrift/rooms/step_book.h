@@ -31,11 +31,8 @@ class StepBook {
   }
   /// Ends those for which `holds` returns true. `why`: one line for their senders.
   void endIf(const std::string& why, const std::function<bool(const core::Sender&)>& holds) {
-    std::erase_if(waiting_, [&](Waiting& one) {
-      if (!holds(one.command.sender)) return false;
-      ended_.push_back({std::move(one.command), why});
-      return true;
-    });
+    for (Command& command : take([&](const Waiting& one) { return holds(one.command.sender); }))
+      ended_.push_back({std::move(command), why});
   }
   void endAll(const std::string& why) {
     endIf(why, [](const core::Sender&) { return true; });
@@ -43,13 +40,7 @@ class StepBook {
 
   /// Takes those whose ticks are done, oldest first.
   [[nodiscard]] std::vector<Command> takeDone() {
-    std::vector<Command> out;
-    std::erase_if(waiting_, [&](Waiting& one) {
-      if (one.ticks_to_come > 0) return false;
-      out.push_back(std::move(one.command));
-      return true;
-    });
-    return out;
+    return take([](const Waiting& one) { return one.ticks_to_come == 0; });
   }
   struct Ended {
     Command command;
@@ -62,6 +53,14 @@ class StepBook {
     Command command;
     std::uint32_t ticks_to_come = 0;
   };
+  std::vector<Command> take(const std::function<bool(const Waiting&)>& is_taken) {
+    const auto taken =
+        std::stable_partition(waiting_.begin(), waiting_.end(), [&](const Waiting& one) { return !is_taken(one); });
+    std::vector<Command> out;
+    for (auto one = taken; one != waiting_.end(); ++one) out.push_back(std::move(one->command));
+    waiting_.erase(taken, waiting_.end());
+    return out;
+  }
 
   std::vector<Waiting> waiting_;  ///< oldest first
   std::vector<Ended> ended_;      ///< of which nobody was told
