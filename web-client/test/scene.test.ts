@@ -47,6 +47,16 @@ describe("a click on the water", () => {
     expect(pickWater({ originM: [0, 5, 0], direction: [0, 0.6, 0.8] }, flat)).toBeUndefined();
     expect(pickWater({ originM: [0, -5, 0], direction: [0, -1, 0] }, flat)).toBeUndefined();
   });
+
+  it("picks the water behind a pane of a tank, not above its surface, below its floor or beside it", () => {
+    const tank: WaterShape = { sideM: 2, widthM: 1, minM: 0, maxM: 0, glassFromM: -0.5, elevationAtM: () => 0 };
+    const ahead = (xM: number, yM: number): ReturnType<typeof pickWater> => pickWater({ originM: [xM, yM, 3], direction: [0, 0, -1] }, tank);
+    expect(ahead(0.4, -0.2)).toEqual({ xM: 0.4, zM: 0.5 });
+    expect([ahead(0.4, 0.1), ahead(0.4, -0.6), ahead(1.1, -0.2)]).toEqual([undefined, undefined, undefined]);
+    expect(pickWater({ originM: [3, -1, 0], direction: [-0.96, 0.28, 0] }, tank)).toEqual({ xM: 1, zM: 0 });
+    expect(pickWater({ originM: [0.4, -0.2, 3], direction: [0, 0, 1] }, tank)).toBeUndefined();
+    expect(pickWater({ originM: [0.4, -0.2, 3], direction: [0, 0, -1] }, { ...tank, glassFromM: undefined })).toBeUndefined();
+  });
 });
 
 describe("the CPU's view of the surface", () => {

@@ -243,8 +243,15 @@ export class WaterScene {
     if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * Math.sqrt(sideM * widthM) };
     const frame = this.frames.particles.newest();
     if (!frame) return undefined;
-    const floorM = frame.minM[1] - frame.radiusM;
-    return { ...view, sideM, widthM, minYM: floorM, maxYM: firstView ? floorM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
+    const minYM = this.floorM()!;
+    return { ...view, sideM, widthM, minYM, maxYM: firstView ? minYM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
+  }
+
+  /** Returns the level of the floor: that of the wave, or below the lowest of the newest particles. */
+  private floorM(): number | undefined {
+    const wave = this.greeting?.wave;
+    const frame = this.frames.particles.newest();
+    return wave ? -wave.depthM : frame && frame.minM[1] - frame.radiusM;
   }
 
   /** Returns the water into which the camera may dive; undefined: none is deep enough. */
@@ -269,15 +276,19 @@ export class WaterScene {
     return frame ? elevationAtM(frame, xM, zM) : 0;
   };
 
-  /** Returns the surface for picking: the newest elevations, or flat water before the first frame. */
+  /** Returns the surface for picking: the newest elevations, or flat water where no frame has any. */
   shape(): WaterShape | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, widthM } = this.greeting;
+    const { sideM, widthM, setting, wave, waterExtents } = this.greeting;
+    const floorM = this.floorM();
+    const hasPanes = setting === "glassTank" || setting === "flume";
+    const sides = { sideM, widthM, glassFromM: hasPanes ? floorM : undefined };
     const frame = this.newestSurface();
-    if (!frame) return { sideM, widthM, minM: 0, maxM: 0, elevationAtM: () => 0 };
+    const restingM = wave || floorM === undefined ? 0 : floorM + waterExtents.depthM;
+    if (!frame) return { ...sides, minM: restingM, maxM: restingM, elevationAtM: () => restingM };
     // A finger asks many times per frame.
     if (this.ranged?.frame !== frame) this.ranged = { frame, range: elevationRangeM(frame) };
-    return { sideM, widthM, ...this.ranged.range, elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
+    return { ...sides, ...this.ranged.range, elevationAtM: (xM, zM) => elevationAtM(frame, xM, zM) };
   }
 
   /** Follows a parameter of the room, by its path in the scene. */
