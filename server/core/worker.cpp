@@ -33,7 +33,7 @@ void Worker::push(Work work) {
 }
 
 void Worker::loop() {
-  bool is_calm = niceness_ == 0;
+  int niceness = 0;
   std::unique_lock lock(mutex_);
   while (true) {
     wake_.wait(lock, [this] { return stopping_ || !work_.empty(); });
@@ -42,12 +42,13 @@ void Worker::loop() {
     work_.pop_front();
     const bool runs = !is_ending_;
     lock.unlock();
+    // On Linux this sets the priority of this thread alone.
+    if (const int wanted = niceness_; std::exchange(niceness, wanted) != wanted)
+      (void)setpriority(PRIO_PROCESS, 0, wanted);
     work(runs);
     work = nullptr;
     --unfinished_count_;
     if (done_) done_();
-    // On Linux this sets the priority of this thread alone. A failure is ignored.
-    if (!std::exchange(is_calm, true)) (void)setpriority(PRIO_PROCESS, 0, niceness_);
     lock.lock();
   }
 }

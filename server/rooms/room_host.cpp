@@ -255,6 +255,7 @@ core::Result<bool> RoomHost::advance(RoomOpener::Opening& opening) {
 
 void RoomHost::add(std::shared_ptr<Room> room) {
   room->unbind();
+  builder_->yieldToRooms();
   auto thread = std::make_unique<RoomThread>(room);
   room->loadFrom([this, own = thread.get()] { return loadOf(*own); });
   const std::lock_guard lock(rooms_mutex_);

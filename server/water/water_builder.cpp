@@ -15,7 +15,7 @@ core::Error shutDown() {
 }  // namespace
 
 WaterBuilder::WaterBuilder(gpu::DeviceChoice device, SceneCatalog scenes, const std::function<void()>& done)
-    : device_(std::move(device)), scenes_(std::move(scenes)), builds_(kBuildNiceness, done), changes_(0, done) {}
+    : device_(std::move(device)), scenes_(std::move(scenes)), builds_(0, done), changes_(0, done) {}
 
 std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
   auto promise = std::make_shared<std::promise<Built>>();
@@ -32,6 +32,10 @@ std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
     promise->set_value(std::move(built));
   });
   return future;
+}
+
+void WaterBuilder::yieldToRooms() {
+  builds_.setNiceness(kBuildNiceness);
 }
 
 std::future<WaterBuilder::Prepared> WaterBuilder::prepare(core::Scene scene, sim::SceneBasis basis) {

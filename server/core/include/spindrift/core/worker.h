@@ -14,9 +14,7 @@ namespace spindrift::core {
 /// Runs work in order of arrival. The callers bound the queue.
 class Worker {
  public:
-  /// `niceness`: 0 for normal priority, up to 19 for the lowest. It holds after the first piece of work: threads
-  /// inherit the priority of the one that starts them, and the first water starts those of a software rasteriser, which
-  /// compute every tick of all rooms. `done` is called on the worker's thread after each
+  /// `niceness`: 0 for normal priority, up to 19 for the lowest. `done` is called on the worker's thread after each
   /// piece of work.
   explicit Worker(int niceness, std::function<void()> done = {});
   /// Ends the thread after the current work; waiting pieces are called with runs = false.
@@ -27,6 +25,9 @@ class Worker {
   using Work = std::function<void(bool runs)>;
   /// Any thread.
   void push(Work work);
+  /// Any thread. Changes the priority of the pieces of work that have not begun. Threads that they start inherit it.
+  /// Only a privileged process can raise it again; where it cannot be changed, it stays.
+  void setNiceness(int niceness) { niceness_ = niceness; }
   /// Any thread. From now on waiting and new pieces are called with runs = false; the current one continues.
   void end();
   /// Any thread. Returns whether no work waits or runs.
@@ -35,7 +36,7 @@ class Worker {
  private:
   void loop();
 
-  const int niceness_;
+  std::atomic<int> niceness_;
   const std::function<void()> done_;
   std::mutex mutex_;
   std::condition_variable wake_;

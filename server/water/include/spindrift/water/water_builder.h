@@ -32,9 +32,12 @@ class WaterBuilder {
   WaterBuilder(const WaterBuilder&) = delete;
   WaterBuilder& operator=(const WaterBuilder&) = delete;
 
-  /// Any thread. Builds at a lower priority than the simulation. The water is returned released: the caller binds it.
+  /// Any thread. The water is returned released: the caller binds it.
   /// Errors: those of Water::create(); kUnavailable when the builder ends.
   std::future<Built> build(v1::Scene scene);
+  /// Any thread. From now on builds at a lower priority than the simulation. To be called when a room runs, and not
+  /// before its water is built: that starts the threads of a software rasteriser, which compute the ticks of all rooms.
+  void yieldToRooms();
   /// Any thread. Runs sim::prepareScene() on a separate thread and not behind builds, because a room's ticks wait for
   /// it. Errors: those of prepareScene(); kUnavailable when the builder ends.
   std::future<Prepared> prepare(core::Scene scene, sim::SceneBasis basis);
