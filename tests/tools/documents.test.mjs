@@ -29,7 +29,11 @@ describe("the documents", () => {
       return result.stdout;
     };
     const optionsOf = (usage) => [...usage.matchAll(/^ {2}(?:-\w,)?(--[a-z-]+)/gm)].map((match) => match[1]).filter((name) => name !== "--help");
-    const rowsOf = (section) => [...section.matchAll(/^\| `(--[a-z-]+)/gm)].map((match) => match[1]).filter((name) => name !== "--help");
+    // A row for each option, and for the edge one for all those of `serve`.
+    const rowsOf = (section) =>
+      [...section.matchAll(/^\| `(--[a-z-]+)|^\| as for `serve` .*/gm)]
+        .flatMap(([row, name]) => (name !== undefined ? [name] : [...row.matchAll(/`(--[a-z-]+)`/g)].map((match) => match[1])))
+        .filter((name) => name !== "--help");
     const overview = help([]);
     const commands = [...overview.slice(overview.indexOf("Subcommands:")).matchAll(/^ {2}(\w+) /gm)].map((match) => match[1]);
     const sections = new Map(text.split(/^### `spindrift /m).slice(1).map((section) => [section.match(/^\w+/)[0], section.split(/^## /m)[0]]));

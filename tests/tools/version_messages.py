@@ -115,12 +115,16 @@ def messages(minor, filler):
 
 
 def main():
-    print("# Messages of every minor version of the wire: version, side that sends it, kind, bytes. Made by tests/tools/version_messages.py.")
+    print("# Messages of every minor version of the wire: version, side that sends it, kind, bytes; a version has the messages that are new or that differ")
+    print("# from the version before. Made by tests/tools/version_messages.py.")
+    said = {}
     for argument in sys.argv[1:]:
         version, commit = argument.split("=")
         with tempfile.TemporaryDirectory() as folder:
             for side, kind, data in messages(int(version.split(".")[1]), Filler(commit, folder)):
-                print(version, side, kind, data.hex())
+                if said.get((side, kind)) != data:
+                    print(version, side, kind, data.hex())
+                said[side, kind] = data
 
 
 if __name__ == "__main__":

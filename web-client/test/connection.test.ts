@@ -8,13 +8,6 @@ import { socketUrl } from "../src/net/water_client";
 import { Rig } from "./fakes";
 import { encode, foamFrame, greeting, surfaceFrame } from "./wire";
 
-function liveRig(): Rig {
-  const rig = new Rig();
-  rig.socket.open();
-  rig.socket.deliver(greeting());
-  return rig;
-}
-
 /** The reject that the connection makes itself. */
 function notDone(commandId: bigint, reason: LocalReason, why: string) {
   return { commandId, reason, field: "", message: expect.stringContaining(why) };
@@ -55,7 +48,7 @@ describe("the connection", () => {
   });
 
   it("forwards boats, room events and the id of a new boat", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const boat = { boatId: 3, lengthM: 2.4, beamM: 0.9, heightM: 0.6, draughtM: 0.24 };
     rig.socket.deliver({ case: "boatList", value: { boats: [boat] } });
     rig.socket.deliver({ case: "roomEvent", value: { kind: RoomEventKind.RECOVERED, tick: 4n, message: "the water was put back" } });
@@ -67,7 +60,7 @@ describe("the connection", () => {
   });
 
   it("counts the layers of one tick as one frame, in any order", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     for (let i = 0; i < 200; ++i) {
       rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { tick: BigInt(2 * i) }));
       if (i > 0) rig.socket.deliver(foamFrame(new Uint8Array(4), { tick: BigInt(2 * i - 2) }));
@@ -110,14 +103,12 @@ describe("the connection", () => {
   it("starts with the shortest wait again only after a connection of five seconds", () => {
     const rig = new Rig();
     for (let i = 0; i < 3; ++i) {
-      rig.socket.open();
-      rig.socket.deliver(greeting());
+      rig.greet();
       rig.time.advance(100);
       rig.socket.drop();
       if (rig.state.name === "retrying") rig.time.advance(rig.state.inS * 1000);
     }
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     rig.time.advance(5000);
     rig.socket.drop(1001, "the server ends");
     expect(rig.state).toEqual({ name: "retrying", inS: 0.5, why: "the server ends" });
@@ -134,7 +125,7 @@ describe("the connection", () => {
   });
 
   it("treats a silent server as lost", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.time.advance(9_000);
     rig.socket.deliver({ case: "pong", value: { clientTimeS: rig.time.nowMs / 1000, serverTimeS: 0 } });
     rig.time.advance(9_000);
@@ -152,7 +143,7 @@ describe("the connection", () => {
   });
 
   it("pings every two seconds after five early pings", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const sentAtMs: number[] = [];
     for (let i = 0; i < 24; ++i) {
       rig.time.advance(250);
@@ -163,7 +154,7 @@ describe("the connection", () => {
   });
 
   it("reports the shortest round trip of the last five", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     for (const roundTripMs of [12, 80, 33, 250, 90, 60]) {
       rig.time.advance(500);
       rig.socket.deliver({ case: "pong", value: { clientTimeS: (rig.time.nowMs - roundTripMs) / 1000, serverTimeS: 0 } });
@@ -173,7 +164,7 @@ describe("the connection", () => {
   });
 
   it("matches answers to commands and forwards each answer once", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.connection.command(1, splash);
     rig.connection.command(2, { case: "reset", value: {} });
     expect(rig.socket.sentOf("command").map(({ value }) => [value.commandId, value.action.case])).toEqual([[1n, "splash"], [2n, "reset"]]);
@@ -188,14 +179,12 @@ describe("the connection", () => {
     const rig = new Rig();
     rig.connection.command(1, splash);
     expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(1n, "NOT_SENT", "not connected"));
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     rig.connection.command(2, splash);
     rig.socket.drop();
     expect(rig.eventsOf("reject").at(-1)).toMatchObject(notDone(2n, "LOST", "lost"));
     rig.time.advance(500);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     rig.connection.command(3, splash);
     for (let i = 0; i < 22; ++i) {
       rig.time.advance(500);
@@ -205,7 +194,7 @@ describe("the connection", () => {
   });
 
   it("waits without a limit for commands that build water", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.connection.command(1, { case: "changeScene", value: { name: "harbor" } });
     rig.connection.command(2, { case: "setParameter", value: { path: "particles.count", value: 1e5 } });
     for (let i = 0; i < 240; ++i) {
@@ -220,7 +209,7 @@ describe("the connection", () => {
   });
 
   it("holds at most 64 unanswered commands, and sends none into a congested socket", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     for (let id = 1; id <= 65; ++id) rig.connection.command(id, splash);
     expect(rig.socket.sentOf("command")).toHaveLength(64);
     expect(rig.eventsOf("reject")).toMatchObject([notDone(65n, "NOT_SENT", "waiting")]);
@@ -231,7 +220,7 @@ describe("the connection", () => {
   });
 
   it("counts malformed messages and continues", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.socket.onmessage!({ data: "text" });
     rig.socket.onmessage!({ data: Uint8Array.of(0x12, 0xff).buffer });
     rig.socket.deliver(surfaceFrame([1, 2, 3, 4], { crc32c: 9 }));
@@ -243,7 +232,7 @@ describe("the connection", () => {
   });
 
   it("measures bytes and frames per second", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const bytesCount = encode(surfaceFrame(new Array<number>(400).fill(1))).byteLength;
     for (let i = 0; i < 200; ++i) {
       rig.socket.deliver(surfaceFrame(new Array<number>(400).fill(1), { tick: BigInt(i) }));
@@ -254,7 +243,7 @@ describe("the connection", () => {
   });
 
   it("subscribes to no frames while the page is hidden", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.page.want({ visible: false });
     expect(rig.socket.sentOf("subscribe").slice(3).map(({ value }) => [value.layer, value.maxRateHz])).toEqual([
       [Layer.SURFACE, 0], [Layer.PARTICLES, 0], [Layer.DIAGNOSTICS, 10],
@@ -264,7 +253,7 @@ describe("the connection", () => {
   });
 
   it("leaves no timer and no handler behind when stopped", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.connection.stop();
     expect(rig.time.timerCount).toBe(0);
     expect(rig.socket).toMatchObject({ closed: true, onmessage: null, onclose: null });

@@ -5,13 +5,6 @@ import { LoadGovernor } from "../src/net/load_governor";
 import { Rig } from "./fakes";
 import { greeting, surfaceFrame } from "./wire";
 
-function liveRig(): Rig {
-  const rig = new Rig();
-  rig.socket.open();
-  rig.socket.deliver(greeting());
-  return rig;
-}
-
 /** Level and `adapts` of the newest subscription to the surface. */
 function asked(rig: Rig): { level: Level; adapts: boolean } {
   const { level, adapts } = rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)!.value;
@@ -20,7 +13,7 @@ function asked(rig: Rig): { level: Level; adapts: boolean } {
 
 describe("the level of detail", () => {
   it("may be lowered by the server unless the user chose it", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     expect(asked(rig)).toEqual({ level: Level.FULL, adapts: true });
     rig.page.want({ detail: "medium" });
     expect(asked(rig)).toEqual({ level: Level.MEDIUM, adapts: false });
@@ -32,7 +25,7 @@ describe("the level of detail", () => {
   });
 
   it("is reported together with what limits it", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.time.advance(500);
     expect(rig.lastStats()).toMatchObject({ level: "full", levelLimitedBy: "none" });
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
@@ -44,7 +37,7 @@ describe("the level of detail", () => {
   });
 
   it("leaves the particles' packing to the page, also after a reconnection", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const ofParticles = (): Packing | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.PARTICLES).at(-1)?.value.packing;
     expect(ofParticles()).toBe(Packing.PACKED);
     rig.page.want({ exactParticles: true });
@@ -53,17 +46,14 @@ describe("the level of detail", () => {
     const { length } = rig.socket.sent;
     rig.page.want({ exactParticles: true });
     expect(rig.socket.sent).toHaveLength(length);
-    rig.socket.drop();
-    rig.time.advance(1000);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.reconnect();
     expect(ofParticles()).toBe(Packing.PLAIN);
     rig.page.want({ exactParticles: false });
     expect(ofParticles()).toBe(Packing.PACKED);
   });
 
   it("leaves the frame rate to the page, also after a reconnection, but not that of a hidden page", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const rateHz = (): number | undefined => rig.socket.sentOf("subscribe").filter(({ value }) => value.layer === Layer.SURFACE).at(-1)?.value.maxRateHz;
     const offeredHz = rateHz()!;
     expect(offeredHz).toBeGreaterThan(15);
@@ -72,10 +62,7 @@ describe("the level of detail", () => {
     const { length } = rig.socket.sent;
     rig.page.want({ frameRateHz: 15 });
     expect(rig.socket.sent).toHaveLength(length);
-    rig.socket.drop();
-    rig.time.advance(1000);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.reconnect();
     expect(rateHz()).toBe(15);
     rig.page.want({ visible: false });
     expect(rateHz()).toBe(0);
@@ -85,18 +72,15 @@ describe("the level of detail", () => {
   });
 
   it("is unlimited again after a reconnection", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.socket.deliver({ case: "levelChanged", value: { level: Level.COARSE } });
-    rig.socket.drop();
-    rig.time.advance(1000);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.reconnect();
     rig.time.advance(500);
     expect(rig.lastStats()).toMatchObject({ level: "full", levelLimitedBy: "none" });
   });
 
   it("becomes coarser when unpacking takes most of the time", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     // Each frame takes 40 ms to read, one comes every 50 ms.
     for (let k = 0; k < 60; ++k) {
       rig.slowReadMs = 40;
@@ -118,7 +102,7 @@ describe("the level of detail", () => {
   });
 
   it("is measured with frequent pings at first, then with one every two seconds", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     rig.time.advance(2500);
     const early = rig.socket.sentOf("ping").length;
     expect(early).toBeGreaterThanOrEqual(5);

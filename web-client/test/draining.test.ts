@@ -2,7 +2,7 @@ import { describe, expect, it } from "vitest";
 
 import { planMove } from "../client/session/move_plan";
 import { Rig } from "./fakes";
-import { greeting, type ServerBody } from "./wire";
+import { type ServerBody } from "./wire";
 
 const kSameServer = { closesInS: 1, goTo: "", reconnectAfterMinS: 2, reconnectAfterMaxS: 4 };
 
@@ -13,8 +13,7 @@ function draining(value = kSameServer): ServerBody {
 /** A connection with a person, whose server says that it ends. */
 function drainingRig(value = kSameServer, random = 0.5): Rig {
   const rig = new Rig(random);
-  rig.socket.open();
-  rig.socket.deliver(greeting());
+  rig.greet();
   rig.socket.deliver({ case: "welcome", value: { personId: 3, resumeKey: "the key" } });
   rig.time.advance(10_000 - 1);
   rig.socket.deliver({ case: "pong", value: {} });
@@ -53,8 +52,7 @@ describe("a server that is about to end", () => {
     expect(old.closed).toBe(true);
     expect(rig.socket.url).toBe("wss://other.example:8443/ws");
     expect(planMove({ ...kSameServer, goTo: "ws://a/" }, "wss://b:1/ws/pond", 0, 0).url).toBe("ws://a/ws/pond");
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     rig.time.advance(6000);
     rig.socket.deliver({ case: "pong", value: {} });
     rig.socket.drop();

@@ -9,7 +9,7 @@ import type { ConnectionSink, ConnectionWorld, SocketLike } from "../client/sess
 import type { ConnectionState } from "../client/session/events";
 import type { PageConnectionEvent, LinkStats } from "../src/net/messages";
 import type { MissingRoom } from "../client/session/missing_room";
-import { encode, type ServerBody } from "./wire";
+import { encode, greeting, type ServerBody } from "./wire";
 
 export class FakeSocket implements SocketLike {
   binaryType = "blob";
@@ -127,6 +127,26 @@ export class Rig {
     this.page = new PageConnection("ws://host/ws", world, sink);
     this.connection = this.page.session;
     this.connection.start();
+  }
+
+  /** A connection that has been greeted. */
+  static live(): Rig {
+    const rig = new Rig();
+    rig.greet();
+    return rig;
+  }
+
+  /** The socket opens, and the server greets. */
+  greet(): void {
+    this.socket.open();
+    this.socket.deliver(greeting());
+  }
+
+  /** Loses the connection and gets another one. */
+  reconnect(): void {
+    this.socket.drop();
+    this.time.advance(1000);
+    this.greet();
   }
 
   get socket(): FakeSocket {

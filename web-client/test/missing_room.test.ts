@@ -3,7 +3,6 @@ import { describe, expect, it } from "vitest";
 
 import { findMissingRoom, type Fetch } from "../client/session/missing_room";
 import { Rig } from "./fakes";
-import { greeting } from "./wire";
 
 /** A server with these replies by URL; others fail as a server that is gone. */
 function serverOf(replies: Record<string, { status: number; body?: unknown }>): { fetch: Fetch; asked: string[] } {
@@ -48,8 +47,7 @@ describe("a connection to a missing room", () => {
     expect(rig.sockets).toHaveLength(1);
     rig.missing = undefined;
     rig.connection.retryNow();
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     expect(rig.state.name).toBe("live");
   });
 
@@ -66,8 +64,7 @@ describe("a connection to a missing room", () => {
     opened(undefined);
     await settled();
     expect(rig.sockets).toHaveLength(2);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     expect(rig.state.name).toBe("live");
 
     rig.socket.drop(4404, "the room was closed");
@@ -87,9 +84,7 @@ describe("a connection to a missing room", () => {
   });
 
   it("that the server closes is known to be missing, with the rooms that there are", async () => {
-    const rig = new Rig();
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    const rig = Rig.live();
     rig.missing = { name: "pool", rooms: ["main"] };
     rig.socket.deliver({ case: "refusal", value: { message: "the room was closed" } });
     await settled();
@@ -113,8 +108,7 @@ describe("a connection to a missing room", () => {
     rig.missing = { name: "nope", rooms: ["main"] };
     rig.socket.drop();
     rig.time.advance(500);
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     await settled();
     expect(rig.state.name).toBe("live");
   });

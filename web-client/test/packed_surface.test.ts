@@ -7,7 +7,7 @@ import { describe, expect, it } from "vitest";
 import { crc32c } from "../client/codec/frame_reader";
 import { Packing, ServerMessageSchema } from "../client/gen/spindrift/v1/wire_pb";
 import { Rig } from "./fakes";
-import { greeting, type ServerBody } from "./wire";
+import { type ServerBody } from "./wire";
 
 function golden(name: string): Uint8Array {
   return readFileSync(join(import.meta.dirname, "..", "..", "tests", "golden", `${name}.bin`));
@@ -28,16 +28,9 @@ function deliver(rig: Rig, k: number): void {
   rig.socket.onmessage!({ data: bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength) });
 }
 
-function liveRig(): Rig {
-  const rig = new Rig();
-  rig.socket.open();
-  rig.socket.deliver(greeting());
-  return rig;
-}
-
 describe("packed frames", () => {
   it("is subscribed to and delivered as plain samples", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     expect(rig.socket.sentOf("subscribe").every(({ value }) => value.packing === Packing.PACKED)).toBe(true);
     for (const k of [0, 1, 2]) deliver(rig, k);
     const arrived = rig.frames;
@@ -46,7 +39,7 @@ describe("packed frames", () => {
   });
 
   it("continues with a keyframe after a lost frame, and requests one at most once per second", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();
     deliver(rig, 1);
@@ -63,7 +56,7 @@ describe("packed frames", () => {
   });
 
   it("requests a keyframe after a damaged plane, but not after damaged particles", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     const askedCount = (): number => rig.socket.sentOf("subscribe").length;
     const before = askedCount();
     rig.socket.deliver(damaged("particles_packed"));
@@ -75,12 +68,11 @@ describe("packed frames", () => {
   });
 
   it("uses no plane from before a reconnection", () => {
-    const rig = liveRig();
+    const rig = Rig.live();
     deliver(rig, 0);
     rig.connection.stop();
     rig.connection.start();
-    rig.socket.open();
-    rig.socket.deliver(greeting());
+    rig.greet();
     deliver(rig, 1);
     expect(rig.frames).toHaveLength(1);
   });

@@ -35,9 +35,11 @@ describe("a server of another minor version", () => {
   it.each(versions)("%s is understood", (version) => {
     const rig = new Rig();
     rig.socket.open();
-    const messages = said.filter((message) => message.version === version);
-    expect(messages[0]!.kind).toBe("greeting");
-    for (const { kind, bytes } of messages) {
+    // A version has lines for what differs from the one before.
+    const until = versions.slice(0, versions.indexOf(version) + 1);
+    const messages = new Map(said.filter((message) => until.includes(message.version)).map(({ kind, bytes }) => [kind, bytes]));
+    expect([...messages.keys()][0]).toBe("greeting");
+    for (const [kind, bytes] of messages) {
       const { case: known } = fromBinary(ServerMessageSchema, new Uint8Array(bytes)).message;
       expect(known).toBe(camel(kind));
       expect(parse(bytes).kind, `${version} ${kind}`).toBe(known);

@@ -1,5 +1,3 @@
-#include <cmath>
-#include <limits>
 #include <numbers>
 #include <vector>
 
@@ -8,28 +6,15 @@
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
-#include <spindrift/core/crc32c.h>
 #include <spindrift/core/scene.h>
+
+#include "damaged_frames.h"
 
 namespace spindrift::codec {
 namespace {
 
-using testing::HasSubstr;
-
 v1::LayerFrame encoded(v1::Layer layer, const core::FrameView& view) {
-  const core::SharedBytes bytes = FrameEncoder().encode(layer, view);
-  if (!bytes) {
-    ADD_FAILURE() << "nothing encoded";
-    return {};
-  }
-  const auto message = parseServerMessage(*bytes);
-  EXPECT_TRUE(message) << message.error().message;
-  return message ? message->frame() : v1::LayerFrame();
-}
-
-void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(
-      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
+  return frameOf(FrameEncoder().encode(layer, view));
 }
 
 v1::LayerFrame foamFrame() {
@@ -49,20 +34,11 @@ v1::LayerFrame bodiesFrame(const std::vector<std::uint32_t>& words) {
   return encoded(v1::LAYER_BODIES, view);
 }
 
-const std::vector<std::uint32_t> kTwoBoats = {1,
-                                              1'500,
-                                              static_cast<std::uint32_t>(-20),
-                                              static_cast<std::uint32_t>(-2'250),
-                                              0x0000'4000u,
-                                              0x0000'0000u,
-                                              0u,  //
-                                              9,
-                                              0,
-                                              0,
-                                              0,
-                                              0x7FFF'8001u,
-                                              0xFF38'C000u,
-                                              0x0000'7F81u};
+constexpr std::uint32_t kMinus20 = -20u, kMinus2250 = -2'250u;
+
+const std::vector<std::uint32_t> kTwoBoats = {
+    1, 1'500, kMinus20, kMinus2250, 0x0000'4000u, 0x0000'0000u, 0x0000'0000u,  //
+    9, 0,     0,        0,          0x7FFF'8001u, 0xFF38'C000u, 0x0000'7F81u};
 
 v1::LayerFrame floatersFrame(const std::vector<std::uint32_t>& words) {
   core::FrameView view;
@@ -73,20 +49,9 @@ v1::LayerFrame floatersFrame(const std::vector<std::uint32_t>& words) {
 }
 
 /// A duck of 0.6 m at rest; a held stone of 2 m, half a turn about z.
-const std::vector<std::uint32_t> kTwoFloaters = {3,
-                                                 1'500,
-                                                 static_cast<std::uint32_t>(-20),
-                                                 static_cast<std::uint32_t>(-2'250),
-                                                 0x0000'0000u,
-                                                 0x7FFF'0000u,
-                                                 0x0005'003Cu,  //
-                                                 1'000'000,
-                                                 0,
-                                                 0,
-                                                 0,
-                                                 0x0000'0000u,
-                                                 0x0000'8001u,
-                                                 0x0108'00C8u};
+const std::vector<std::uint32_t> kTwoFloaters = {
+    3,         1'500, kMinus20, kMinus2250, 0x0000'0000u, 0x7FFF'0000u, 0x0005'003Cu,  //
+    1'000'000, 0,     0,        0,          0x0000'0000u, 0x0000'8001u, 0x0108'00C8u};
 
 TEST(FoamCodec, RoundTripsEveryByte) {
   const v1::LayerFrame frame = foamFrame();
@@ -155,27 +120,6 @@ TEST(FloatersCodec, HandlesAnEmptyWaterAndAFullOne) {
   const auto all = decodeFloaters(floatersFrame(words));
   ASSERT_TRUE(all) << all.error().message;
   EXPECT_EQ(all->size(), core::kMaxFloaters);
-}
-
-struct DamagedFrame {
-  const char* name;
-  void (*damage)(v1::LayerFrame&);
-  const char* must_hold;
-  bool reseal = true;
-};
-
-template <typename Decode>
-void expectRefusals(const v1::LayerFrame& good, const std::vector<DamagedFrame>& cases, Decode decode) {
-  ASSERT_TRUE(decode(good));
-  for (const DamagedFrame& bad : cases) {
-    v1::LayerFrame frame = good;
-    bad.damage(frame);
-    if (bad.reseal) seal(frame);
-    const auto result = decode(frame);
-    ASSERT_FALSE(result) << bad.name;
-    EXPECT_EQ(result.error().code, core::ErrorCode::kInvalidInput) << bad.name;
-    EXPECT_THAT(result.error().message, HasSubstr(bad.must_hold)) << bad.name;
-  }
 }
 
 TEST(FoamCodec, RefusesDamagedFrames) {

@@ -1,7 +1,4 @@
-#include <cmath>
-#include <cstring>
 #include <limits>
-#include <memory>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -9,7 +6,8 @@
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
-#include <spindrift/core/crc32c.h>
+
+#include "damaged_frames.h"
 
 namespace spindrift::codec {
 namespace {
@@ -57,20 +55,8 @@ struct TestFrame {
   }
 };
 
-v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
-  const auto message = parseServerMessage(*bytes);
-  EXPECT_TRUE(message) << message.error().message;
-  return message ? message->frame() : v1::LayerFrame();
-}
-
 std::string textOf(const core::SharedBytes& bytes) {
   return {bytes->begin(), bytes->end()};
-}
-
-/// Recomputes the checksum, so that the check under test is reached.
-void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(
-      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 v1::LayerFrame surfaceFrame() {
@@ -222,29 +208,6 @@ TEST(FrameEncoding, LayerWithoutLevelsIsEncodedAtFullOnly) {
       EXPECT_EQ(encoder.encode({layer}, test.view, level, true).keyframe != nullptr, level == core::Level::kFull)
           << v1::Layer_Name(layer) << " at " << nameOf(level);
     }
-  }
-}
-
-using Damage = void (*)(v1::LayerFrame&);
-
-struct DamagedFrame {
-  const char* name;
-  Damage damage;
-  const char* must_hold;
-  bool reseal = true;
-};
-
-template <typename Decode>
-void expectRefusals(const v1::LayerFrame& good, const std::vector<DamagedFrame>& cases, Decode decode) {
-  ASSERT_TRUE(decode(good));
-  for (const DamagedFrame& bad : cases) {
-    v1::LayerFrame frame = good;
-    bad.damage(frame);
-    if (bad.reseal) seal(frame);
-    const auto result = decode(frame);
-    ASSERT_FALSE(result) << bad.name;
-    EXPECT_EQ(result.error().code, core::ErrorCode::kInvalidInput) << bad.name;
-    EXPECT_THAT(result.error().message, HasSubstr(bad.must_hold)) << bad.name;
   }
 }
 

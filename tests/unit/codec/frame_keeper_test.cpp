@@ -1,12 +1,13 @@
 // A keyframe made from a stream of deltas is the one that the encoder would have made, and the stream continues from
 // it.
 #include <cmath>
-#include <string>
 
 #include <gtest/gtest.h>
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
+
+#include "damaged_frames.h"
 
 namespace spindrift::codec {
 namespace {
@@ -54,12 +55,6 @@ struct Water {
     return out;
   }
 };
-
-v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
-  const auto message = parseServerMessage(*bytes);
-  EXPECT_TRUE(message) << message.error().message;
-  return message ? message->frame() : v1::LayerFrame();
-}
 
 class FrameKeeperTest : public testing::TestWithParam<Stream> {};
 

@@ -1,10 +1,8 @@
 // Reads packed frames with tests/wire/packed_reader.py, which was written from the text of proto/README.md alone: it
 // must read what the encoder writes, to the same values as the decoder here.
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <random>
 
 #include <gtest/gtest.h>

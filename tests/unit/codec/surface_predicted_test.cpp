@@ -8,7 +8,8 @@
 
 #include <spindrift/codec/frame_decoder.h>
 #include <spindrift/codec/frame_encoder.h>
-#include <spindrift/core/crc32c.h>
+
+#include "damaged_frames.h"
 
 namespace spindrift::codec {
 namespace {
@@ -45,17 +46,6 @@ Surface waves(std::uint32_t n, std::uint64_t tick) {
             const double u = 6.283 * x / n, w = 6.283 * z / n;
             return std::lround(300 * std::cos(2 * u) * std::cos(w) * std::cos(3 * t) + 80 * std::sin(5 * w + 4 * t));
           }};
-}
-
-v1::LayerFrame frameOf(const core::SharedBytes& bytes) {
-  const auto message = parseServerMessage(*bytes);
-  EXPECT_TRUE(message) << message.error().message;
-  return message ? message->frame() : v1::LayerFrame();
-}
-
-void seal(v1::LayerFrame& frame) {
-  frame.set_crc32c(
-      core::crc32c({reinterpret_cast<const std::uint8_t*>(frame.payload().data()), frame.payload().size()}));
 }
 
 /// The samples that the plain codec sends.
@@ -205,43 +195,30 @@ TEST(FoamPredicted, IsThePlainFoamToTheByte) {
 TEST(SurfacePredicted, RefusesDamagedFrames) {
   FrameEncoder encoder;
   const v1::LayerFrame good = frameOf(encoder.encode(kPacked, waves(32, 1).view(1), core::Level::kFull, true).keyframe);
-  struct Case {
-    const char* name;
-    void (*damage)(v1::LayerFrame&);
-    const char* must_hold;
-    bool reseal = true;
-  };
-  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  static const double nan = kNaN;
-  for (const Case& bad : std::initializer_list<Case>{
-           {"layer", [](v1::LayerFrame& f) { f.set_layer(v1::LAYER_FOAM); }, "LAYER_SURFACE"},
-           {"codec", [](v1::LayerFrame& f) { f.mutable_foam_fixed8(); }, "codec"},
-           {"time", [](v1::LayerFrame& f) { f.set_time_s(nan); }, "time_s"},
-           {"resolution 0", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(0); }, "4096"},
-           {"resolution max", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(~0u); },
-            "4096"},
-           {"resolution 33", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(33); },
-            "payload"},
-           {"side", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_side_m(nan); }, "side_m"},
-           {"quantum", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_quantum_m(0); }, "quantum_m"},
-           {"weights", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->add_weights(1); }, "weights"},
-           {"no weights", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->clear_earlier_weights(); },
-            "earlier_weights"},
-           {"empty", [](v1::LayerFrame& f) { f.clear_payload(); }, "payload"},
-           {"cut", [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() / 2); }, "payload"},
-           {"longer", [](v1::LayerFrame& f) { f.mutable_payload()->push_back(1); }, "payload"},
-           {"altered", [](v1::LayerFrame& f) { (*f.mutable_payload())[3] ^= 0x7F; }, "payload"},
-           {"flipped", [](v1::LayerFrame& f) { (*f.mutable_payload())[40] ^= 1; }, "crc32c", false},
-       }) {
-    v1::LayerFrame frame = good;
-    bad.damage(frame);
-    if (bad.reseal) seal(frame);
-    PackedSurfaceDecoder decoder;
-    const auto samples = decoder.decode(frame);
-    ASSERT_FALSE(samples) << bad.name;
-    EXPECT_EQ(samples.error().code, core::ErrorCode::kInvalidInput) << bad.name;
-    EXPECT_THAT(samples.error().message, HasSubstr(bad.must_hold)) << bad.name;
-  }
+  static const double nan = std::numeric_limits<double>::quiet_NaN();
+  expectRefusals(
+      good,
+      {
+          {"layer", [](v1::LayerFrame& f) { f.set_layer(v1::LAYER_FOAM); }, "LAYER_SURFACE"},
+          {"codec", [](v1::LayerFrame& f) { f.mutable_foam_fixed8(); }, "codec"},
+          {"time", [](v1::LayerFrame& f) { f.set_time_s(nan); }, "time_s"},
+          {"resolution 0", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(0); }, "4096"},
+          {"resolution max", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(~0u); },
+           "4096"},
+          {"resolution 33", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_resolution_count(33); },
+           "payload"},
+          {"side", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_side_m(nan); }, "side_m"},
+          {"quantum", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->set_quantum_m(0); }, "quantum_m"},
+          {"weights", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->add_weights(1); }, "weights"},
+          {"no weights", [](v1::LayerFrame& f) { f.mutable_surface_predicted()->clear_earlier_weights(); },
+           "earlier_weights"},
+          {"empty", [](v1::LayerFrame& f) { f.clear_payload(); }, "payload"},
+          {"cut", [](v1::LayerFrame& f) { f.mutable_payload()->resize(f.payload().size() / 2); }, "payload"},
+          {"longer", [](v1::LayerFrame& f) { f.mutable_payload()->push_back(1); }, "payload"},
+          {"altered", [](v1::LayerFrame& f) { (*f.mutable_payload())[3] ^= 0x7F; }, "payload"},
+          {"flipped", [](v1::LayerFrame& f) { (*f.mutable_payload())[40] ^= 1; }, "crc32c", false},
+      },
+      [](const v1::LayerFrame& frame) { return PackedSurfaceDecoder().decode(frame); });
 }
 
 TEST(SurfacePredicted, ReadsAnyBytesWithoutHarm) {
@@ -250,12 +227,9 @@ TEST(SurfacePredicted, ReadsAnyBytesWithoutHarm) {
   std::mt19937 random(7);
   int accepted_count = 0;
   for (int k = 0; k < 3000; ++k) {
-    v1::LayerFrame frame = good;
-    std::string& payload = *frame.mutable_payload();
-    for (std::uint32_t i = 0, count = 1 + random() % 8; i < count; ++i)
-      payload[random() % payload.size()] = static_cast<char>(random());
-    if (random() % 4 == 0) frame.mutable_surface_predicted()->set_weights(3, static_cast<std::int32_t>(random()));
-    seal(frame);
+    const v1::LayerFrame frame = scrambled(good, random, [&](v1::LayerFrame& f) {
+      f.mutable_surface_predicted()->set_weights(3, static_cast<std::int32_t>(random()));
+    });
     PackedSurfaceDecoder decoder;
     accepted_count += decoder.decode(frame) ? 1 : 0;
   }

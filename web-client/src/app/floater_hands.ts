@@ -6,6 +6,7 @@ import { pickFloater } from "../scene/frames/pick_floater";
 import { clamp, wrapAngle } from "../scene/maths/interpolate";
 import { byId } from "../ui/dom";
 import { HoldSender, kHoldLabel, type HoldMessage } from "../ui/hold_sender";
+import { kPageTime } from "../ui/latest_sender";
 import type { Outline } from "../ui/tool_preview";
 import type { ToolName, WaterPlace } from "../ui/tools";
 import type { App } from "./app";
@@ -57,11 +58,7 @@ export class FloaterHands {
     private readonly lost: (pointerId: number) => void,
   ) {
     const send = (value: HoldMessage): number => (app.mayDraw ? app.commands.send({ case: "holdFloater", value }, kHoldLabel) : 0);
-    this.sender = new HoldSender(send, (pointerId) => this.left(pointerId), {
-      nowMs: () => performance.now(),
-      setTimer: (callback, ms) => window.setTimeout(callback, ms),
-      clearTimer: (timer) => window.clearTimeout(timer),
-    });
+    this.sender = new HoldSender(send, (pointerId) => this.left(pointerId), kPageTime);
     app.answerListeners.push({ ack: (commandId) => this.sender.answered(commandId, false), reject: (commandId) => this.sender.answered(commandId, true) });
     // Before the camera, which the wheel brings nearer.
     app.display.canvas.addEventListener("wheel", (event) => this.wheeled(event), { capture: true, passive: false });

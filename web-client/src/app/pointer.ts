@@ -3,6 +3,7 @@
 // (floater_hands.ts).
 import { kClickRadiusPx } from "../scene/camera/camera_hand";
 import { pickWater } from "../scene/frames/pick";
+import { kPageTime } from "../ui/latest_sender";
 import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
 import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
 import { kTapMs, TapDetector, type PointerSample } from "../ui/tap";
@@ -58,11 +59,7 @@ export class PointerHands {
       // A finger stays down over a lost connection, and draws again on the next one.
       if (app.mayDraw) app.commands.send({ case: "stroke", value }, kStrokeLabel);
     };
-    this.sender = new StrokeSender(send, {
-      nowMs: () => performance.now(),
-      setTimer: (callback, ms) => window.setTimeout(callback, ms),
-      clearTimer: (timer) => window.clearTimeout(timer),
-    });
+    this.sender = new StrokeSender(send, kPageTime);
     this.floaters = new FloaterHands(app, (pointerId) => this.lift(pointerId));
     app.removePointed = () => this.removePointed();
     const { canvas } = app.display;

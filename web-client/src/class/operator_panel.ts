@@ -9,7 +9,7 @@ import type { CommandAction } from "../../client/session/events";
 import { make, setText } from "../ui/dom";
 import { fieldRange } from "../ui/effect_limits";
 import { kTeamColors } from "../ui/game_texts";
-import { LatestSender } from "../ui/latest_sender";
+import { kPageTime, LatestSender } from "../ui/latest_sender";
 import type { LessonState } from "../ui/lesson_state";
 import { SliderRow } from "../ui/slider_row";
 import { playersOf } from "./boards";
@@ -71,11 +71,7 @@ export class OperatorPanel {
     private readonly send: (action: CommandAction, label: string) => number,
   ) {
     for (const tool of kLessonToolNames) this.tools.set(tool, button(`lesson-tool-${tool}`, kTexts.lessonTools[tool], () => this.toggle(tool)));
-    this.forces = new LatestSender((forceRatio) => this.change({ forceRatio }), {
-      nowMs: () => performance.now(),
-      setTimer: (callback, ms) => window.setTimeout(callback, ms),
-      clearTimer: (timer) => window.clearTimeout(timer),
-    }, kForceEveryMs);
+    this.forces = new LatestSender((forceRatio) => this.change({ forceRatio }), kPageTime, kForceEveryMs);
     const percent = { ...fieldRange(kLessonRanges.forceRatio), ...kClassTexts.force, describe: (ratio: number) => `${Math.round(100 * ratio)} %` };
     this.force = new SliderRow("lesson-force", percent, 1, (ratio) => this.forces.offer(ratio));
     const laps = fieldRange(kStartGameRanges.lapsCount);

@@ -17,6 +17,7 @@ import { setText } from "../ui/dom";
 import { kTeamColors } from "../ui/game_texts";
 import { describeState } from "../ui/hud";
 import { keepChoice, keptChoice } from "../ui/kept";
+import { kPageTime } from "../ui/latest_sender";
 import { LessonState } from "../ui/lesson_state";
 import { kStrokeLabel } from "../ui/stroke_sender";
 import { kHoldLabel } from "../ui/hold_sender";
@@ -52,14 +53,9 @@ class PadPage {
   private identity;
   private readonly map = new PadMap(this.elements.canvas);
   private readonly words = new PadWords(this.elements, this.lessons);
-  private readonly world = {
-    nowMs: () => performance.now(),
-    setTimer: (callback: () => void, ms: number) => window.setTimeout(callback, ms),
-    clearTimer: (timer: number) => window.clearTimeout(timer),
-  };
   private readonly commands = new CommandSender(this.client);
-  private readonly hands = new PadHands((action, label) => this.send(action, label), this.world, Math.random);
-  private readonly boat = new PadBoat((action, label) => this.send(action, label), this.world);
+  private readonly hands = new PadHands((action, label) => this.send(action, label), kPageTime, Math.random);
+  private readonly boat = new PadBoat((action, label) => this.send(action, label), kPageTime);
   private readonly stick = new Stick((setting) => this.boat.steer(setting));
   private readonly haptics = new Haptics();
   private readonly gamepad = new GamepadTools({

@@ -7,7 +7,7 @@ import type { Followed } from "../scene/camera/camera_views";
 import { byId, make } from "./dom";
 import { boatLimits, boatOfLength, clampTo, type BoatLimits } from "./effect_limits";
 import { Helm, helmKey, type HelmKey } from "./helm";
-import { LatestSender } from "./latest_sender";
+import { kPageTime, LatestSender } from "./latest_sender";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
 import { spawnPlace } from "./spawn_place";
@@ -57,11 +57,7 @@ export class BoatPanel {
     /** `mineId` has changed. */
     private readonly chosen: () => void,
   ) {
-    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, kTexts.commands.helm), {
-      nowMs: () => performance.now(),
-      setTimer: (callback, ms) => window.setTimeout(callback, ms),
-      clearTimer: (timer) => window.clearTimeout(timer),
-    }, kHelmEveryMs);
+    this.orders = new LatestSender((order) => void send({ case: "controlBoat", value: order }, kTexts.commands.helm), kPageTime, kHelmEveryMs);
     this.mine = new SelectRow("my-boat", kTexts.boat.mine, (value) => this.request(Number(value)));
     byId("my-boat-row").append(this.reasonLine, this.mine.element);
     this.spawn.addEventListener("click", () => this.launch());

@@ -7,6 +7,13 @@ export interface SenderWorld {
   clearTimer(timer: number): void;
 }
 
+/** The clock and the timers of the page. */
+export const kPageTime: SenderWorld = {
+  nowMs: () => performance.now(),
+  setTimer: (callback, ms) => window.setTimeout(callback, ms),
+  clearTimer: (timer) => window.clearTimeout(timer),
+};
+
 export class LatestSender<T> {
   private sentAtMs = -Infinity;
   private timer: number | undefined;

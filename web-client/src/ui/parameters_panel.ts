@@ -1,6 +1,7 @@
 // The scene's parameters as sliders, built from the greeting.
 import type { ParameterInfo } from "../../client/codec/greeting";
 import type { CommandAction } from "../../client/session/events";
+import { kPageTime } from "./latest_sender";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
 
@@ -33,8 +34,7 @@ export class ParametersPanel {
       const row: SliderRow = new SliderRow(path, info, info.value, (value) => model.input(value));
       const model: SliderModel = new SliderModel(info.value, {
         send: (value) => this.send({ case: "setParameter", value: { path, value } }),
-        setTimer: (callback, ms) => window.setTimeout(callback, ms),
-        clearTimer: (timer) => window.clearTimeout(timer),
+        ...kPageTime,
         changed: () => row.show(model.shownValue, model.error),
       });
       this.models.set(path, model);

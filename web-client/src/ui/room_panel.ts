@@ -5,6 +5,7 @@ import type { CommandAction } from "../../client/session/events";
 import { byId, make, setText } from "./dom";
 import { speedRange } from "./effect_limits";
 import { FidelityRow } from "./fidelity_row";
+import { kPageTime } from "./latest_sender";
 import { SelectRow } from "./select_row";
 import { SliderModel } from "./slider_model";
 import { SliderRow } from "./slider_row";
@@ -35,8 +36,7 @@ export class RoomPanel {
     this.speedRow = new SliderRow("speed", { ...speedRange(), ...kTexts.speed }, 1, (value) => this.speed.input(value));
     this.speed = new SliderModel(1, {
       send: (value) => send({ case: "setSpeed", value: { speed: value } }, kTexts.commands.speed),
-      setTimer: (callback, ms) => window.setTimeout(callback, ms),
-      clearTimer: (timer) => window.clearTimeout(timer),
+      ...kPageTime,
       changed: () => this.speedRow.show(this.speed.shownValue, this.speed.error),
     });
     this.scenes = new SelectRow("scene", kTexts.scene, (name) => {
