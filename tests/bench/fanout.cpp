@@ -1,9 +1,8 @@
+#include <algorithm>
 #include <atomic>
 #include <cstring>
-#include <ctime>
 #include <fstream>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include <boost/json.hpp>
@@ -18,18 +17,15 @@
 #include <spindrift/net/server.h>
 #include <spindrift/service/water_server.h>
 
+#include "bare_send.h"
+
 namespace spindrift::bench {
 namespace {
 
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kRoom = "bench";
-
-double threadCpu_s(clockid_t clock) {
-  timespec now{};
-  clock_gettime(clock, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
+constexpr double kRate_hz = 20.0;
 
 double resident_mb() {
   std::ifstream statm("/proc/self/statm");
@@ -51,11 +47,7 @@ class EchoApplication final : public net::Application {
   void serverStarts(net::Hub& hub) override { hub_ = &hub; }
   core::Result<void> acceptSession(const std::string&) override { return {}; }
   void sessionOpened(net::SessionId session, const net::SessionOpening&) override {
-    std::call_once(clock_once_, [&] {
-      clockid_t clock{};
-      pthread_getcpuclockid(pthread_self(), &clock);  // the only I/O thread
-      io_clock_ = clock;
-    });
+    io_thread_ = pthread_self();  // the only I/O thread
     hub_->join(session, kRoom, demand_);
     hub_->watch(session, 0, {.max_rate_hz = kWatchRate_hz});
   }
@@ -68,14 +60,14 @@ class EchoApplication final : public net::Application {
   void sessionClosed(net::SessionId, const net::SessionEnd&) override {}
   void httpRequest(const net::HttpRequest&, net::HttpResponder respond) override { respond(std::nullopt); }
 
-  [[nodiscard]] double ioCpu_s() const { return threadCpu_s(io_clock_); }
+  /// Call it while a session is open.
+  [[nodiscard]] double ioCpu_s() const { return threadCpu_s(io_thread_); }
 
  private:
   static constexpr double kWatchRate_hz = 1000.0;
   net::Hub* hub_ = nullptr;
   const std::shared_ptr<core::DemandTable> demand_ = std::make_shared<core::DemandTable>();
-  std::once_flag clock_once_;
-  std::atomic<clockid_t> io_clock_{CLOCK_PROCESS_CPUTIME_ID};
+  std::atomic<pthread_t> io_thread_{};
 };
 
 /// A frame begins with 'f' and the time of its publication.
@@ -104,8 +96,8 @@ Sighting look(core::ByteView bytes) {
 
 struct FanoutCase {
   std::string name;
-  std::size_t frame_bytes = 200'000;
-  double rate_hz = 20.0;
+  std::size_t frame_bytes = 0;
+  double rate_hz = kRate_hz;
   CrowdOptions crowd;
 };
 
@@ -114,7 +106,7 @@ struct FanoutRow {
   CrowdReport crowd{};
   net::ServerStats before{};
   net::ServerStats after{};
-  double io_cpu_s = 0.0;  ///< of the I/O thread; 0 if unknown
+  double cpu_s = 0.0;  ///< of the threads that send: network and publisher; 0 if unknown
   double resident_grown_mb = 0.0;
   double real_time_factor = 0.0;
 };
@@ -142,22 +134,42 @@ core::Result<FanoutRow> measure(const FanoutCase& test, const std::optional<net:
   });
   FanoutRow out{.name = test.name};
   const auto url = urlOf((*server)->port(), tls);
+  const auto cpu_s = [&] { return application.ioCpu_s() + threadCpu_s(publisher.native_handle()); };
   double begin_cpu_s = 0.0;
   double begin_mb = 0.0;
   out.crowd = runCrowd(
       *url, test.crowd,
       [&] {
-        begin_cpu_s = application.ioCpu_s();
+        begin_cpu_s = cpu_s();
         out.before = (*server)->stats();
         begin_mb = resident_mb();
       },
       [&] {
-        out.io_cpu_s = application.ioCpu_s() - begin_cpu_s;
+        out.cpu_s = cpu_s() - begin_cpu_s;
         out.after = (*server)->stats();
         out.resident_grown_mb = resident_mb() - begin_mb;
       });
   stopping = true;
   publisher.join();
+  return out;
+}
+
+/// The readers of the case, to whom a thread sends the same frames with nothing between.
+FanoutRow measureBareSend(const FanoutCase& test) {
+  BareSender sender(test.crowd.client_count, test.rate_hz, [&] { return frameNow(test.frame_bytes); });
+  FanoutRow out{.name = test.name};
+  const auto url = urlOf(sender.port(), std::nullopt);
+  double begin_cpu_s = 0.0;
+  out.crowd = runCrowd(
+      *url, test.crowd,
+      [&] {
+        begin_cpu_s = sender.cpu_s();
+        out.before.sent_frame_count = sender.sentFrameCount();
+      },
+      [&] {
+        out.cpu_s = sender.cpu_s() - begin_cpu_s;
+        out.after.sent_frame_count = sender.sentFrameCount();
+      });
   return out;
 }
 
@@ -190,27 +202,32 @@ core::Result<FanoutRow> measureServer(const v1::Scene& scene, const gpu::DeviceC
   return out;
 }
 
+/// CPU time per frame and reader; nullopt if unknown.
+std::optional<double> frameCpu_us(const FanoutRow& row) {
+  if (row.cpu_s == 0.0) return std::nullopt;
+  return 1e6 * row.cpu_s / static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
+}
+
 void print(std::FILE* out, const FanoutRow& row) {
   const CrowdReport& c = row.crowd;
-  const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
+  const auto cpu_us = frameCpu_us(row);
   // Frames of a real scene do not contain the time of their publication.
   const auto delay = [&](double ratio) {
     return c.delays_ms.empty() ? std::string("-") : fmt::format("{:.1f}", quantileOf(c.delays_ms, ratio));
   };
   const std::string last = c.last_delays_ms.empty() ? "-" : fmt::format("{:.1f}", quantileOf(c.last_delays_ms, 0.99));
-  fmt::print(out,
-             "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
-             row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, delay(0.5), delay(0.99),
-             last, row.io_cpu_s > 0 ? fmt::format("{:.1f}", 1e6 * row.io_cpu_s / sent) : "-",
-             row.after.dropped_frame_count - row.before.dropped_frame_count, row.after.evicted_session_count,
-             quantileOf(c.answers_ms, 0.5), quantileOf(c.answers_ms, 0.99), row.resident_grown_mb,
-             c.lost_count + c.unanswered_count);
+  fmt::print(
+      out, "{:<30} {:>6} {:>5}/{:>5}/{:>5} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8.1f} {:>8.1f} {:>7.1f} {:>5}\n",
+      row.name, c.connected_count, c.fewest_frames, c.median_frames, c.most_frames, delay(0.5), delay(0.99), last,
+      cpu_us ? fmt::format("{:.1f}", *cpu_us) : "-", row.after.dropped_frame_count - row.before.dropped_frame_count,
+      row.after.evicted_session_count, quantileOf(c.answers_ms, 0.5), quantileOf(c.answers_ms, 0.99),
+      row.resident_grown_mb, c.lost_count + c.unanswered_count);
   if (row.real_time_factor > 0) fmt::print(out, "{:<30} real-time factor {:.2f}\n", "", row.real_time_factor);
 }
 
 boost::json::object toJson(const FanoutRow& row) {
   const CrowdReport& c = row.crowd;
-  const auto sent = static_cast<double>(row.after.sent_frame_count - row.before.sent_frame_count);
+  const auto cpu_us = frameCpu_us(row);
   return {{"name", row.name},
           {"connected_count", c.connected_count},
           {"fewest_frames", c.fewest_frames},
@@ -219,7 +236,7 @@ boost::json::object toJson(const FanoutRow& row) {
           {"delay_p50_ms", quantileOf(c.delays_ms, 0.5)},
           {"delay_p99_ms", quantileOf(c.delays_ms, 0.99)},
           {"last_delay_p99_ms", quantileOf(c.last_delays_ms, 0.99)},
-          {"io_cpu_us_per_frame_sent", row.io_cpu_s > 0 ? boost::json::value(1e6 * row.io_cpu_s / sent) : nullptr},
+          {"cpu_us_per_frame_sent", cpu_us ? boost::json::value(*cpu_us) : nullptr},
           {"dropped_frames", row.after.dropped_frame_count - row.before.dropped_frame_count},
           {"evicted_count", row.after.evicted_session_count},
           {"answer_p50_ms", quantileOf(c.answers_ms, 0.5)},
@@ -228,6 +245,29 @@ boost::json::object toJson(const FanoutRow& row) {
           {"lost_count", c.lost_count},
           {"unanswered_count", c.unanswered_count},
           {"real_time_factor", row.real_time_factor}};
+}
+
+/// Bare sends and broadcasts to the same crowd in turn, because the speed of the machine changes. Returns the ratios of
+/// their CPU times per frame and reader, sorted.
+core::Result<std::vector<double>> compareWithBareSend(const std::string& size_name, std::size_t frame_bytes,
+                                                      const CrowdOptions& crowd, boost::json::array& rows,
+                                                      std::FILE* out) {
+  constexpr int kPairCount = 3;
+  std::vector<double> ratios;
+  for (int k = 0; k < kPairCount; ++k) {
+    const FanoutRow bare = measureBareSend({"bare send, " + size_name, frame_bytes, kRate_hz, crowd});
+    const auto broadcast = measure({"broadcast of the same", frame_bytes, kRate_hz, crowd}, std::nullopt);
+    if (!broadcast) return broadcast.error();
+    for (const FanoutRow& row : {bare, *broadcast}) {
+      print(out, row);
+      rows.push_back(toJson(row));
+    }
+    ratios.push_back(*frameCpu_us(*broadcast) / *frameCpu_us(bare));
+  }
+  std::ranges::sort(ratios);
+  fmt::print(out, "{:<30} {:.2f} times a bare send (median of {} pairs, {:.2f} to {:.2f})\n", "",
+             ratios[kPairCount / 2], kPairCount, ratios.front(), ratios.back());
+  return ratios;
 }
 
 }  // namespace
@@ -250,15 +290,24 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
     return options;
   };
   std::vector<FanoutCase> cases = {
-      {"100 readers, 200 kB", 200'000, 20.0, crowd(100, 0, std::chrono::duration<double>(seconds))},
-      {"the same, 10 never read", 200'000, 20.0, crowd(100, 10, slow_case)},
-      {"200 readers, 25 kB, visitors", 25'000, 20.0, crowd(200, 0, std::chrono::duration<double>(seconds))}};
+      {"100 readers, 200 kB", 200'000, kRate_hz, crowd(100, 0, std::chrono::duration<double>(seconds))},
+      {"the same, 10 never read", 200'000, kRate_hz, crowd(100, 10, slow_case)},
+      {"200 readers, 25 kB, visitors", 25'000, kRate_hz, crowd(200, 0, std::chrono::duration<double>(seconds))}};
   cases.back().crowd.visitors_per_s = 5.0;
   fmt::print(out, "fan-out, clients and server in this process{}\n", tls ? ", TLS" : "");
   fmt::print(out, "{:<30} {:>6} {:>17} {:>8} {:>8} {:>8} {:>8} {:>7} {:>8} {:>8} {:>8} {:>7} {:>5}\n", "case", "there",
              "frames, each", "p50 ms", "p99 ms", "last p99", "us/frame", "drops", "evicted", "ack p50", "ack p99",
              "+MB", "lost");
   boost::json::array rows;
+  boost::json::object over_bare_send;
+  CrowdOptions silent = crowd(100, 0, std::chrono::duration<double>(seconds));
+  silent.commands_per_s = 0.0;
+  silent.ca_file.clear();
+  for (const auto& [size_name, frame_bytes] : {std::pair("200 kB", 200'000U), std::pair("4 kB", 4'000U)}) {
+    const auto ratios = compareWithBareSend(size_name, frame_bytes, silent, rows, out);
+    if (!ratios) return ratios.error();
+    over_bare_send[size_name] = boost::json::value_from(*ratios);
+  }
   for (const FanoutCase& test : cases) {
     auto row = measure(test, tls);
     if (!row) return row.error();
@@ -269,7 +318,7 @@ core::Result<boost::json::object> measureFanout(const v1::Scene& scene, const st
   if (!row) return row.error();
   print(out, *row);
   rows.push_back(toJson(*row));
-  return boost::json::object{{"rows", std::move(rows)}};
+  return boost::json::object{{"rows", std::move(rows)}, {"cpu_over_bare_send", std::move(over_bare_send)}};
 }
 
 }  // namespace spindrift::bench
