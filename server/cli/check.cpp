@@ -139,8 +139,10 @@ void print(const std::string& file, const v1::Scene& scene, const core::Scene& i
     const std::string count = p.layers_count == 0 ? fmt::format("up to {}", p.count)
                                                   : fmt::format("{} ({} x {} x {})", p.count, p.columns_x_count,
                                                                 p.layers_count, p.columns_z_count);
-    fmt::print("  particles  {}, spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours, mass {:.3f} kg\n", count,
-               p.spacing_m, p.support_radius_m, p.neighbours_count, p.mass_kg);
+    fmt::print(
+        "  particles  {}, spacing {:.3f} m, support radius {:.3f} m, {:.0f} neighbours inside a lattice, mass {:.3f} "
+        "kg\n",
+        count, p.spacing_m, p.support_radius_m, p.neighbours_count, p.mass_kg);
     fmt::print("  grid       {} x {} x {} cells\n", p.cells[0], p.cells[1], p.cells[2]);
     printParticles(in);
   }

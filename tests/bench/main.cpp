@@ -17,6 +17,7 @@
 #include <spindrift/bench/rooms.h>
 #include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
+#include <spindrift/bench/thesis.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/files.h>
 #include <spindrift/gpu/context.h>
@@ -33,9 +34,9 @@ namespace {
 constexpr double kFloaterSizesApart = 2.2;
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, fanout, load, query, rooms, soak; all: step and codec
-  std::string scene = "harbor";
-  std::string fidelity;  ///< as in ServeOptions
+  std::string suite = "all";  ///< step, codec, baseline, fanout, load, query, rooms, soak; all: step and codec
+  std::string scene;          ///< empty: pool for baseline, otherwise harbor
+  std::string fidelity;       ///< as in ServeOptions
   std::string device = "auto";
   std::string json_file;
   net::TlsFiles tls;        ///< for fanout; empty: plain
@@ -102,7 +103,8 @@ int bench(const BenchOptions& options) {
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
   if (options.suite == "rooms") return benchRooms(options, *device);
-  auto file = core::findScene(options.scene);
+  const std::string usual = options.suite == "baseline" ? "pool" : "harbor";
+  auto file = core::findScene(options.scene.empty() ? usual : options.scene);
   if (!file) return fail(file.error());
   auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
@@ -123,6 +125,13 @@ int bench(const BenchOptions& options) {
                               {"device", (*ctx)->device().name},
                               {"gl_version", (*ctx)->device().gl_version},
                               {"scene", scene.name}};
+  if (options.suite == "baseline") {
+    auto result = bench::measureThesis(**ctx, scene, options.seconds, out);
+    if (!result) return fail(result.error());
+    json["baseline"] = *std::move(result);
+    if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
+    return 0;
+  }
   if (options.suite != "codec") {
     auto result = bench::measureSteps(**ctx, scene, options.seconds, out);
     if (!result) return fail(result.error());
@@ -140,11 +149,12 @@ int bench(const BenchOptions& options) {
 std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<BenchOptions>();
   program.add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "fanout", "load", "query", "rooms", "soak"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "baseline", "fanout", "load", "query", "rooms", "soak"}))
       ->capture_default_str();
-  program.add_option("--scene", options->scene, "Scene file or name of a shipped scene")
-      ->check(isNotEmpty())
-      ->capture_default_str();
+  program
+      .add_option("--scene", options->scene,
+                  "Scene file or name of a shipped scene [pool for --suite baseline, otherwise harbor]")
+      ->check(isNotEmpty());
   addFidelity(program, options->fidelity);
   addDevice(program, options->device);
   program.add_option("--floaters", options->floater_count, "For --suite step and codec: objects in the water, in rows")

@@ -12,6 +12,8 @@
 #include <spindrift/bench/steps.h>
 #include <spindrift/sim/water_sim.h>
 
+#include "neighbours.h"
+
 namespace spindrift::bench {
 
 core::Scene withFloaters(core::Scene scene, std::uint32_t count, double sizes_apart) {
@@ -68,7 +70,7 @@ core::Result<void> draw(sim::WaterSim& water, std::uint32_t count) {
 struct StepResult {
   std::string name;
   std::uint32_t particle_count = 0;
-  double neighbours_count = 0.0;
+  double neighbours_count = 0.0;  ///< mean of the particles after the measurement
   std::uint32_t substeps_count = 0;
   double tick_ms = 0.0;
   double substep_ms = 0.0;
@@ -150,7 +152,7 @@ core::Result<StepResult> measure(gpu::Context& ctx, const StepCase& test, double
   StepResult r;
   r.name = test.name;
   r.particle_count = water.particleCount();
-  r.neighbours_count = d.particles ? d.particles->neighbours_count : 0;
+  if (d.particles) r.neighbours_count = meanNeighbours(water.copyState().position, countedBox(water.scene(), d));
   r.substeps_count = d.substeps_count;
   r.tick_ms = elapsed_s * 1e3 / ticks;
   r.substep_ms = r.tick_ms / d.substeps_count;
@@ -180,9 +182,9 @@ boost::json::object toJson(const StepResult& r) {
 }
 
 void print(std::FILE* out, const StepResult& r) {
-  fmt::print(out, "{:<18} {:>9} {:>8} {:>9.3f} {:>9.3f} {:>11} {:>6.2f}  ", r.name, r.particle_count, r.substeps_count,
-             r.tick_ms, r.substep_ms, r.particle_us > 0 ? fmt::format("{:.3f}", r.particle_us) : "-",
-             r.real_time_factor);
+  fmt::print(out, "{:<18} {:>9} {:>10.1f} {:>8} {:>9.3f} {:>9.3f} {:>11} {:>6.2f}  ", r.name, r.particle_count,
+             r.neighbours_count, r.substeps_count, r.tick_ms, r.substep_ms,
+             r.particle_us > 0 ? fmt::format("{:.3f}", r.particle_us) : "-", r.real_time_factor);
   for (const gpu::PassCost& pass : r.passes) fmt::print(out, " {} {:.3f}", pass.name, pass.total_ms);
   fmt::print(out, "\n");
 }
@@ -191,8 +193,8 @@ void print(std::FILE* out, const StepResult& r) {
 
 core::Result<boost::json::array> measureSteps(gpu::Context& ctx, const core::Scene& scene, double seconds,
                                               std::FILE* out) {
-  fmt::print(out, "{:<18} {:>9} {:>8} {:>9} {:>9} {:>11} {:>6}   ms per tick by pass\n", "case", "particles",
-             "substeps", "tick ms", "substep ms", "us/particle", "rtf");
+  fmt::print(out, "{:<18} {:>9} {:>10} {:>8} {:>9} {:>9} {:>11} {:>6}   ms per tick by pass\n", "case", "particles",
+             "neighbours", "substeps", "tick ms", "substep ms", "us/particle", "rtf");
   boost::json::array results;
   for (const StepCase& test : stepCases(scene, ctx.device().is_software)) {
     auto result = measure(ctx, test, seconds);

@@ -33,10 +33,10 @@ class EmbedShaders(unittest.TestCase):
         with open(self.root / "variants.txt", "a", encoding="utf-8") as table:
             table.write("\n    ".join([name, *sets]) + "\n")
 
-    def run_tool(self):
+    def run_tool(self, *options):
         return subprocess.run(
             [sys.executable, os.environ["EMBED_SHADERS"], "--root", self.root, "--output", self.output, "--depfile",
-             self.depfile, "--glslc", os.environ["GLSLC"], "--spirv-val", self.spirv_val],
+             self.depfile, "--glslc", os.environ["GLSLC"], "--spirv-val", self.spirv_val, *options],
             capture_output=True, text=True, check=False)
 
     def assert_refused(self, *words):
@@ -51,6 +51,19 @@ class EmbedShaders(unittest.TestCase):
         run = self.run_tool()
         self.assertEqual(run.returncode, 0, run.stderr)
         return self.output.read_text(encoding="utf-8")
+
+    def test_takes_what_the_root_lacks_from_the_shared_folder(self):
+        shared = self.root.parent / "shared"
+        shared.mkdir()
+        (shared / "own.glsl").write_text("#error not the file of the root\n", encoding="utf-8")
+        (shared / "far.glsl").write_text("float far() { return 1.0; }\n", encoding="utf-8")
+        self.write("own.glsl", "float own() { return far(); }\n")
+        self.write_shader("a.comp", '#include "far.glsl"\n#include "own.glsl"\n' + MAIN)
+        self.assert_refused('no file "far.glsl"')
+        run = self.run_tool("--shared", shared, "--function", "otherShaders")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("otherShaders() {", self.output.read_text(encoding="utf-8"))
+        self.assertIn(str(shared / "far.glsl"), self.depfile.read_text(encoding="utf-8"))
 
     def test_refuses_an_include_cycle(self):
         self.write_shader("a.comp", '#include "b.glsl"\n' + MAIN)
