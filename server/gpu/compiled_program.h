@@ -44,8 +44,8 @@ struct CompiledProgram {
 };
 
 /// Returns the linked program's uniform and storage blocks by the name after `uniform` or `buffer`, without those that
-/// the driver found unused.
-std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id);
+/// the driver found unused; with the offsets of the members if asked.
+std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id, bool has_offsets = true);
 
 /// Programs by shader and defines. At most kMaxUnused unused programs are kept, for the next room of the same kind.
 class ProgramCache {

@@ -10,6 +10,7 @@
 #include <shared/groups.h>
 
 #include <spindrift/core/half.h>
+#include <spindrift/core/parallel.h>
 
 namespace spindrift::sim {
 namespace {
@@ -28,12 +29,14 @@ Floats floatsOf(const Four& v) {
 /// One texel per cell: the halves of both tables.
 std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four>& second) {
   std::vector<Words> out(first.size());
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    const Four& a = first[i];
-    const Four& b = second[i];
-    out[i] = {core::packHalves(a[0], a[1]), core::packHalves(a[2], a[3]), core::packHalves(b[0], b[1]),
-              core::packHalves(b[2], b[3])};
-  }
+  core::forRangesInParallel(out.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Four& a = first[i];
+      const Four& b = second[i];
+      out[i] = {core::packHalves(a[0], a[1]), core::packHalves(a[2], a[3]), core::packHalves(b[0], b[1]),
+                core::packHalves(b[2], b[3])};
+    }
+  });
   return out;
 }
 

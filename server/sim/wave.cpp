@@ -62,12 +62,13 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
     tense_ = create.pass("wave/capillary.comp");
   }
   if (hasMakers(scene)) makers_ = std::make_unique<WaveMakers>(create, scene, layout);
-  if (disperses(scene) && !create.error())
-    dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, layOutBasin(scene, layout), is_nonlinear_);
+  if (create.error()) return;
+  const Basin basin = basin_ || disperses(scene) ? layOutBasin(scene, layout) : Basin{};
+  if (disperses(scene)) dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, basin, is_nonlinear_);
   if (create.error()) return;
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
   limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.count_z, 1});
-  uploadBasin(scene, layout);
+  upload(scene, layout, basin);
 }
 
 void Wave::clear() {
@@ -110,6 +111,10 @@ void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   if (!basin_ && !dispersed_slope_) return;
   const Basin basin = layOutBasin(scene, layout);
   if (dispersed_slope_) dispersed_slope_->upload(layout, basin);
+  upload(scene, layout, basin);
+}
+
+void Wave::upload(const core::Scene& scene, const WaveLayout& layout, const Basin& basin) {
   if (!basin_) return;
   basin_.upload(basin.conductance_m);
   bed_.upload(basin.bed);

@@ -83,6 +83,7 @@ class Wave {
  private:
   void accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea);
   void displace(const shared::EventUniforms& events);
+  void upload(const core::Scene& scene, const WaveLayout& layout, const Basin& basin);
   void uploadOutflow(std::int64_t units);
   void limit();
 

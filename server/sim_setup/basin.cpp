@@ -5,6 +5,7 @@
 #include <shared/effects.h>
 #include <shared/side_bits.h>
 
+#include <spindrift/core/parallel.h>
 #include <spindrift/sim_setup/basin.h>
 #include <spindrift/sim_setup/fill_up.h>
 #include <spindrift/sim_setup/ground.h>
@@ -121,7 +122,11 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const auto nx = static_cast<int>(layout.count_x);
   const auto nz = static_cast<int>(layout.count_z);
   const std::size_t cells = layout.counts().total();
-  const auto index = [&](int x, int z) { return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz)); };
+  const auto index = [&](int x, int z) {
+    if (x < 0 || x >= nx) x = (x + nx) % nx;
+    if (z < 0 || z >= nz) z = (z + nz) % nz;
+    return static_cast<std::size_t>(x + nx * z);
+  };
 
   Basin out;
   out.is_flat = scene.obstacles.empty() && scene.beaches.empty() && !scene.bed;
@@ -133,7 +138,8 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   const bool is_nonlinear = isNonlinear(scene);
   const double matched_max = matchedLossMax(scene, layout);
   const double along_share = out.is_flat ? kAlongShareFlat : kAlongShareUneven;
-  for (int z = 0; z < nz; ++z) {
+  core::forEachInParallel(layout.count_z, [&](std::size_t row) {
+    const int z = static_cast<int>(row);
     for (int x = 0; x < nx; ++x) {
       const std::size_t i = index(x, z);
       const double x_m = (x + 0.5) * layout.cell_m - layout.length_m / 2;
@@ -169,12 +175,14 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       const double sigma = std::max(loss.x_per_s, loss.z_per_s);
       out.bed[i] = {static_cast<float>(sigma + fade), static_cast<float>(sigma), ground_m, 0.0f};
     }
-  }
+  });
 
   const bool nine = w.stencil == core::Stencil::kNinePoint;
   const auto depthAt = [&](int x, int z) { return static_cast<double>(out.depth_m[index(x, z)]); };
+  const bool is_periodic_x = isPeriodicX(w);
+  const bool is_periodic_z = isPeriodicZ(w);
   const auto isInside = [&](int x, int z) {
-    return (isPeriodicX(w) || (x >= 0 && x < nx)) && (isPeriodicZ(w) || (z >= 0 && z < nz)) && depthAt(x, z) > 0;
+    return (is_periodic_x || (x >= 0 && x < nx)) && (is_periodic_z || (z >= 0 && z < nz)) && depthAt(x, z) > 0;
   };
   // The square of (x, z) and its neighbours has diagonal faces only if none of its four cells is dry.
   const auto isSquareOpen = [&](int x, int z) {
@@ -182,8 +190,9 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
   };
   // Where a square has no diagonal faces, the axis face beside it gets their weight, as if the water were mirrored at
   // the wall.
-  const auto axisWeight = [&](bool one_open, bool other_open) {
-    return nine ? 2.0 / 3.0 + (one_open ? 0.0 : 1.0 / 6.0) + (other_open ? 0.0 : 1.0 / 6.0) : 1.0;
+  const auto axisWeight = [&](int x, int z, int other_x, int other_z) {
+    if (!nine) return 1.0;
+    return 2.0 / 3.0 + (isSquareOpen(x, z) ? 0.0 : 1.0 / 6.0) + (isSquareOpen(other_x, other_z) ? 0.0 : 1.0 / 6.0);
   };
   for (int z = 0; z < nz; ++z) {
     for (int x = 0; x < nx; ++x) {
@@ -192,11 +201,11 @@ Basin layOutBasin(const core::Scene& scene, const WaveLayout& layout) {
       if (!isInside(x, z)) continue;
       const double here = depthAt(x, z);
       if (isInside(x + 1, z)) {
-        const double weight = axisWeight(isSquareOpen(x, z), isSquareOpen(x, z - 1));
+        const double weight = axisWeight(x, z, x, z - 1);
         c[0] = static_cast<float>(weight * faceDepth(here, depthAt(x + 1, z)));
       }
       if (isInside(x, z + 1)) {
-        const double weight = axisWeight(isSquareOpen(x, z), isSquareOpen(x - 1, z));
+        const double weight = axisWeight(x, z, x - 1, z);
         c[1] = static_cast<float>(weight * faceDepth(here, depthAt(x, z + 1)));
       }
     }
@@ -223,8 +232,9 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
   const double far_m = 4 * layout.longerSide_m();
   const auto distanceAt = [&](double x, double z) { return std::min(obstacleDistance(scene, x, z), far_m); };
   Terrain out;
-  out.ground.reserve(basin.depth_m.size());
-  for (int z = 0; z < nz; ++z) {
+  out.ground.resize(basin.depth_m.size());
+  core::forEachInParallel(layout.count_z, [&](std::size_t row) {
+    const int z = static_cast<int>(row);
     for (int x = 0; x < nx; ++x) {
       const double x_m = (x + 0.5) * layout.cell_m - layout.length_m / 2;
       const double z_m = (z + 0.5) * layout.cell_m - layout.width_m / 2;
@@ -242,10 +252,10 @@ Terrain layOutTerrain(const core::Scene& scene, const WaveLayout& layout, const 
         for (const core::Obstacle& obstacle : scene.obstacles)
           if (obstacleDistance(obstacle, x_m, z_m) < 0) depth_m = std::min(depth_m, -heightOf(obstacle));
       }
-      out.ground.push_back({static_cast<float>(d), static_cast<float>(dx / size), static_cast<float>(dz / size),
-                            static_cast<float>(depth_m)});
+      out.ground[i] = {static_cast<float>(d), static_cast<float>(dx / size), static_cast<float>(dz / size),
+                       static_cast<float>(depth_m)};
     }
-  }
+  });
 
   // Finds the nearest wet cell of each cell: starts from all wet cells and adds one ring of cells at a time.
   out.landing.assign(basin.depth_m.size(), -1);

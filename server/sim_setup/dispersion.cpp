@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <spindrift/core/half.h>
+#include <spindrift/core/parallel.h>
 #include <spindrift/sim_setup/dispersion.h>
 
 #include "dispersion_grid.h"
@@ -60,24 +61,45 @@ std::array<double, kPoleCount> cAt(double depth_cells) {
   return out;
 }
 
+/// A function of the depth that costs several logarithms, and its last result: neighbours often have one depth.
+template <class Of>
+class LastOf {
+ public:
+  explicit LastOf(Of of) : of_(std::move(of)) {}
+  const std::array<double, kPoleCount>& operator()(double depth_cells) {
+    if (depth_cells != depth_cells_) value_ = of_(depth_cells_ = depth_cells);
+    return value_;
+  }
+
+ private:
+  Of of_;
+  double depth_cells_ = std::numeric_limits<double>::quiet_NaN();
+  std::array<double, kPoleCount> value_{};
+};
+
 template <std::size_t kCount>
 void roundToHalves(std::vector<std::array<double, kCount>>& texels) {
-  for (auto& texel : texels) std::ranges::transform(texel, texel.begin(), core::roundToHalf);
+  core::forRangesInParallel(texels.size(), [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) std::ranges::transform(texels[i], texels[i].begin(), core::roundToHalf);
+  });
 }
 
 /// `k`: number of the grid, 0 for the finest, whose cells have `finest_m`.
 std::vector<Four> stiffnessOf(const DispersionGrid& grid, std::size_t k, double finest_m, double scene_depth_m) {
   const double cell_m = std::ldexp(finest_m, static_cast<int>(k));
   std::vector<Four> out(grid.wet.size(), Four{});
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    for (int axis = 0; axis < 2; ++axis) {
-      if (grid.open[i][axis] > 0.0) out[i][axis] = scene_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
+  core::forRangesInParallel(out.size(), [&](std::size_t begin, std::size_t end) {
+    LastOf last([&](double depth_cells) { return bAt(depth_cells, k); });
+    for (std::size_t i = begin; i < end; ++i) {
+      for (int axis = 0; axis < 2; ++axis) {
+        if (grid.open[i][axis] > 0.0) out[i][axis] = scene_depth_m * grid.resistance_pm[i][axis] / grid.open[i][axis];
+      }
+      if (grid.wet[i] <= 0.0) continue;
+      const auto& b = last(grid.depth_m[i] / finest_m);
+      for (std::size_t j = 0; j < kPoleCount; ++j)
+        out[i][2 + j] = scene_depth_m * b[j] * grid.depth_m[i] / (grid.wet[i] * cell_m * cell_m);
     }
-    if (grid.wet[i] <= 0.0) continue;
-    const auto b = bAt(grid.depth_m[i] / finest_m, k);
-    for (std::size_t j = 0; j < kPoleCount; ++j)
-      out[i][2 + j] = scene_depth_m * b[j] * grid.depth_m[i] / (grid.wet[i] * cell_m * cell_m);
-  }
+  });
   return out;
 }
 
@@ -205,23 +227,28 @@ Dispersion layOutDispersion(const WaveLayout& layout, const Basin& basin) {
   out.water = layout.counts();
   DispersionGrid grid(counts[0], {static_cast<double>(layout.count_x), static_cast<double>(layout.count_z)});
   out.root_c.resize(grid.wet.size());
-  for (std::size_t cell = 0; cell < basin.depth_m.size(); ++cell) {
-    const double depth_m = basin.depth_m[cell];
-    if (depth_m <= 0.0) continue;
-    const std::size_t i = cell % layout.count_x + counts[0].x * (cell / layout.count_x);
-    grid.wet[i] = 1.0;
-    grid.depth_m[i] = depth_m;
-    for (int axis = 0; axis < 2; ++axis) {
-      const double face_m = basin.conductance_m[cell][axis];
-      if (face_m <= 0.0 || (axis == 0 ? layout.count_x : layout.count_z) == 1) continue;
-      grid.open[i][axis] = 1.0;
-      grid.resistance_pm[i][axis] = 1.0 / face_m;
-      const auto c = cAt(face_m / layout.cell_m);
-      for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(c[j] * out.depth_m);
+  core::forRangesInParallel(basin.depth_m.size(), [&](std::size_t begin, std::size_t end) {
+    LastOf last(cAt);
+    for (std::size_t cell = begin; cell < end; ++cell) {
+      const double depth_m = basin.depth_m[cell];
+      if (depth_m <= 0.0) continue;
+      const std::size_t i = cell % layout.count_x + counts[0].x * (cell / layout.count_x);
+      grid.wet[i] = 1.0;
+      grid.depth_m[i] = depth_m;
+      for (int axis = 0; axis < 2; ++axis) {
+        const double face_m = basin.conductance_m[cell][axis];
+        if (face_m <= 0.0 || (axis == 0 ? layout.count_x : layout.count_z) == 1) continue;
+        grid.open[i][axis] = 1.0;
+        grid.resistance_pm[i][axis] = 1.0 / face_m;
+        const auto& c = last(face_m / layout.cell_m);
+        for (std::size_t j = 0; j < kPoleCount; ++j) out.root_c[i][2 * axis + j] = std::sqrt(c[j] * out.depth_m);
+      }
     }
-  }
+  });
   if (!out.is_flat) roundToHalves(out.root_c);
-  std::vector<DispersionGrid> grids{std::move(grid)};
+  std::vector<DispersionGrid> grids;
+  grids.reserve(counts.size());
+  grids.push_back(std::move(grid));
   std::vector<CellOwners> owners;
   for (std::size_t k = 0; k < counts.size(); ++k) {
     DispersionLevel& level = out.levels.emplace_back();

@@ -3,6 +3,8 @@
 #include <random>
 #include <utility>
 
+#include <spindrift/core/parallel.h>
+
 #include "dispersion_grid.h"
 
 namespace spindrift::sim {
@@ -12,6 +14,13 @@ using Cells = std::vector<double>;                 ///< one value per cell
 using Faces = std::vector<std::array<double, 2>>;  ///< one value per x and z face
 
 constexpr std::size_t kMotionCount = 4;
+/// Values of two motions: a vector of the compiler, which every processor has registers for.
+using Two [[gnu::vector_size(2 * sizeof(double))]] = double;
+/// Levels of two motions, one entry per cell. Motions do not know of each other, and one pass over the memory serves
+/// two.
+using Levels = std::vector<Two>;
+using Pairs = std::array<Levels, kMotionCount / 2>;
+
 /// The motions are found on the finest grid of at most so many cells per side, then refined grid by grid.
 constexpr int kBaseSide = 16;
 constexpr int kBaseRounds = 12;
@@ -28,156 +37,222 @@ constexpr double kWeakShare = 1e-3;
 /// their k^2 along it.
 constexpr double kAlongShare = 0.75;
 
-double dot(const Cells& a, const Cells& b) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-void addTo(Cells& a, double factor, const Cells& b) {
-  for (std::size_t i = 0; i < a.size(); ++i) a[i] += factor * b[i];
-}
-
 /// -div d grad on a grid, with the wet shares as areas; lengths in cells of the grid.
 class Laplacian {
  public:
-  explicit Laplacian(const DispersionGrid& grid) : wet_(grid.wet) {
+  explicit Laplacian(const DispersionGrid& grid)
+      : nx_(static_cast<std::size_t>(grid.nx)),
+        nz_(static_cast<std::size_t>(grid.nz)),
+        wet_(grid.wet),
+        conductance_m_(grid.wet.size()) {
+    std::size_t open_count = 0;
+    double sum_m = 0.0;
     for (std::size_t i = 0; i < wet_.size(); ++i) {
       for (std::size_t axis = 0; axis < 2; ++axis) {
-        if (grid.open[i][axis] > 0.0)
-          faces_.push_back({i, grid.behind(i, axis), axis, grid.open[i][axis] / grid.resistance_pm[i][axis]});
+        if (grid.open[i][axis] <= 0.0) continue;
+        conductance_m_[i][axis] = grid.open[i][axis] / grid.resistance_pm[i][axis];
+        sum_m += conductance_m_[i][axis];
+        ++open_count;
       }
     }
+    if (open_count > 0) mean_m_ = sum_m / static_cast<double>(open_count);
   }
 
-  /// Fluxes that belong to the levels: up the slope.
-  [[nodiscard]] Faces flux(const Cells& level) const {
+  /// Fluxes that belong to the levels of one motion: up the slope.
+  [[nodiscard]] Faces flux(const Levels& level, std::size_t motion) const {
     Faces out(level.size());
-    for (const Face& face : faces_)
-      out[face.from][face.axis] = face.conductance_m * (level[face.to] - level[face.from]);
+    for (std::size_t z = 0; z < nz_; ++z) {
+      for (std::size_t x = 0; x < nx_; ++x) {
+        const std::size_t i = x + nx_ * z;
+        const double here = level[i][motion];
+        out[i] = {conductance_m_[i][0] * (level[east(x, z)][motion] - here),
+                  conductance_m_[i][1] * (level[north(x, z)][motion] - here)};
+      }
+    }
     return out;
   }
 
-  [[nodiscard]] Cells weighted(Cells level) const {
-    for (std::size_t i = 0; i < level.size(); ++i) level[i] *= wet_[i];
+  [[nodiscard]] double wet(std::size_t cell) const { return wet_[cell]; }
+
+  /// Squares of the levels, by area.
+  void findSquares(const Levels& level, Two& out) const {
+    out = Two{};
+    for (std::size_t i = 0; i < level.size(); ++i) out += level[i] * (level[i] * wet_[i]);
+  }
+
+  [[nodiscard]] Levels weighted(Levels level, const Two& factor) const {
+    for (std::size_t i = 0; i < level.size(); ++i) level[i] = level[i] * wet_[i] * factor;
     return level;
   }
 
-  /// (-div d grad + shift) level
-  [[nodiscard]] Cells apply(const Cells& level, double shift) const {
-    Cells out(level.size());
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = shift * wet_[i] * level[i];
-    for (const Face& face : faces_) {
-      const double flux = face.conductance_m * (level[face.to] - level[face.from]);
-      out[face.from] -= flux;
-      out[face.to] += flux;
-    }
-    return out;
-  }
-
   /// <level, -div d grad level>/<level, level> [m]; 0 for a level of 0.
-  [[nodiscard]] double eigenvalueOf(const Cells& level) const {
-    const double square = dot(level, weighted(level));
-    return square > 0.0 ? dot(level, apply(level, 0.0)) / square : 0.0;
+  void findEigenvalues(const Levels& level, Two& out) const {
+    Two energy{};
+    for (std::size_t z = 0; z < nz_; ++z)
+      forRow(z, level, Two{}, [&](std::size_t i, const Two& image) { energy += level[i] * image; });
+    Two square;
+    findSquares(level, square);
+    out = square > 0.0 ? energy / square : Two{};
   }
 
-  [[nodiscard]] double meanConductance() const {
-    double sum = 0.0;
-    for (const Face& face : faces_) sum += face.conductance_m;
-    return faces_.empty() ? 0.0 : sum / static_cast<double>(faces_.size());
-  }
+  [[nodiscard]] double meanConductance() const { return mean_m_; }
 
-  /// Improves a solution of (-div d grad + shift) level = right by conjugate gradients with the diagonal as
-  /// preconditioner. Precondition: shift > 0.
-  void improve(Cells& level, const Cells& right, double shift, int iterations) const {
-    Cells diagonal(level.size());
-    for (std::size_t i = 0; i < diagonal.size(); ++i) diagonal[i] = shift * wet_[i];
-    for (const Face& face : faces_) {
-      diagonal[face.from] += face.conductance_m;
-      diagonal[face.to] += face.conductance_m;
-    }
-    const auto scaled = [&](Cells x) {
-      for (std::size_t i = 0; i < x.size(); ++i) x[i] = diagonal[i] > 0.0 ? x[i] / diagonal[i] : 0.0;
-      return x;
+  /// Improves solutions of (-div d grad + shift) level = right by conjugate gradients with the diagonal as
+  /// preconditioner; `rest`: the right side. A motion whose shift is not above 0 keeps its level.
+  void improve(Levels& level, Levels rest, const Two& shift, int iterations) const {
+    const auto scale = [&](std::size_t x, std::size_t z, const Two& value, Two& out) {
+      const std::size_t i = x + nx_ * z;
+      Two diagonal = shift * wet_[i];
+      forFaces(x, z, [&](std::size_t owner, std::size_t axis, bool) { diagonal += conductance_m_[owner][axis]; });
+      out = diagonal > 0.0 ? value / diagonal : Two{};
     };
-    Cells rest = right;
-    addTo(rest, -1.0, apply(level, shift));
-    Cells direction = scaled(rest);
-    double square = dot(rest, direction);
-    for (int k = 0; k < iterations && square > 0.0; ++k) {
-      const Cells image = apply(direction, shift);
-      const double step = square / dot(direction, image);
-      addTo(level, step, direction);
-      addTo(rest, -step, image);
-      Cells next = scaled(rest);
-      const double now = dot(rest, next);
-      addTo(next, now / square, direction);
-      direction = std::move(next);
-      square = now;
+    Two square{};
+    Levels direction(level.size());
+    for (std::size_t z = 0; z < nz_; ++z) {
+      forRow(z, level, shift, [&](std::size_t i, const Two& image) {
+        rest[i] -= image;
+        scale(i - nx_ * z, z, rest[i], direction[i]);
+        square += rest[i] * direction[i];
+      });
+    }
+    Two turn{};  // share of the last direction in the next one
+    const auto turnRow = [&](std::size_t z) {
+      for (std::size_t x = 0; x < nx_; ++x) {
+        Two next;
+        scale(x, z, rest[x + nx_ * z], next);
+        direction[x + nx_ * z] = next + turn * direction[x + nx_ * z];
+      }
+    };
+    for (int k = 0; k < iterations; ++k) {
+      const auto goes_on = (square > 0.0) & (shift > 0.0);
+      if (!goes_on[0] && !goes_on[1]) return;
+      // The row behind a row, which may be beyond a periodic side, is turned before the image of the row.
+      Two along{};
+      if (k > 0) turnRow(nz_ - 1);
+      if (k > 0 && nz_ > 1) turnRow(0);
+      for (std::size_t z = 0; z < nz_; ++z) {
+        if (k > 0 && z + 2 < nz_) turnRow(z + 1);
+        forRow(z, direction, shift, [&](std::size_t i, const Two& image) { along += direction[i] * image; });
+      }
+      const Two step = goes_on ? square / along : Two{};
+      Two now{};
+      for (std::size_t z = 0; z < nz_; ++z) {
+        forRow(z, direction, shift, [&](std::size_t i, const Two& image) {
+          level[i] += step * direction[i];
+          rest[i] -= step * image;
+          Two scaled;
+          scale(i - nx_ * z, z, rest[i], scaled);
+          now += rest[i] * scaled;
+        });
+      }
+      turn = goes_on ? now / square : Two{};
+      square = goes_on ? now : Two{};
     }
   }
 
  private:
-  struct Face {
-    std::size_t from, to, axis;
-    double conductance_m;
-  };
+  [[nodiscard]] std::size_t east(std::size_t x, std::size_t z) const { return (x + 1 < nx_ ? x + 1 : 0) + nx_ * z; }
+  [[nodiscard]] std::size_t north(std::size_t x, std::size_t z) const { return x + nx_ * (z + 1 < nz_ ? z + 1 : 0); }
+
+  /// Visits the faces of a cell in the order of the cells that own them: with that cell, the axis, and whether the cell
+  /// owns it itself. Every sum over faces has this order, so that its rounding does.
+  template <class Visit>
+  void forFaces(std::size_t x, std::size_t z, const Visit& visit) const {
+    const std::size_t i = x + nx_ * z;
+    if (z > 0) visit(i - nx_, 1, false);
+    if (x > 0) visit(i - 1, 0, false);
+    visit(i, 0, true);
+    visit(i, 1, true);
+    if (x == 0) visit(i + nx_ - 1, 0, false);
+    if (z == 0) visit(i + nx_ * (nz_ - 1), 1, false);
+  }
+
+  /// Calls take(cell, (-div d grad + shift) level) for the cells of a row.
+  template <class Take>
+  void forRow(std::size_t z, const Levels& level, const Two& shift, const Take& take) const {
+    for (std::size_t x = 0; x < nx_; ++x) {
+      const std::size_t i = x + nx_ * z;
+      const Two here = level[i];
+      Two out = shift * wet_[i] * here;
+      forFaces(x, z, [&](std::size_t owner, std::size_t axis, bool is_own) {
+        const double conductance_m = conductance_m_[owner][axis];
+        const Two& there = is_own ? level[axis == 0 ? east(x, z) : north(x, z)] : level[owner];
+        out += conductance_m * (here - there);
+      });
+      take(i, out);
+    }
+  }
+
+  std::size_t nx_, nz_;
   const Cells& wet_;
-  std::vector<Face> faces_;
+  Faces conductance_m_;  ///< 0 where closed
+  double mean_m_ = 0.0;  ///< of the open faces
 };
 
 /// Gram-Schmidt with the areas as weights, also against the level surface. What is left of a level that the others make
 /// up becomes 0.
-void orthonormalize(const Laplacian& laplacian, std::vector<Cells>& levels) {
-  std::vector<Cells> done{Cells(levels.front().size(), 1.0)};
-  const double area = dot(done.front(), laplacian.weighted(done.front()));
+void orthonormalize(const Laplacian& laplacian, Pairs& levels) {
+  const std::size_t cells = levels[0].size();
+  const auto value = [&](std::size_t motion, std::size_t i) { return levels[motion / 2][i][motion % 2]; };
+  const auto product = [&](std::size_t a, std::size_t b) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < cells; ++i) sum += value(a, i) * (value(b, i) * laplacian.wet(i));
+    return sum;
+  };
+  double area = 0.0;
+  for (std::size_t i = 0; i < cells; ++i) area += laplacian.wet(i);
   if (area <= 0.0) return;
-  for (double& v : done.front()) v /= std::sqrt(area);
-  for (Cells& level : levels) {
-    const double before = dot(level, laplacian.weighted(level));
+  const double even = 1.0 / std::sqrt(area);
+  for (std::size_t m = 0; m < kMotionCount; ++m) {
+    const auto add = [&](std::size_t i, double v) { levels[m / 2][i][m % 2] += v; };
+    const double before = product(m, m);
     for (int pass = 0; pass < 2; ++pass) {
-      for (const Cells& other : done) addTo(level, -dot(level, laplacian.weighted(other)), other);
+      double mean = 0.0;
+      for (std::size_t i = 0; i < cells; ++i) mean += value(m, i) * (even * laplacian.wet(i));
+      for (std::size_t i = 0; i < cells; ++i) add(i, -mean * even);
+      for (std::size_t other = 0; other < m; ++other) {
+        const double factor = -product(m, other);
+        for (std::size_t i = 0; i < cells; ++i) add(i, factor * value(other, i));
+      }
     }
-    const double square = dot(level, laplacian.weighted(level));
+    const double square = product(m, m);
     const double scale = square > 1e-20 * before ? 1 / std::sqrt(square) : 0.0;
-    for (double& v : level) v *= scale;
-    done.push_back(level);
+    for (Two& level : levels[m / 2]) level[m % 2] *= scale;
   }
 }
 
 /// The slowest motions on a small grid, by inverse iteration from noise.
-std::vector<Cells> slowest(const DispersionGrid& grid) {
+Pairs slowest(const DispersionGrid& grid) {
   const Laplacian laplacian(grid);
   std::mt19937 random(5);
-  std::vector<Cells> levels(kMotionCount, Cells(grid.wet.size()));
-  for (Cells& level : levels)
-    std::ranges::generate(level, [&] { return static_cast<double>(random()) / 0x1p31 - 1.0; });
+  Pairs levels{Levels(grid.wet.size()), Levels(grid.wet.size())};
+  for (std::size_t m = 0; m < kMotionCount; ++m) {
+    for (Two& level : levels[m / 2]) level[m % 2] = static_cast<double>(random()) / 0x1p31 - 1.0;
+  }
   orthonormalize(laplacian, levels);
   // Below the lowest eigenvalue of an open square, and enough for parts without any outflow.
-  const double shift =
-      laplacian.meanConductance() / (static_cast<double>(std::max(grid.nx, grid.nz)) * std::max(grid.nx, grid.nz));
+  const double side = std::max(grid.nx, grid.nz);
+  const double shift = laplacian.meanConductance() / (side * side);
   for (int round = 0; round < kBaseRounds && shift > 0.0; ++round) {
-    for (Cells& level : levels) {
-      const Cells right = laplacian.weighted(level);
-      std::ranges::fill(level, 0.0);
-      laplacian.improve(level, right, shift, kBaseIterations);
+    for (Levels& pair : levels) {
+      Levels right = laplacian.weighted(std::exchange(pair, Levels(pair.size())), Two{1.0, 1.0});
+      laplacian.improve(pair, std::move(right), Two{shift, shift}, kBaseIterations);
     }
     orthonormalize(laplacian, levels);
   }
   return levels;
 }
 
-/// A motion on the next finer grid: one inexact inverse iteration from the coarse one.
-Cells refined(const Laplacian& coarse, const Cells& level, const Laplacian& fine, const CellOwners& owner) {
-  Cells out(owner.size(), 0.0);
+/// The motions on the next finer grid: one inexact inverse iteration from the coarse ones.
+Levels refined(const Laplacian& coarse, const Levels& levels, const Laplacian& fine, const CellOwners& owner) {
+  Levels out(owner.size());
   for (std::size_t i = 0; i < out.size(); ++i) {
-    if (owner[i]) out[i] = level[*owner[i]];
+    if (owner[i]) out[i] = levels[*owner[i]];
   }
-  const double eigenvalue = coarse.eigenvalueOf(level) / 4;
-  if (eigenvalue <= 0.0) return out;
-  Cells right = fine.weighted(out);
-  for (double& v : right) v *= 2 * eigenvalue;
-  fine.improve(out, right, eigenvalue, kIterations);
+  Two eigenvalue;
+  coarse.findEigenvalues(levels, eigenvalue);
+  eigenvalue /= 4.0;
+  fine.improve(out, fine.weighted(out, 2.0 * eigenvalue), eigenvalue, kIterations);
   return out;
 }
 
@@ -299,21 +374,28 @@ void fit(DispersionGrid& grid, const std::vector<Motion>& motions, double width)
 void fitResistances(std::vector<DispersionGrid>& grids, const std::vector<CellOwners>& owners) {
   std::size_t base = 0;
   while (base + 1 < grids.size() && std::max(grids[base].nx, grids[base].nz) > kBaseSide) ++base;
-  std::vector<Cells> levels = slowest(grids[base]);
-  for (std::size_t k = base; k-- > 0;) {
-    const Laplacian fine(grids[k]);
-    const Laplacian coarse(grids[k + 1]);
-    for (Cells& level : levels) level = refined(coarse, level, fine, owners[k]);
-  }
-  const Laplacian finest(grids.front());
+  Pairs levels = slowest(grids[base]);
+  std::vector<Laplacian> laplacians;
+  for (std::size_t k = 0; k <= base; ++k) laplacians.emplace_back(grids[k]);
+  core::forEachInParallel(levels.size(), [&](std::size_t pair) {
+    for (std::size_t k = base; k-- > 0;)
+      levels[pair] = refined(laplacians[k + 1], levels[pair], laplacians[k], owners[k]);
+  });
+  const Laplacian& finest = laplacians.front();
   std::vector<Motion> motions;
-  for (Cells& level : levels) {
-    const double eigenvalue_m = finest.eigenvalueOf(level);
-    if (eigenvalue_m <= 0.0) continue;
-    // The same energy for all.
-    const double scale = 1 / std::sqrt(eigenvalue_m * dot(level, finest.weighted(level)));
-    for (double& v : level) v *= scale;
-    motions.push_back({level, finest.flux(level), eigenvalue_m / finest.meanConductance()});
+  for (Levels& pair : levels) {
+    Two eigenvalues_m, squares;
+    finest.findEigenvalues(pair, eigenvalues_m);
+    finest.findSquares(pair, squares);
+    for (std::size_t m = 0; m < 2; ++m) {
+      if (eigenvalues_m[m] <= 0.0) continue;
+      // The same energy for all.
+      const double scale = 1 / std::sqrt(eigenvalues_m[m] * squares[m]);
+      Motion& motion = motions.emplace_back();
+      for (Two& level : pair) motion.level.push_back(level[m] *= scale);
+      motion.flux = finest.flux(pair, m);
+      motion.k_squared = eigenvalues_m[m] / finest.meanConductance();
+    }
   }
   double width = 1.0;
   for (std::size_t k = 1; k < grids.size(); ++k) {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <spindrift/core/parallel.h>
+
 namespace spindrift::sim {
 namespace {
 
@@ -29,6 +31,8 @@ std::array<double, 2> wayOut(const DispersionGrid& fine, int x, int z, int k) {
 /// Returns the parts of a block that are connected inside it: the number of its first cell for each cell.
 std::array<int, 4> partsOf(const DispersionGrid& fine, const std::array<std::size_t, 4>& block) {
   std::array<int, 4> part{0, 1, 2, 3};
+  if (std::ranges::all_of(kInnerFaces, [&](const auto& f) { return fine.open[block[f.from]][f.axis] > 0.0; }))
+    return {};
   for (int round = 0; round < 3; ++round) {
     for (const InnerFace& face : kInnerFaces) {
       if (fine.open[block[face.from]][face.axis] <= 0.0) continue;
@@ -228,18 +232,46 @@ void coverFaces(const DispersionGrid& fine, Coarsened& out) {
   }
 }
 
+/// The faces around a block and the direction in which a flux through them leaves it.
+struct Side {
+  int x, z, axis;
+  double outward;
+};
+constexpr Side kSides[] = {{0, 0, 0, 1.0}, {-1, 0, 0, -1.0}, {0, 0, 1, 1.0}, {0, -1, 1, -1.0}};
+
+/// The same as fillInside() for a block of four open cells without a strip of a neighbour, each of whose sides is open
+/// or closed: half of a coarse flux passes each inner face of its axis. Returns false for other blocks.
+bool fillOpen(const DispersionGrid& fine, int x, int z, Coarsened& out) {
+  if (fine.nx == 2 || fine.nz == 2) return false;
+  const std::size_t own = out.grid.at(x, z);
+  const auto block = blockOf(fine, x, z);
+  for (const std::size_t cell : block)
+    if (out.owner[cell] != own || fine.wet[cell] != 1.0) return false;
+  for (const InnerFace& face : kInnerFaces)
+    if (fine.open[block[face.from]][face.axis] != 1.0) return false;
+  for (int axis = 0; axis < 2; ++axis)
+    for (const std::size_t cell : coveredBy(fine, x, z, axis).behind)
+      if (out.owner[cell] == own) return false;
+  std::array<double, 4> open{};
+  for (std::size_t side = 0; side < 4; ++side) {
+    const auto& [dx, dz, axis, outward] = kSides[side];
+    open[side] = out.grid.open[out.grid.at(x + dx, z + dz)][axis];
+    if (open[side] > 0.0 && open[side] != 1.0) return false;
+  }
+  for (const InnerFace& face : kInnerFaces) {
+    Four& weights = (face.axis == 0 ? out.from_coarse_x : out.from_coarse_z)[block[face.from]];
+    for (std::size_t side = 0; side < 4; ++side)
+      if (open[side] == 1.0) weights[side] = kSides[side].axis == face.axis ? 0.5 : 0.0;
+  }
+  return true;
+}
+
 /// Weights of the faces inside the area of a coarse cell.
 void fillInside(const DispersionGrid& fine, int x, int z, Coarsened& out) {
   const DispersionGrid& coarse = out.grid;
   const auto weightsOf = [&](int axis) -> std::vector<Four>& {
     return axis == 0 ? out.from_coarse_x : out.from_coarse_z;
   };
-  // The faces around a block and the direction in which a flux through them leaves it.
-  struct Side {
-    int x, z, axis;
-    double outward;
-  };
-  constexpr Side kSides[] = {{0, 0, 0, 1.0}, {-1, 0, 0, -1.0}, {0, 0, 1, 1.0}, {0, -1, 1, -1.0}};
   const Area area = areaOf(fine, out.owner, x, z, coarse.at(x, z));
   if (area.cells.empty()) return;
   const bool is_open = area.cells.size() == 4 && area.wet == 4.0 && area.faces.size() == 4 &&
@@ -290,9 +322,12 @@ Coarsened coarsen(const DispersionGrid& fine, CellCounts counts) {
   out.from_coarse_x.assign(fine.wet.size(), Four{});
   out.from_coarse_z.assign(fine.wet.size(), Four{});
   coverFaces(fine, out);
-  for (int z = 0; z < fine.nz / 2; ++z) {
-    for (int x = 0; x < fine.nx / 2; ++x) fillInside(fine, x, z, out);
-  }
+  core::forEachInParallel(static_cast<std::size_t>(fine.nz / 2), [&](std::size_t row) {
+    const int z = static_cast<int>(row);
+    for (int x = 0; x < fine.nx / 2; ++x) {
+      if (!fillOpen(fine, x, z, out)) fillInside(fine, x, z, out);
+    }
+  });
   return out;
 }
 

@@ -48,7 +48,9 @@ struct DispersionGrid {
     return false;
   }
   [[nodiscard]] std::size_t at(int x, int z) const {
-    return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
+    if (x < 0 || x >= nx) x = (x + nx) % nx;
+    if (z < 0 || z >= nz) z = (z + nz) % nz;
+    return static_cast<std::size_t>(x + nx * z);
   }
   [[nodiscard]] std::size_t behind(std::size_t cell, std::size_t axis) const {
     const int x = along(cell, 0);

@@ -31,6 +31,11 @@ Place placeFrom(double centre_x_m, double centre_z_m, double heading_deg, double
   return {dx * std::cos(heading) + dz * std::sin(heading), dz * std::cos(heading) - dx * std::sin(heading)};
 }
 
+/// Length of a vector of which a side of zero is common.
+double lengthOf(double a, double b) {
+  return a == 0.0 || b == 0.0 ? std::abs(a + b) : std::hypot(a, b);
+}
+
 /// Distance in the plane from an obstacle, negative inside. [m]
 double distance(const core::Rock& rock, double x_m, double z_m) {
   return std::hypot(x_m - rock.x_m, z_m - rock.z_m) - rock.radius_m;
@@ -40,7 +45,7 @@ double distance(const core::Breakwater& wall, double x_m, double z_m) {
   const Place place = placeFrom(wall.x_m, wall.z_m, wall.heading_deg, x_m, z_m);
   const double along = std::abs(place.along_m) - wall.length_m / 2;
   const double across = std::abs(place.across_m) - wall.width_m / 2;
-  return std::hypot(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
+  return lengthOf(std::max(along, 0.0), std::max(across, 0.0)) + std::min(std::max(along, across), 0.0);
 }
 
 double floorDepth(const core::Scene& scene) {
@@ -71,8 +76,8 @@ double flankShare(double distance_m, double flank_m) {
 
 /// Distance from a rectangle with this centre; 0 inside.
 double outsideRectangle(Place place, double length_m, double width_m) {
-  return std::hypot(std::max(std::abs(place.along_m) - length_m / 2, 0.0),
-                    std::max(std::abs(place.across_m) - width_m / 2, 0.0));
+  return lengthOf(std::max(std::abs(place.along_m) - length_m / 2, 0.0),
+                  std::max(std::abs(place.across_m) - width_m / 2, 0.0));
 }
 
 /// How much a shape raises the ground. [m]

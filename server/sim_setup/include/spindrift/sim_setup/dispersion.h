@@ -71,7 +71,9 @@ struct DispersionLevel {
   [[nodiscard]] std::size_t index(int x, int z) const {
     const int nx = static_cast<int>(count.x);
     const int nz = static_cast<int>(count.z);
-    return static_cast<std::size_t>((x + nx) % nx + nx * ((z + nz) % nz));
+    if (x < 0 || x >= nx) x = (x + nx) % nx;
+    if (z < 0 || z >= nz) z = (z + nz) % nz;
+    return static_cast<std::size_t>(x + nx * z);
   }
 };
 
