@@ -266,7 +266,7 @@ void main() {
   float fresnel = waterFresnel(facing);
 #ifdef SHORE
   // Thin water is broken by the sand below it, and mirrors less.
-  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.8, deep_m));
+  fresnel *= mix(0.6, 1.0, smoothstep(0.02, 0.8, deep_m));
 #endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
@@ -320,6 +320,10 @@ void main() {
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
+#ifdef OPEN_SEA
+    // Caps that wind tears from crests which do not break yet.
+    foam = max(foam, smoothstep(0.003, 0.012, u_slope_variances.y) * crestFoam(v_top_m, 2.0 * field.a));
+#endif
 #elif defined(OPEN_SEA)
     foam = max(foam, crestFoam(v_top_m, field.a));
 #endif
@@ -360,7 +364,7 @@ void main() {
     // It shades itself where it lies thicker toward the sun.
     float relief = (wide - texture(u_noise, at / u_lace_m + 0.02 * u_sun_direction.xz).r) * (1.0 - smoothstep(0.0, 0.2, blur));
     float sunlit = sunlit_share * clamp(0.15 + 0.85 * dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.91, 0.95, 0.97) * (u_sun_light * sunlit + u_ambient_up * vec3(1.0, 0.96, 0.9)) * (0.5 + 0.5 * lace + 0.9 * relief);
+    vec3 froth = vec3(0.91, 0.95, 0.97) * (u_sun_light * sunlit + u_ambient_up * vec3(1.0, 0.96, 0.9)) * (0.58 + 0.5 * lace + 0.9 * relief);
     water = mix(water, froth, white);
   }
 #endif

@@ -68,7 +68,7 @@ void main() {
     v_flight.xy = flight / speed_mps;
   }
   // Mist that hangs in the air is too thin to be seen.
-  v_strength = is_mist ? 0.1 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.85 * (1.0 - age * age);
+  v_strength = is_mist ? 0.06 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
 #else
   v_strength = 1.0;
 #endif
