@@ -13,11 +13,11 @@ import { repository } from "../server.mjs";
 const kDefault = { tick: 180 };
 /** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
 const kShots = {
-  beach: { tick: 516, historyTicks: 300 },
+  beach: { tick: 552, historyTicks: 300 },
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
-  breaking_wave: { tick: 162 },
+  breaking_wave: { tick: 144 },
   breaking_wave_particles: { tick: 96 },
   breaking_wave_wave: { tick: 150 },
   dam_break: { tick: 60 },
@@ -35,7 +35,7 @@ const kShots = {
   rain_rings: { tick: 312 },
   splash: { tick: 84 },
   splash_particles: { tick: 84 },
-  splash_wave: { tick: 102 },
+  splash_wave: { tick: 120 },
   still_pool: { tick: 60 },
   thesis: { tick: 114 },
   wave_only: { tick: 180 },

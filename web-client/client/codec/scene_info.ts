@@ -30,6 +30,8 @@ export interface WaveInfo {
   dampingPerS: number;
   /** Water moves over its shore: elevations of dry cells are those of the ground. */
   isNonlinear: boolean;
+  /** Waves steepen in linear water, straight as the sides they came from; left out: no. */
+  isSteepening?: boolean;
 }
 
 /** What the sea that wind raises follows from, as in the server (docs/wind_sea.md). */
@@ -103,6 +105,7 @@ export function readWave(wave: WaveScene): WaveInfo {
     spongeWidthM: isSize(spongeWidthM) ? spongeWidthM : 0,
     dampingPerS: Number.isFinite(dampingPerS) ? Math.max(dampingPerS, 0) : 0,
     isNonlinear: wave.bulk === Bulk.NONLINEAR,
+    isSteepening: wave.bulk !== Bulk.NONLINEAR && (wave.steepeningRatio ?? 0) > 0,
   };
 }
 

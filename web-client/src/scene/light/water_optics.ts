@@ -19,7 +19,7 @@ const kProperties: Record<WaterTypeName, Properties> = {
   // So deep that no bed is seen.
   ocean: { absorption: [0.350, 0.068, 0.030], backscattering: [0.0016, 0.0028, 0.0052], realPerModelLength: 20 },
   coast: { absorption: [0.375, 0.090, 0.082], backscattering: [0.0045, 0.0070, 0.0078] },
-  harbor: { absorption: [0.520, 0.230, 0.300], backscattering: [0.0105, 0.0170, 0.0155] },
+  harbor: { absorption: [0.460, 0.140, 0.165], backscattering: [0.0080, 0.0155, 0.0165] },
 };
 
 /** Scenes are models: this many metres of real water have the colour of one metre of theirs. */

@@ -2,7 +2,7 @@
 #include <sky>
 
 flat in float v_strength;
-flat in vec3 v_flight;
+flat in vec4 v_flight;
 layout(location = 0) out vec4 color;
 
 void main() {

@@ -9,6 +9,8 @@ const float kUpperLayer = 0.4;
 float focusedLight(vec2 crossed, float deep_m) {
   vec2 uv = crossed / u_caustic_extent_m + 0.5;
   vec2 layers = texture(u_caustics, uv).rg;
+  // The grid is coarser than the filaments of light: what is bright is narrower and brighter in truth.
+  layers = min(layers * (0.72 + 0.28 * layers), 4.0);
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));

@@ -21,10 +21,10 @@ vec2 pixelSlopes(vec2 at) {
   return (finer * (1.0 - share) + wider * share) * inversesqrt(max(u_slope_variances.y * (1.0 - 2.0 * share + 2.0 * share * share), 1e-6));
 }
 
-// Share of the variance that is drawn as waves of a few pixels.
-const float kDrawnShare = 0.7;
+// Share of the variance that is drawn as waves of a few pixels: the more, the smaller and sparser the glints.
+const float kDrawnShare = 0.9;
 // The finest waves are seen as an even gleam around the glints.
-const float kGleam = 0.12;
+const float kGleam = 0.10;
 
 // Share of the sunlight that slopes of this variance around `slopes` mirror, by the density of those that do (Cox & Munk 1954).
 // `missing`: the slopes that mirror the sun.
@@ -42,6 +42,6 @@ vec3 mirroredSun(vec3 ray, vec2 slopes, vec2 pixel_slopes, float variance, float
   float steep = halfway.y * halfway.y;
   vec2 share = vec2(glints, gleam) * (waterFresnel(max(-dot(halfway, ray), 0.0)) / (4.0 * max(facing, 0.06) * steep * steep));
   // Brighter than white is only white: glints keep a middle and a rim.
-  share /= 1.0 + 0.85 * share;
+  share /= 1.0 + vec2(0.6, 1.4) * share;
   return u_sun_light * (1.25 * mix(share.x, share.y, kGleam));
 }

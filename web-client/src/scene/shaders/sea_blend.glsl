@@ -15,5 +15,20 @@ float simulatedShare(vec2 at, vec2 extent_m) {
 // Distance from the simulated water; 0 inside.
 float awayFromWater(vec2 at, vec2 extent_m) { return length(max(abs(at) - 0.5 * extent_m, 0.0)); }
 
+#ifdef UNEVEN
+const float kUnevenM = 0.14;
+
+// Where the field of a position is read. Steepening crests that the simulation keeps as straight as the side they came from are drawn as wind
+// and bed make them.
+vec2 unevenAt(vec2 at) {
+  return at + kUnevenM * (sin(1.1 * at.yx + vec2(0.4, 2.0)) + 0.5 * sin(2.3 * at.yx + vec2(4.1, 0.7)) + 0.2 * sin(5.1 * at.yx + 0.8 * at));
+}
+
+// Factor on its elevation and slopes.
+float unevenHeight(vec2 at, float top_m) {
+  return 1.0 + 0.2 * smoothstep(0.03, 0.3, top_m) * (0.65 * sin(1.7 * at.y + 0.3 * at.x) + 0.35 * sin(4.3 * at.y + 1.3));
+}
+#endif
+
 // Foam of crests that curl over (curvature in 1/m), where the server sends none.
 float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.7, 2.4, -curvature); }

@@ -31,9 +31,9 @@ float tiles(vec2 at, float tile_m) {
   float fine = 1.0 - smoothstep(0.2, 0.7, blur);
   if (fine <= 0.0) return 0.97;
   vec2 edge = 0.5 - abs(fract(cell) - 0.5);
-  float joint = 1.0 - smoothstep(0.025 - 0.5 * blur, 0.025 + blur, min(edge.x, edge.y));
-  float seen = fine * min(0.1 / blur, 1.0);
-  return 1.0 + fine * 0.16 * (cellHash(floor(cell)) - 0.5) - seen * 0.34 * joint;
+  float joint = 1.0 - smoothstep(0.03 - 0.5 * blur, 0.03 + 0.6 * blur, min(edge.x, edge.y));
+  float seen = fine * min(0.14 / blur, 1.0);
+  return 1.0 + fine * 0.14 * (cellHash(floor(cell)) - 0.5) - seen * 0.46 * joint;
 }
 
 #ifndef CAUSTICS

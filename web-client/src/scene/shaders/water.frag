@@ -3,6 +3,7 @@
 // MIRROR: solids are reflected as well, as far as they are on the screen; steps of the search for them. BEACH: the water ends where the bed rises above it.
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
+// UNEVEN: straight crests are drawn uneven.
 // RIPPLES: of a pool, whose walls others draw, as with WALLS. RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
@@ -66,7 +67,7 @@ layout(location = 0) out vec4 color;
 // Variance of the slopes of waves finer than the ripples.
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
-const float kContactM = 0.6;
+const float kContactM = 0.8;
 
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
 #define GLITTER
@@ -131,7 +132,12 @@ void main() {
   vec3 normal = v_side_normal;
 #else
 #ifdef OPEN_SEA
+#ifdef UNEVEN
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_world.xz) / u_extent_m + 0.5) : vec4(0.0);
+  field *= unevenHeight(v_world.xz, field.r);
+#else
   vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
+#endif
 #else
   vec4 field = smoothTexel(u_field, v_world.xz / u_extent_m + 0.5);
 #endif
@@ -162,6 +168,12 @@ void main() {
   vec2 level_slopes = field.gb;
   field.gb += kSkyShare * sqrt(lost_variance) * pixel_slopes;
 #endif
+  // What is below is refracted by the waves that are larger than a pixel: finer ones would tear its lines into dots.
+#ifdef GLITTER
+  vec3 bending = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
+#else
+  vec3 bending = normalize(vec3(-field.g, 1.0, -field.b));
+#endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
@@ -185,7 +197,8 @@ void main() {
   float way_m = wayOut(v_world, ray);
   vec2 shifted_uv = uv;
 #ifndef SKIRT
-  vec3 bent = refract(ray, normal, 0.75);
+  if (dot(bending, ray) > -0.02) bending = normal;
+  vec3 bent = refract(ray, bending, 0.75);
   // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
   float reach_m = min(0.5 * way_m, 0.45);
 #ifdef SHORE
@@ -253,7 +266,7 @@ void main() {
   float fresnel = waterFresnel(facing);
 #ifdef SHORE
   // Thin water is broken by the sand below it, and mirrors less.
-  fresnel *= mix(0.3, 1.0, smoothstep(0.02, 0.8, deep_m));
+  fresnel *= mix(0.6, 1.0, smoothstep(0.02, 0.8, deep_m));
 #endif
   vec3 mirrored = reflect(ray, normal);
 #if defined(OPEN_SEA) && !defined(SKIRT)
@@ -276,7 +289,7 @@ void main() {
 #endif
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.
-  water *= 1.0 - 0.45 * contact * contact;
+  water *= 1.0 - 0.25 * contact * contact;
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
 #else
@@ -289,7 +302,11 @@ void main() {
 #endif
 #endif
 #ifndef SKIRT
+#ifdef UNEVEN
+  vec2 place = unevenAt(v_world.xz) / u_extent_m + 0.5;
+#else
   vec2 place = v_world.xz / u_extent_m + 0.5;
+#endif
 #if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
 #else
@@ -303,6 +320,10 @@ void main() {
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
+#ifdef OPEN_SEA
+    // Caps that wind tears from crests which do not break yet.
+    foam = max(foam, smoothstep(0.003, 0.012, u_slope_variances.y) * crestFoam(v_top_m, 2.0 * field.a));
+#endif
 #elif defined(OPEN_SEA)
     foam = max(foam, crestFoam(v_top_m, field.a));
 #endif
@@ -320,28 +341,31 @@ void main() {
 #endif
   if (foam > 0.01) {
     vec2 at = v_world.xz - 0.6 * field.gb;
-    float wide = texture(u_noise, at / u_lace_m).r;
-    float lace = clamp(0.54 * wide + 0.56 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r - 0.05, 0.0, 1.0);
-    // Patches, not an even veil with straight edges.
-    foam *= 0.4 + 1.05 * texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r;
-    // Much foam is white with small holes, little foam a few thin threads. Fading foam opens early and becomes transparent, so that only
-    // water that has just broken is nearly closed.
-    float strength = min(1.25 * foam * sqrt(foam) + 0.1, 0.8);
+    // The water's motion draws the lace out and curls it.
+    vec2 curl = vec2(texture(u_noise, at.yx / (2.9 * u_lace_m) + 0.13).r, texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r);
+    at += 0.2 * u_lace_m * (curl - 0.5);
     // Far away the lace is finer than a pixel, and its edges would be dots.
     vec2 at_step = fwidth(at);
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
-    float white = smoothstep(1.0 - strength - blur, 1.0 - strength + 0.14 + 0.3 * strength + blur, lace + 0.02) * smoothstep(0.0, 0.35, foam);
-    // Bubbles below the surface first, then froth on it.
-    float clouded = 0.45 * foam * foam;
+    float wide = texture(u_noise, at / u_lace_m).r;
+    float lace = 0.5 * wide + 0.34 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r + 0.16 * texture(u_noise, at / (0.11 * u_lace_m)).r;
+    // Patches, not an even veil with straight edges.
+    foam *= 0.4 + 1.05 * curl.y;
+    float cover = min(foam, 1.0);
+    // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
+    float thick = clamp((lace - 0.78 + 0.62 * cover + 0.5 * blur) / (0.22 + 0.3 * cover + blur), 0.0, 1.0);
+    float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.25, foam) * mix(0.62, 0.96, cover);
+    // Bubbles below the surface reach further than the froth on it.
+    float clouded = 0.55 * cover * (0.35 + 0.65 * wide);
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif
     water = mix(water, u_bubbly * u_water_light, clouded);
-    // It lies thicker where the lace is brighter, and shades itself.
+    // It shades itself where it lies thicker toward the sun.
     float relief = (wide - texture(u_noise, at / u_lace_m + 0.02 * u_sun_direction.xz).r) * (1.0 - smoothstep(0.0, 0.2, blur));
-    float sunlit = sunlit_share * clamp(dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sunlit + u_ambient_up * vec3(1.05, 0.96, 0.86)) * (0.55 + 0.5 * lace + 0.8 * relief);
-    water = mix(water, froth, 0.94 * white);
+    float sunlit = sunlit_share * clamp(0.15 + 0.85 * dot(normal, u_sun_direction), 0.0, 1.0);
+    vec3 froth = vec3(0.91, 0.95, 0.97) * (u_sun_light * sunlit + u_ambient_up * vec3(1.0, 0.96, 0.9)) * (0.58 + 0.5 * lace + 0.9 * relief);
+    water = mix(water, froth, white);
   }
 #endif
 #ifdef OPEN_SEA

@@ -1,5 +1,6 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
 // VERTEX_LIT: for water_plain.frag. LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
+// UNEVEN: straight crests are drawn uneven.
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
@@ -34,7 +35,12 @@ out float v_top_m;
 #endif
 
 void main() {
+#ifdef UNEVEN
+  vec4 field = texture(u_field, unevenAt(position.xz * u_extent_m) / u_extent_m + 0.5);
+  field.r *= unevenHeight(position.xz * u_extent_m, field.r);
+#else
   vec4 field = texture(u_field, position.xz + 0.5);
+#endif
   v_top_m = field.r;
 #ifdef OPEN_SEA
   vec2 at = position.xz * u_extent_m;

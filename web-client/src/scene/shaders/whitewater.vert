@@ -13,8 +13,10 @@ uniform float u_target_px;
 const int kKind = 1;
 #else
 uniform vec2 u_target_px;
-flat out vec3 v_flight;  // unit direction on the screen, and width over length
+flat out vec4 v_flight;  // unit direction on the screen, width over length, and width (px; 0: mist)
 #ifdef SPRAY
+uniform vec3 u_sun_direction;
+flat out float v_toward_sun;  // of the eye's ray
 const int kKind = 0;
 #else
 const int kKind = 2;
@@ -22,9 +24,9 @@ const int kKind = 2;
 #endif
 
 const float kMistRadiusM = 0.05;  // larger drops are puffs of mist
-const float kExposureS = 0.02;    // drops are drawn as long as they fly in this time
+const float kExposureS = 0.012;   // drops are drawn as long as they fly in this time
 const float kLeastPx = 1.5;
-const float kMostShare = 0.004;   // drops near the eye are not larger than this share of their distance: they would be flakes
+const float kMostShare = 0.0025;   // drops near the eye are not larger than this share of their distance: they would be flakes
 
 float hash(uint n) {
   n = (n ^ 61u) ^ (n >> 16u);
@@ -48,12 +50,12 @@ void main() {
   gl_Position = vec4(2.0 * position.xz / u_extent_m, 0.0, 1.0);
   gl_PointSize = max(2.0 * radius_m / max(u_extent_m.x, u_extent_m.y) * u_target_px, 2.0);
 #else
-  v_flight = vec3(1.0, 0.0, 1.0);
+  v_flight = vec4(1.0, 0.0, 1.0, 1.0);
   if (kind != kKind) return;
   vec3 center_m = (viewMatrix * vec4(position.xyz, 1.0)).xyz;
   float radius_m = a_motion.w;
   bool is_mist = radius_m > kMistRadiusM;
-  radius_m = is_mist ? radius_m * (1.0 + 2.5 * age) : min(radius_m, kMostShare * -center_m.z);
+  radius_m = is_mist ? radius_m * (1.0 + 1.5 * age) : min(radius_m, kMostShare * -center_m.z);
   if (-center_m.z < 2.0 * radius_m) return;
   float px_per_m = 0.5 * projectionMatrix[1][1] * u_target_px.y / -center_m.z;
   float width_px = 2.0 * radius_m * px_per_m;
@@ -66,7 +68,7 @@ void main() {
     v_flight.xy = flight / speed_mps;
   }
   // Mist that hangs in the air is too thin to be seen.
-  v_strength = is_mist ? 0.17 * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.4, 2.5, length(a_motion.xyz)) : 0.85 * (1.0 - age * age);
+  v_strength = is_mist ? 0.06 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
 #else
   v_strength = 1.0;
 #endif
@@ -80,9 +82,12 @@ void main() {
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   v_flight.z = width_px / length_px;
+  v_flight.w = width_px;
 #ifdef SPRAY
   // What flies covers each place for a part of the time.
   v_strength *= sqrt(v_flight.z);
+  if (is_mist) v_flight.w = 0.0;
+  v_toward_sun = max(dot(normalize(center_m), mat3(viewMatrix) * u_sun_direction), 0.0);
 #endif
   gl_Position = projectionMatrix * vec4(center_m, 1.0);
   gl_PointSize = length_px;

@@ -24,6 +24,11 @@ function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingIn
   return hasBoats || obstacles.length > 0 || beaches.length > 0 || hasBed || setting === "pool";
 }
 
+/** A breaker without anything that floats on it, whose place would no longer be that of the water under it. */
+function isDrawnUneven({ wave, hasBoats, hasFloaters }: GreetingInfo): boolean {
+  return wave?.isSteepening === true && !hasBoats && !hasFloaters;
+}
+
 /** Thin water is drawn although the ground is in front of it by this share of a cell of the drawn surface: both are triangles, over a sloping bed. */
 const kLiftPerCell = 0.1;
 
@@ -103,6 +108,7 @@ export class WaterPass implements Pass {
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
     if (shadow) defines["SHADOWS"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
+    if (edge.kind === "sea" && !quality.plain && isDrawnUneven(greeting)) defines["UNEVEN"] = 1;
     if (edge.kind === "walls") defines[edge.ripples ? "RIPPLES" : "WALLS"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
     // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.

@@ -25,14 +25,17 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
+/** Share of the drops that are puffs of mist, where water meets something hard or falls over. */
+const kMistShare = 0.1;
+
 /** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
-function dropRadiusM(random: () => number): number {
+function dropRadiusM(random: () => number, mistShare: number): number {
   const u = random();
-  return u < 0.15 ? 0.06 + 0.12 * random() : 0.004 + 0.016 * u * u * u;
+  return u < mistShare ? 0.06 + 0.08 * random() : 0.004 + 0.016 * u * u * u;
 }
 
-function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
-  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random), lifeS: 1 + 1.5 * random() };
+function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number, mistShare = kMistShare): Birth {
+  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random, mistShare), lifeS: 1 + 1.5 * random() };
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -195,13 +198,13 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Movin
 }
 
 /** Drops per s from one white particle of at least the second speed. */
-const kParticleDropsPerS = 3;
+const kParticleDropsPerS = 2;
 const kParticleSpeedsMps = [1.5, 5] as const;
 const kWhite = 100;
 /** At most so many particles of a frame are looked at, evenly spaced. */
 const kLookedAtCount = 4000;
 
-/** Fast white particles of the server tear off finer drops (kinetic energy, Ihmsen et al. 2012, equation 6, with the speed for its root). */
+/** Fast white particles of the server tear off finer drops, without mist, which would hide them (kinetic energy, Ihmsen et al. 2012, equation 6, with the speed for its root). */
 export function addFromParticles(births: Births, frame: ParticleFrame, surface: MovingSurface, intervalS: number): void {
   const { particles, random, scale } = births;
   const words = new Uint16Array(frame.buffer, 0, frame.count * kWordsPerParticle);
@@ -219,7 +222,7 @@ export function addFromParticles(births: Births, frame: ParticleFrame, surface: 
     if (surfaceM === undefined || yM < surfaceM) continue;
     for (let left = drops; left > 0; --left) {
       const apart = (): number => spread(random, frame.radiusM);
-      particles.add(drop(random, xM + apart(), yM + apart(), zM + apart(), vx * (0.8 + 0.4 * random()) + spread(random, 0.5), vy * (0.8 + 0.4 * random()) + spread(random, 0.5), vz * (0.8 + 0.4 * random()) + spread(random, 0.5)));
+      particles.add(drop(random, xM + apart(), yM + apart(), zM + apart(), vx * (0.8 + 0.4 * random()) + spread(random, 0.5), vy * (0.8 + 0.4 * random()) + spread(random, 0.5), vz * (0.8 + 0.4 * random()) + spread(random, 0.5), 0));
     }
   }
 }
