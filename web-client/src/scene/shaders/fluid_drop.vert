@@ -26,7 +26,7 @@ const float kDense = 0.7;
 const float kExposureS = 0.02;
 const float kLeastPx = 1.6;
 const float kLargeM = 0.07;
-const float kMist = 0.22;
+const float kMist = 0.0;
 // Drops near the eye are not larger than this share of their distance: they would be flakes.
 const float kMostShare = 0.004;
 

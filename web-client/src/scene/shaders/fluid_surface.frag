@@ -23,6 +23,9 @@ uniform float u_floor_m;
 #ifdef WAVE
 uniform sampler2D u_field;
 uniform vec2 u_extent_m;       // length and width of the wave
+#else
+uniform sampler2D u_floor_light;  // the floor of the tank from above
+uniform vec2 u_floor_size_m;
 #endif
 layout(location = 0) out vec4 color;
 
@@ -33,17 +36,26 @@ const float kStepCells = 0.85;
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
 // How far white water is torn, as density; one tile of the noise, in particle radii.
-const float kTorn = 0.3;
 #ifdef WAVE
+const float kTorn = 0.3;
 const float kAiry = 0.3;  // white water over a wave is mostly air: what is left of a clump are its drops
-#else
-const float kAiry = 0.0;
-#endif
 const float kLaceRadii = 31.0;
+#else
+const float kTorn = 0.11;
+const float kAiry = 0.06;
+#endif
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
+#ifdef WAVE
 const float kMist = 0.25;
+#else
+const float kMist = 0.0;
+#endif
 // Light that white water scatters over one particle radius.
+#ifdef WAVE
 const float kWhiteness = 0.14;
+#else
+const float kWhiteness = 0.01;
+#endif
 #ifndef WAVE
 const float kTankGlow = 1.1;  // a pale floor and walls light the water from all sides
 #endif
@@ -79,6 +91,13 @@ float overWave(vec3 at_m) {
 #endif
 }
 
+// Smooth noise about 0, of about 6 lengths.
+float lumps(vec3 at) {
+  at += 1.4 * sin(0.71 * at.yzx + vec3(0.0, 1.7, 3.1));
+  vec3 waves = sin(at * vec3(0.93, 1.01, 0.87));
+  return waves.x * waves.y + waves.z * waves.x;
+}
+
 // Density over that of the surface, and its white share: white water is torn.
 vec2 liquidAt(vec3 at_m) {
 #ifndef WAVE
@@ -88,8 +107,12 @@ vec2 liquidAt(vec3 at_m) {
   vec2 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
   if (density.r > 0.6 * kSurface && white > 0.05) {
+#ifdef WAVE
     vec3 at = at_m / (kLaceRadii * u_radius_m);
     density.r -= white * (kAiry + kTorn * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5));
+#else
+    density.r -= white * (kAiry + kTorn * lumps(at_m / u_radius_m));
+#endif
   }
   return vec2(density.r - kSurface, white);
 }
@@ -105,10 +128,14 @@ float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
   return b_m;
 }
 
+#ifdef WAVE
+#define DENSITY(at) volumeAt(at).r
+#else
+#define DENSITY(at) liquidAt(at).x
+#endif
 vec3 normalAt(vec3 at_m) {
   vec2 apart_m = vec2(2.0 * u_radius_m, 0.0);
-  vec3 slope = vec3(volumeAt(at_m + apart_m.xyy).r - volumeAt(at_m - apart_m.xyy).r, volumeAt(at_m + apart_m.yxy).r - volumeAt(at_m - apart_m.yxy).r,
-                    volumeAt(at_m + apart_m.yyx).r - volumeAt(at_m - apart_m.yyx).r);
+  vec3 slope = vec3(DENSITY(at_m + apart_m.xyy) - DENSITY(at_m - apart_m.xyy), DENSITY(at_m + apart_m.yxy) - DENSITY(at_m - apart_m.yxy), DENSITY(at_m + apart_m.yyx) - DENSITY(at_m - apart_m.yyx));
   return -slope / max(length(slope), 1e-5);
 }
 
@@ -172,6 +199,7 @@ void main() {
   // Through the liquid to where the ray leaves it, reflected less than PARTS times.
   vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
+  bool is_floor = false;
   for (int part = 0; part < PARTS; ++part) {
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
@@ -191,7 +219,7 @@ void main() {
     from += bent * along_m;
     length_m += along_m;
     leaving = bent;
-    bool is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
+    is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
     if (is_floor || overWave(from) < 0.0) break;
     vec3 outward = is_side ? sideAt(from) : normalAt(from);
     leaving = refract(bent, -outward, kFromWater);
@@ -213,7 +241,12 @@ void main() {
   // What stands in the liquid is seen through less of it.
   length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
 #endif
+#ifdef WAVE
   vec3 behind = behindAt(from, leaving, past_m, ahead_m);
+#else
+  // Unless something stands in the liquid.
+  vec3 behind = is_floor && solid_m > way_m.y - u_radius_m ? texture(u_floor_light, vec2(1.0, -1.0) * from.xz / u_floor_size_m + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
+#endif
 
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
