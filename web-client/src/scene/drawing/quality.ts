@@ -79,7 +79,7 @@ export const kTiers: Record<TierName, Tier> = {
   },
   low: {
     maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, sparing: false, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
-    fluid: { cellsPerSpacing: 1, scale: 0.5, partsCount: 3, halvingsCount: 5, dropsCount: 4, floorTexelsCount: 128 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
+    fluid: { cellsPerSpacing: 1, scale: 0.5, partsCount: 3, halvingsCount: 5, dropsCount: 4, floorTexelsCount: 256 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
     rain: { ringTexelsCount: 0, streaksCount: 3000 }, caustics: undefined, shadows: undefined,
   },
   medium: {
