@@ -29,6 +29,8 @@ export type Resource =
   | "particles"
   /** Tiles of the screen with particles. */
   | "fluidTiles"
+  /** The floor under a tank of particles, seen from above. */
+  | "fluidFloor"
   /** Density of the particles in cells, and the white share of it. */
   | "fluidVolume"
   /** The value that a look shows on the surface. */

@@ -11,7 +11,7 @@ import type { Pass } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import type { Sky } from "../light/sky";
-import { tankColourRatio } from "../light/water_optics";
+import { kTankColourRatio } from "../light/water_optics";
 import type { SolidsPass } from "../solids/solids_pass";
 import { FluidDropsPass } from "./fluid_drops_pass";
 import { FluidParticles } from "./fluid_particles";
@@ -19,9 +19,6 @@ import { FluidShadowPass } from "./fluid_shadow_pass";
 import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
-
-/** Share of the ratio of water_optics.ts that counts here: with all of it a tank of particles is opaque. */
-const kClearness = 0.7;
 
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {
@@ -32,16 +29,17 @@ interface FluidPasses {
 }
 
 /** `field` undefined: no wave around the particles. In a wave a sparing quality draws only drops. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, fluid: quality }: Pick<Quality, "fluid" | "sparing" | "texelType">): FluidPasses {
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "sparing" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
   if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
-  const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
-  const surface = new FluidSurfacePass(inputs, field !== undefined, field ? 1 : kClearness * tankColourRatio(size), quality);
-  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
   // A wave has no floor of its own.
-  const before = field ? [particles, volume] : [particles, volume, new FluidShadowPass(particles, volume, solids, sky, size.sideM, tankColourRatio(size))];
+  const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, size, { ...quality, texelType, plain });
+  const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
+  const surface = new FluidSurfacePass(inputs, field ? 1 : kTankColourRatio, quality);
+  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
+  const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };
 }

@@ -19,11 +19,13 @@ interface FluidSurfaceInputs {
   sky: Sky;
   noise: Texture;
   particleUniforms: Uniforms;
+  /** Of FluidShadowPass; undefined: the liquid is one body with a wave, whose textures are in `particleUniforms`. */
+  floorUniforms: Uniforms | undefined;
 }
 
 export class FluidSurfacePass implements Pass {
   readonly name = "fluid surface";
-  readonly reads = ["fluidTiles", "fluidVolume", "solids", "canvas"] as const;
+  readonly reads = ["fluidTiles", "fluidVolume", "fluidFloor", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly tiles: FluidTilesPass;
   private readonly solids: SolidsPass;
@@ -32,8 +34,8 @@ export class FluidSurfacePass implements Pass {
   /** Where the picture is smaller than the canvas: it, and what draws it on the canvas. */
   private readonly small: { target: WebGLRenderTarget; material: RawShaderMaterial } | undefined;
 
-  /** `hasWave`: the liquid is one body with the wave, whose textures are in `particleUniforms`. `colourRatio`: water_optics.ts. */
-  constructor({ tiles, volume, solids, sky, noise, particleUniforms }: FluidSurfaceInputs, hasWave: boolean, colourRatio: number, { scale, partsCount, halvingsCount }: FluidQuality) {
+  /** `colourRatio`: water_optics.ts. */
+  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale, partsCount, halvingsCount }: FluidQuality) {
     this.tiles = tiles;
     this.solids = solids;
     this.scale = scale;
@@ -45,6 +47,7 @@ export class FluidSurfacePass implements Pass {
         ...tiles.uniforms,
         ...particleUniforms,
         ...volume.uniforms,
+        ...floorUniforms,
         u_behind: { value: color },
         u_behind_depth: { value: depth },
         u_ray: { value: new Vector4() },
@@ -56,7 +59,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { PARTS: partsCount, HALVINGS: halvingsCount, ...(hasWave && { WAVE: 1 }) }, transparent: true },
+      { defines: { PARTS: partsCount, HALVINGS: halvingsCount, ...(!floorUniforms && { WAVE: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

@@ -1,6 +1,5 @@
 // Optical types of water: what it absorbs and scatters, and the colours that follow for the shaders (shaders/water_optics.glsl). Pure.
 import type { WaterTypeName } from "../../../client/codec/scene_info";
-import { clamp } from "../maths/interpolate";
 import { mapRgb, type Rgb } from "./light";
 
 /** Inherent optical properties at 650, 550 and 450 nm, per metre. */
@@ -35,14 +34,8 @@ const kBubblesShare = 0.55;
 const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
-/** Little water looks like glass: that of a tank has the colour of one whose narrower side is this long (m), and at most so many times its own. */
-const kTankColourM = 6;
-const kMostTankColourRatio = 5;
-
-/** How many times longer light's ways in the water of a tank count for its colour. */
-export function tankColourRatio({ sideM, widthM }: { sideM: number; widthM: number }): number {
-  return clamp(kTankColourM / Math.min(sideM, widthM), 1, kMostTankColourRatio);
-}
+/** Lengths in the water of a tank count for its colour as these many of a model's: little more than they are, so that it is as clear as glass. */
+export const kTankColourRatio = 1.8 / kRealPerModelLength;
 
 export interface WaterOptics {
   /** Share of the light lost per metre of way in the model. */

@@ -1,4 +1,4 @@
-// A drop. VOLUME: a lens that shows the sky upside down, bright where it mirrors the light from above, and cloudy with air; otherwise of one colour.
+// A drop. VOLUME: a lens that shows the sky upside down, bright where it mirrors the light from above, over a wave cloudy with air; otherwise of one colour.
 #include <sky>
 
 flat in vec3 v_flight;
@@ -6,6 +6,7 @@ flat in vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 uniform mat4 u_camera_world;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
+uniform bool u_has_water;
 #ifndef VOLUME
 uniform vec3 u_displayed_sky[3];  // zenith, middle, horizon
 uniform vec3 u_displayed_foam;
@@ -31,12 +32,14 @@ void main() {
   vec3 normal = mat3(u_camera_world) * vec3(screen, sqrt(1.0 - away2));
   vec3 toward = mat3(u_camera_world) * vec3(0.0, 0.0, 1.0);
   vec3 mirrored_ray = reflect(-toward, normal);
-  vec3 lens = textureLod(u_sky, refract(-toward, normal, 0.6), 2.0).rgb;
+  // A ball of water turns a ray by twice the difference of its angles to the normal in air and in water.
+  vec3 inward = mat3(u_camera_world) * vec3(-screen, 0.0);
+  vec3 lens = textureLod(u_sky, inward * (0.55 + 0.45 * away2 * away2) - toward, 1.0).rgb;
   vec3 mirrored = textureLod(u_sky, mirrored_ray, 2.0).rgb;
-  vec3 glint = u_sun_sharp * u_sun_light * pow(max(dot(mirrored_ray, u_sun_direction), 0.0), 40.0) * 2.0;
+  vec3 glint = u_sun_sharp * u_sun_light * pow(max(dot(mirrored_ray, u_sun_direction), 0.0), 30.0) * 4.0;
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 froth = kFroth * (u_sun_light * sun * sun + u_ambient_up);
-  color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * (1.0 - away2));
+  color = vec4(toDisplay(mix(light, froth, u_has_water ? 0.35 + 0.5 * v_strength_white.y : 0.1 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
 #endif
 }

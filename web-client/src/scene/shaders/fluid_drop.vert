@@ -52,8 +52,8 @@ void main() {
   vec4 random = hash(vec3(level, u_drop));
   vec3 center_m = particle.center_m + 3.0 * u_radius_m * (random.xyz - 0.5);
   if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r + 0.3 * u_radius_m) return;
-  // Few are large. The first stands for the mist among them.
-  bool is_mist = u_drop == 0.0;
+  // Few are large. Over a wave the first stands for the mist among them.
+  bool is_mist = u_has_water && u_drop == 0.0;
   float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
   if (is_mist) center_m = particle.center_m;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;

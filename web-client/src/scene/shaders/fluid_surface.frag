@@ -1,7 +1,7 @@
 // Light from the particles' liquid to the eye. A ray goes through the volume to the surface, where the sky is mirrored by Fresnel. The
 // refracted ray goes on through the liquid, is reflected where no light leaves, and shows what lies behind the liquid; on its way light is
 // absorbed and scattered (water_optics.glsl), and white water hides it.
-// Reads the volume, the solids' colour and depth. Blends over the picture; writes the surface's depth.
+// Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
 // volume is a tank with walls of glass. PARTS: of the ray in the liquid, between reflections; HALVINGS: of a step, to find the surface.
 #include <sky>
@@ -23,6 +23,9 @@ uniform float u_floor_m;
 #ifdef WAVE
 uniform sampler2D u_field;
 uniform vec2 u_extent_m;       // length and width of the wave
+#else
+uniform sampler2D u_floor_light;  // the floor of the tank from above
+uniform vec2 u_floor_size_m;
 #endif
 layout(location = 0) out vec4 color;
 
@@ -32,20 +35,18 @@ const float kStepCells = 0.85;
 // Where no kernel reaches, the surface is at least so many particle radii away.
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
-// How far white water is torn, as density; one tile of the noise, in particle radii.
-const float kTorn = 0.3;
+// White water is torn: its density less that of the air in it, and how far that varies.
+// Whiteness: light that it scatters over one particle radius.
 #ifdef WAVE
-const float kAiry = 0.3;  // white water over a wave is mostly air: what is left of a clump are its drops
-#else
-const float kAiry = 0.0;
-#endif
-const float kLaceRadii = 31.0;
+const float kAiry = 0.3, kTorn = 0.3;  // what is left of a clump are its drops
+const float kLaceRadii = 31.0;         // one tile of the noise
+const float kWhiteness = 0.14;
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
-// Light that white water scatters over one particle radius.
-const float kWhiteness = 0.14;
-#ifndef WAVE
-const float kTankGlow = 1.1;  // a pale floor and walls light the water from all sides
+#else
+// Little water takes up little air: it is torn into clear lumps. With few pixels they would be noise.
+const float kAiry = 0.06, kTorn = HALVINGS > 3 ? 0.11 : 0.06;
+const float kWhiteness = 0.01;
 #endif
 
 float distanceAt(vec2 uv) {
@@ -79,6 +80,19 @@ float overWave(vec3 at_m) {
 #endif
 }
 
+// Noise; `at`: in particle radii.
+float lumps(vec3 at) {
+#ifdef WAVE
+  at /= kLaceRadii;
+  return texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5;
+#else
+  // Smooth, so that surfaces are: crossing waves of about 6 radii, bent.
+  at += 1.4 * sin(0.71 * at.yzx + vec3(0.0, 1.7, 3.1));
+  vec3 waves = sin(at * vec3(0.93, 1.01, 0.87));
+  return waves.x * waves.y + waves.z * waves.x;
+#endif
+}
+
 // Density over that of the surface, and its white share: white water is torn.
 vec2 liquidAt(vec3 at_m) {
 #ifndef WAVE
@@ -88,8 +102,7 @@ vec2 liquidAt(vec3 at_m) {
   vec2 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
   if (density.r > 0.6 * kSurface && white > 0.05) {
-    vec3 at = at_m / (kLaceRadii * u_radius_m);
-    density.r -= white * (kAiry + kTorn * (texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5));
+    density.r -= white * (kAiry + kTorn * lumps(at_m / u_radius_m));
   }
   return vec2(density.r - kSurface, white);
 }
@@ -105,24 +118,37 @@ float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
   return b_m;
 }
 
+float densityAt(vec3 at_m) {
+#ifdef WAVE
+  return volumeAt(at_m).r;
+#else
+  return liquidAt(at_m).x;
+#endif
+}
+
 vec3 normalAt(vec3 at_m) {
   vec2 apart_m = vec2(2.0 * u_radius_m, 0.0);
-  vec3 slope = vec3(volumeAt(at_m + apart_m.xyy).r - volumeAt(at_m - apart_m.xyy).r, volumeAt(at_m + apart_m.yxy).r - volumeAt(at_m - apart_m.yxy).r,
-                    volumeAt(at_m + apart_m.yyx).r - volumeAt(at_m - apart_m.yyx).r);
+  vec3 slope = vec3(densityAt(at_m + apart_m.xyy) - densityAt(at_m - apart_m.xyy), densityAt(at_m + apart_m.yxy) - densityAt(at_m - apart_m.yxy), densityAt(at_m + apart_m.yyx) - densityAt(at_m - apart_m.yyx));
   return -slope / max(length(slope), 1e-5);
+}
+
+// Where the picture shows a position, and how far away it is along the axis of the view.
+vec3 shownAt(vec3 at_m) {
+  vec3 at = transpose(mat3(u_camera_world)) * (at_m - u_camera_m);
+  return vec3(((at.xy / max(-at.z, 1e-3) - u_ray.zw) / u_ray.xy) * 0.5 + 0.5, -at.z);
 }
 
 // The light along a ray at a distance: that of the picture of the solids at the place where it shows it. Toward the picture's edges and
 // where something stands in front of the liquid it is that of a place nearer to this pixel; for rays that rise past the edges, of the sky.
 vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
-  vec3 at = transpose(mat3(u_camera_world)) * (from + ray * away_m - u_camera_m);
-  vec2 uv = ((at.xy / max(-at.z, 1e-3) - u_ray.zw) / u_ray.xy) * 0.5 + 0.5;
+  vec3 at = shownAt(from + ray * away_m);
+  vec2 uv = at.xy;
   vec2 away = uv - v_uv;
   vec2 most = max(step(0.0, away) - v_uv, v_uv - step(0.0, away)) / max(abs(away), vec2(1e-5));
   vec2 shown = v_uv + away * min(min(most.x, most.y), 1.0);
   for (int i = 0; i < 3 && distanceAt(shown) < surface_m; ++i) shown = mix(shown, v_uv, i == 2 ? 1.0 : 0.5);
   vec2 rim = smoothstep(0.5, 0.47, abs(uv - 0.5));
-  float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z < 0.0 ? rim.x * rim.y : 0.0));
+  float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z > 0.0 ? rim.x * rim.y : 0.0));
   return mix(texture(u_behind, shown).rgb, textureLod(u_sky, ray, 1.0).rgb, is_sky);
 }
 
@@ -149,10 +175,12 @@ void main() {
 #ifdef WAVE
     // Hidden by the wave.
     if (overWave(u_camera_m + ray * at_m) < -1.0) break;
-#endif
     mist += (at_m - before_m) * max(liquid.x + kSurface - 0.2, 0.0) * liquid.y * liquid.y;
+#endif
   }
+#ifdef WAVE
   mist = 1.0 - exp(-kMist / u_radius_m * mist);
+#endif
   vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 0.7 + u_ambient_up * vec3(1.05, 0.98, 0.91));
   if (liquid.x <= 0.0) {
     if (mist < 0.01) discard;
@@ -172,6 +200,7 @@ void main() {
   // Through the liquid to where the ray leaves it, reflected less than PARTS times.
   vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
+  bool is_floor = false;
   for (int part = 0; part < PARTS; ++part) {
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
@@ -191,7 +220,7 @@ void main() {
     from += bent * along_m;
     length_m += along_m;
     leaving = bent;
-    bool is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
+    is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
     if (is_floor || overWave(from) < 0.0) break;
     vec3 outward = is_side ? sideAt(from) : normalAt(from);
     leaving = refract(bent, -outward, kFromWater);
@@ -213,15 +242,19 @@ void main() {
   // What stands in the liquid is seen through less of it.
   length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
 #endif
+#ifdef WAVE
   vec3 behind = behindAt(from, leaving, past_m, ahead_m);
+#else
+  // Unless something stands before it.
+  vec3 at_floor = shownAt(from);
+  bool is_shown = all(lessThan(abs(at_floor.xy - 0.5), vec2(0.5))) && distanceAt(at_floor.xy) < at_floor.z - 2.0 * u_radius_m;
+  vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * from.xz / u_floor_size_m + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
+#endif
 
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
-#ifndef WAVE
-  scattered *= kTankGlow;
-#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);

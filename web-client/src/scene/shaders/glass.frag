@@ -14,9 +14,9 @@ void main() {
   float facing = abs(dot(normal, ray));
   float away = (1.0 - facing) * (1.0 - facing);
   // Two faces reflect.
-  float fresnel = 0.05 + 0.7 * away * away * (1.0 - facing);
+  float fresnel = 0.015 + 0.45 * away * away * (1.0 - facing);
   // What is behind is on the screen in display values already, whose squares are about linear: a dim reflection adds little to them.
   vec3 mirrored = toDisplay(skyLight(reflect(ray, normal)) * fresnel);
-  color = vec4(mirrored * mirrored, 0.97 * (1.0 - fresnel));
+  color = vec4(mirrored * mirrored, 0.99 * (1.0 - fresnel));
   if (v_color.a > 0.5) color = vec4(0.4 * toDisplay(vec3(0.36, 0.50, 0.46) * (u_ambient_up + 0.4 * u_sun_light)), 0.6);
 }

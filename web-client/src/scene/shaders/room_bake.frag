@@ -1,21 +1,20 @@
-// Bakes a lit room into one face of the cube: a workshop with high windows on the sun's side, shelves on the other walls, wooden panels below,
-// and lamps under the ceiling. Out of focus, as what is far behind a tank is.
+// Bakes a lit room into one face of the cube: a hall with tall frosted windows on the sun's side, dark walls with upright lights, a polished floor,
+// and rows of lamps under the ceiling. Out of focus, as what is far behind a tank is. Water and glass are seen by what they mirror and bend:
+// bright areas beside dark ones.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;    // of walls, floor and ceiling, relative to noon
 uniform vec3 u_window_light;  // seen through the windows, relative to noon
 layout(location = 0) out vec4 color;
 
-#include <cell_hash>
-
 // Room of 2 by 1.3 by 2 around the eye, which is 0.45 above the floor.
 const vec3 kHigh = vec3(1.0, 0.75, 1.0);
 const vec3 kLow = vec3(-1.0, -0.55, -1.0);
-// Heights on a wall, as shares of it: top of the panels, of the window sill, and of the windows.
-const float kPanels = 0.315;
-const float kSill = 0.35;
-const float kLintel = 0.86;
-const float kSoft = 0.008;
+// Heights on a wall, as shares of it: of the window sill, and of the windows.
+const float kSill = 0.21;
+const float kLintel = 0.90;
+const float kSoft = 0.010;
+const vec3 kWall = vec3(0.075, 0.085, 0.098);
 
 // 1 inside a rectangle, with soft edges.
 float within(vec2 at, vec2 low, vec2 high, float soft) {
@@ -23,28 +22,25 @@ float within(vec2 at, vec2 low, vec2 high, float soft) {
   return share.x * share.y;
 }
 
-// A garden under the sky.
-vec3 outside(vec2 at) {
-  float leaves = 0.11 * abs(sin(4.3 * at.x + 1.0)) + 0.05 * abs(sin(11.0 * at.x + 0.4)) + 0.02 * sin(31.0 * at.x);
-  float tree = smoothstep(0.05, -0.05, at.y - 0.47 - leaves);
-  vec3 sky = mix(vec3(1.05, 1.06, 1.04), vec3(0.62, 0.82, 1.08), smoothstep(0.5, 0.9, at.y));
-  vec3 green = mix(vec3(0.30, 0.38, 0.14), vec3(0.13, 0.21, 0.10), smoothstep(0.36, 0.5, at.y)) * (0.75 + 1.8 * leaves);
-  return mix(sky, green, tree) * u_window_light;
+// A garden under the sky, far out of focus.
+vec3 windowLight(vec2 along) {
+  float leaves = 0.07 * sin(3.9 * along.x + 1.0) + 0.035 * sin(9.1 * along.x + 0.4);
+  vec3 sky = mix(vec3(1.25, 1.25, 1.20), vec3(0.27, 0.53, 0.95), smoothstep(0.42, 0.88, along.y));
+  vec3 green = mix(vec3(0.52, 0.56, 0.44), vec3(0.11, 0.20, 0.14), smoothstep(0.24, 0.42, along.y)) * (0.9 + 1.5 * leaves);
+  vec3 light = mix(sky, green, smoothstep(0.14, -0.10, along.y - 0.43 - leaves));
+  return light * mix(0.75, 1.5, exp(-1.6 * (along.x + 0.2) * (along.x + 0.2))) * u_window_light;
 }
 
-// Things that stand in a row: boxes, jars and books by the cell, of a hashed width, height and colour.
-vec3 withThings(vec3 light, vec2 at, float foot, float cell_width, float most_high, float seed, vec3 lit) {
-  float cell = floor(at.x / cell_width);
-  vec4 dice = vec4(cellHash(vec2(cell, seed)), cellHash(vec2(cell, seed + 3.0)), cellHash(vec2(cell, seed + 7.0)), cellHash(vec2(cell, seed + 11.0)));
-  float half_width = cell_width * (0.22 + 0.24 * dice.y);
-  float high = most_high * (0.35 + 0.65 * dice.z);
-  vec2 place = vec2(at.x - (cell + 0.5) * cell_width, at.y - foot);
-  // Some are jars with a neck.
-  if (dice.w > 0.7 && place.y > 0.6 * high) half_width *= 0.4;
-  float seen = within(place, vec2(-half_width, 0.0), vec2(half_width, high), 0.5 * kSoft) * step(0.25, dice.x);
-  vec3 paint = dice.w > 0.8 ? vec3(0.55, 0.16, 0.10) : dice.w > 0.55 ? vec3(0.10, 0.26, 0.30) : dice.w > 0.3 ? vec3(0.52, 0.40, 0.20) : vec3(0.42, 0.40, 0.36);
-  // Lit from one side.
-  return mix(light, paint * lit * (0.55 + 0.5 * smoothstep(-half_width, half_width, place.x)), seen);
+// A wall with windows between piers; below them a dark parapet.
+vec3 windowWall(vec2 along, float soft) {
+  float across = fract(along.x * 2.0 + 0.25);
+  float open = within(vec2(across, along.y), vec2(0.07, kSill), vec2(0.93, kLintel), soft);
+  float bar = within(vec2(abs(across - 0.5), along.y), vec2(-1.0, 0.0), vec2(0.018, 1.0), soft);
+  bar = max(bar, within(vec2(0.5, abs(along.y - 0.62)), vec2(-1.0), vec2(1.0, 0.007), soft));
+  vec3 wall = kWall * u_room_light * mix(0.6, 1.3, along.y);
+  vec3 light = mix(wall, mix(windowLight(along), wall, bar), open);
+  // Its light on the sill.
+  return mix(light, vec3(0.55, 0.55, 0.54) * u_window_light, within(vec2(across, along.y), vec2(0.05, kSill - 0.016), vec2(0.95, kSill), 0.6 * soft));
 }
 
 void main() {
@@ -53,54 +49,36 @@ void main() {
   vec3 t = max(kHigh / safe, kLow / safe);
   float way = min(t.x, min(t.y, t.z));
   vec3 at = direction * way;
-  // Windows and lamps are what water and glass mirror: much brighter than the walls.
   vec3 light;
   if (way == t.y) {
     if (direction.y > 0.0) {
       vec2 lamp = abs(fract(at.xz * vec2(1.0, 1.5)) - 0.5);
-      light = vec3(0.13, 0.115, 0.095) * u_room_light + vec3(3.4, 3.2, 2.8) * within(lamp, vec2(-1.0), vec2(0.17, 0.05), 0.02);
+      light = kWall * u_room_light + vec3(3.2, 3.1, 2.9) * within(lamp, vec2(-1.0), vec2(0.30, 0.05), 0.02);
     } else {
-      float plank = fract(at.z * 9.0);
-      light = mix(vec3(0.050, 0.036, 0.026), vec3(0.066, 0.048, 0.034), smoothstep(0.0, 0.1, plank)) * u_room_light;
-      // The windows' light on the floor.
-      vec2 pane = vec2(fract((at.x + 0.25 * at.z) * 1.5 + 0.25), at.z);
-      light += vec3(0.30, 0.24, 0.16) * u_window_light * within(pane, vec2(0.16, -0.85), vec2(0.84, -0.15), 0.06);
+      // Polished: the windows are mirrored, the more the flatter one looks.
+      light = vec3(0.060, 0.062, 0.066) * u_room_light;
+      vec3 mirrored = vec3(direction.x, -direction.y, direction.z);
+      float past = 1.0 - abs(direction.y);
+      vec3 wall_t = max(kHigh / mix(vec3(1e-5), mirrored, step(vec3(1e-5), abs(mirrored))), kLow / mix(vec3(1e-5), mirrored, step(vec3(1e-5), abs(mirrored))));
+      bool is_back = wall_t.z < wall_t.x;
+      if (is_back ? direction.z < 0.0 : direction.x < 0.0) {
+        vec3 hit = at + mirrored * min(((mirrored.x > 0.0 ? 1.0 : -1.0) - at.x) / mirrored.x, ((mirrored.z > 0.0 ? 1.0 : -1.0) - at.z) / mirrored.z);
+        vec2 along = is_back ? vec2(hit.x, (hit.y - kLow.y) / 1.3) : vec2(-hit.z, (hit.y - kLow.y) / 1.3);
+        light += windowWall(along, 0.05) * (0.06 + 0.5 * past * past * past);
+      }
     }
   } else {
     float high = (at.y - kLow.y) / (kHigh.y - kLow.y);
     vec2 along = way == t.z ? vec2(at.x * sign(-direction.z), high) : vec2(at.z * sign(direction.x), high);
     bool has_window = way == t.z ? direction.z < 0.0 : direction.x < 0.0;
-    // Darker toward the corners and the ceiling.
-    float lit = (1.0 - 0.45 * along.x * along.x) * mix(1.0, 0.5, smoothstep(0.3, 0.9, high));
-    vec3 plaster = mix(vec3(0.10, 0.08, 0.062), has_window ? vec3(0.26, 0.215, 0.165) : vec3(0.44, 0.36, 0.27), lit);
-    light = plaster * u_room_light;
-    if (has_window) {
-      float across = along.x * 1.5 + 0.25;
-      vec2 pane = vec2(fract(across), high);
-      float open = within(pane, vec2(0.10, kSill), vec2(0.90, kLintel), kSoft);
-      float bar = max(within(abs(pane - vec2(0.5, 0.5)), vec2(-1.0), vec2(0.012, 1.0), kSoft), within(vec2(0.5, abs(high - 0.66)), vec2(-1.0), vec2(1.0, 0.006), kSoft));
-      light = mix(light, mix(outside(vec2(along.x, high)), vec3(0.20, 0.19, 0.17) * u_room_light, bar), open);
-      // The reveal, and the sill in the light.
-      light *= 1.0 - 0.4 * within(pane, vec2(0.07, kSill), vec2(0.93, kLintel + 0.03), kSoft) * (1.0 - open);
-      light = mix(light, vec3(0.85, 0.80, 0.70) * u_window_light, within(pane, vec2(0.05, kSill - 0.014), vec2(0.95, kSill), 0.5 * kSoft));
-      // Against the light.
-      light = withThings(light, vec2(along.x, high), kSill, 0.085, 0.13, floor(across), vec3(0.30) * u_room_light);
-    } else {
-      for (int board = 0; board < 3; ++board) {
-        float foot = 0.40 + 0.15 * float(board);
-        float shelf = within(vec2(along.x, high), vec2(-0.72, foot - 0.008), vec2(0.72, foot), 0.5 * kSoft);
-        float shade = within(vec2(along.x, high), vec2(-0.72, foot - 0.05), vec2(0.72, foot - 0.008), 2.0 * kSoft);
-        light *= 1.0 - 0.35 * shade;
-        light = mix(light, vec3(0.30, 0.20, 0.12) * u_room_light, shelf);
-        if (abs(along.x) < 0.7) light = withThings(light, vec2(along.x, high), foot, board == 1 ? 0.032 : 0.07, 0.115, 20.0 + float(board), 1.1 * u_room_light);
-      }
+    if (has_window) light = windowWall(along, kSoft);
+    else {
+      light = kWall * u_room_light * (1.0 - 0.4 * along.x * along.x) * mix(0.55, 1.5, high);
+      // Upright lights in the wall.
+      light += vec3(0.7, 0.68, 0.64) * u_room_light * within(vec2(abs(along.x), high), vec2(0.44, 0.34), vec2(0.52, 0.9), kSoft);
     }
-    // Wooden panels with a rail, and a dark skirting board.
-    float joint = abs(fract(along.x * 6.0) - 0.5);
-    vec3 panel = vec3(0.125, 0.083, 0.052) * (0.75 + 0.25 * smoothstep(0.42, 0.39, joint)) * (0.7 + 0.9 * high) * u_room_light;
-    light = mix(panel, light, smoothstep(kPanels - kSoft, kPanels + kSoft, high));
-    light = mix(light, vec3(0.26, 0.18, 0.115) * u_room_light, within(vec2(0.0, high), vec2(-1.0, kPanels - 0.012), vec2(1.0, kPanels + 0.004), 0.5 * kSoft));
-    light *= mix(0.35, 1.0, smoothstep(0.05, 0.06, high));
+    // A dark skirting board.
+    light *= mix(0.4, 1.0, smoothstep(0.05, 0.06, high));
   }
   color = vec4(light, 1.0);
 }

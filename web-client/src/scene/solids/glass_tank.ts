@@ -9,7 +9,7 @@ import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 
 /** Shares of the tank's size: thickness of the glass, of the table, and how far it reaches beyond the glass. */
-const kGlassThickness = 0.012;
+const kGlassThickness = 0.008;
 const kTableThickness = 0.05;
 const kTableReach = 0.35;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
@@ -23,11 +23,11 @@ const kBayCount = 2;
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-const kTable: Paint = [0.40, 0.30, 0.195, 0.35];
-const kTableEdge: Paint = [0.27, 0.19, 0.115, 0.35];
+const kTable: Paint = [0.12, 0.075, 0.045, 0.2];
+const kTableEdge: Paint = [0.10, 0.06, 0.035, 0.2];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 /** Pale, so that it shows the light that the water focuses. */
-const kBase: Paint = [0.60, 0.575, 0.52, 0.1];
+const kBase: Paint = [0.035, 0.15, 0.21, 0.1];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
