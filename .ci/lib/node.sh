@@ -1,7 +1,7 @@
 # shellcheck shell=bash
 # Node for the web client and the browser test. Vite needs 20.19 or newer, and Debian 12 has 18: there, Debian's npm
-# installs a newer node and npm into build/tools/node, for ./dev only. .ci/node/package-lock.json pins both by their hash,
-# without an entry for each package that npm's archive holds (those with "inBundle", which npm writes). Sourced by ./dev.
+# installs a newer node and npm into build/tools/node (pinned by .ci/node/package-lock.json), for ./dev only. Sourced by
+# ./dev.
 
 readonly private_node="build/tools/node"
 
