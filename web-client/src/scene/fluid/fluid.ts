@@ -19,6 +19,7 @@ import { FluidShadowPass } from "./fluid_shadow_pass";
 import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
+import { PlainLiquidPass } from "./plain_liquid_pass";
 
 /** Share of the ratio of water_optics.ts that counts here: with all of it a tank of particles is opaque. */
 const kClearness = 0.7;
@@ -31,11 +32,12 @@ interface FluidPasses {
   after: Pass[];
 }
 
-/** `field` undefined: no wave around the particles. In a wave a sparing quality draws only drops. */
+/** `field` undefined: no wave around the particles. A sparing quality draws drops alone in a wave, and a mesh in a tank. */
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, fluid: quality }: Pick<Quality, "fluid" | "sparing" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
   if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
+  if (sparing) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kClearness * tankColourRatio(size))] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms };
