@@ -5,7 +5,7 @@ import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../client/codec/greeting";
 import type { ParticleFrame } from "../src/net/messages";
-import { kTiers, type TierName } from "../src/scene/drawing/quality";
+import { firstTier, kTiers, type TierName } from "../src/scene/drawing/quality";
 import fluidPlain from "../src/scene/shaders/fluid_plain.frag?raw";
 import fluidPlainDrop from "../src/scene/shaders/fluid_plain_drop.frag?raw";
 import fluidPlainFloor from "../src/scene/shaders/fluid_plain_floor.frag?raw";
@@ -69,7 +69,7 @@ interface Draw {
   materials: Set<string>;
 }
 
-/** Notes every call that draws, in the pictures after the first, whose light is baked. */
+/** Notes every call that draws, in the pictures after the first, whose light is baked; in the first one alone with a `picturesCount` of 0. */
 function drawsOf(tier: TierName, picturesCount: number, room = kHarbor): Draw[] {
   const draws: Draw[] = [];
   let target: WebGLRenderTarget | null = null;
@@ -98,7 +98,7 @@ function drawsOf(tier: TierName, picturesCount: number, room = kHarbor): Draw[] 
     else scene.take({ layer: "surface", tick: 0n, stateId: BigInt(n + 1), timeS, serverTimeS: timeS, level: "full", resolutionCount, countZ: resolutionCount, sideM: 16, widthM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2 * resolutionCount ** 2) }, timeS);
     scene.clock.hold(timeS);
     scene.render(timeS);
-    if (n === 0) draws.length = 0;
+    if (n === 0 && picturesCount > 0) draws.length = 0;
   }
   scene.dispose();
   return draws;
@@ -147,6 +147,22 @@ describe("a picture in the tier minimal", () => {
     const lines = gridLines(kTiers.minimal.surfaceCellsCount, true, true).length;
     expect(lines ** 2).toBeLessThanOrEqual(6000);
     expect(gridLines(kTiers.minimal.surfaceCellsCount, true, true)[0]).toBeLessThan(-100);
+  });
+});
+
+describe("the first picture without graphics hardware", () => {
+  it("is drawn in the cheapest tier, with few programs and small targets", () => {
+    const tier = firstTier(true, false);
+    expect(tier).toBe("minimal");
+    for (const room of [kHarbor, kTank]) {
+      const draws = drawsOf(tier, 0, room);
+      const programs = new Set(draws.flatMap(({ materials }) => [...materials]));
+      expect(programs.size).toBeGreaterThan(4);
+      expect(programs.size).toBeLessThanOrEqual(8);
+      // The sky is baked into six faces of 128 x 128 texels.
+      expect(draws.reduce((sum, { targetPx }) => sum + (targetPx ?? 0), 0)).toBeLessThanOrEqual(6 * 128 ** 2 + 40_000);
+      expect(draws.filter(({ targetPx }) => targetPx === undefined).length).toBeLessThanOrEqual(4);
+    }
   });
 });
 
