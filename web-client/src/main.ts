@@ -1,14 +1,17 @@
 // The page's root: the water of a room, the front page with all rooms, or a pad for phones. What only one of them needs is loaded by that one.
 import "./style.css";
-import { isEmbeddedAddress, isPadAddress, takeLinkToken } from "./app/address";
-import { showPoster } from "./app/poster";
+import { isEmbeddedAddress, isKioskAddress, isPadAddress, isProjectorAddress, takeLinkToken } from "./app/address";
+import { showPanels, showPoster } from "./app/poster";
 import { leadsToFront } from "./front/entrance";
 import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
 import { requestRooms } from "../client/rest/rooms";
-import { roomOf } from "./net/room_address";
+import { roomOf, wishOf } from "./net/room_address";
 import { prepareWorker, socketUrl } from "./net/water_client";
 import { translation } from "./net/translation";
 import { languageNow } from "./ui/language";
+
+/** The panels wait for the first picture at most so long. */
+const kMostHiddenMs = 4000;
 
 if (isEmbeddedAddress(location)) {
   document.body.classList.add("embedded");
@@ -20,6 +23,7 @@ const language = (document.documentElement.lang = languageNow());
 const inLanguage = language === "de" ? import("./ui/texts_de").then(({ kGermanTranslation }) => Object.assign(translation, kGermanTranslation)) : Promise.resolve();
 if (isPadAddress(location) && !isEmbeddedAddress(location)) {
   document.body.replaceChildren();
+  showPanels();
   void inLanguage.then(() => import("./pad/pad_page")).then(({ openPad }) => openPad());
 } else {
   void openRoomOrFront();
@@ -27,18 +31,23 @@ if (isPadAddress(location) && !isEmbeddedAddress(location)) {
 
 async function openRoomOrFront(): Promise<void> {
   await inLanguage;
+  // Also where nothing comes.
+  setTimeout(showPanels, kMostHiddenMs);
   const load = () => import("./app/water_page");
   // Most rooms that are named exist: their page is loaded meanwhile.
   const water = roomOf(location.search) ? load() : undefined;
   const url = socketUrl(location.href);
   // Only looked at: the page that is opened takes it out of the address.
-  const token = takeLinkToken(location, { replaceState: () => {} }) ?? new IdentityStore(sessionStorageIfAny(), url).token;
-  if (await leadsToFront(location.search, url, token, { requestRooms, fetch: (address, init) => fetch(address, init) })) {
+  const identity = new IdentityStore(sessionStorageIfAny(), url).peek(takeLinkToken(location, { replaceState: () => {} }));
+  if (await leadsToFront(location.search, url, identity.token, { requestRooms, fetch: (address, init) => fetch(address, init) })) {
     const { openFront } = await import("./front/front_page");
+    showPanels();
     return openFront();
   }
   void showPoster();
-  prepareWorker();
+  // The connection is there before the page is, which takes longer: frames, projectors and exhibits make their own.
+  const isVisitor = ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location));
+  prepareWorker(isVisitor ? { url, identity, wish: wishOf(location.search) } : undefined);
   const { openWaterPage } = await (water ?? load());
   openWaterPage();
 }

@@ -4,7 +4,11 @@ import { FloatType, WebGLCoordinateSystem, type Object3D, type Vector2, type Web
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../client/codec/greeting";
-import { kTiers, type TierName } from "../src/scene/drawing/quality";
+import type { ParticleFrame } from "../src/net/messages";
+import { firstTier, kTiers, type TierName } from "../src/scene/drawing/quality";
+import fluidPlain from "../src/scene/shaders/fluid_plain.frag?raw";
+import fluidPlainDrop from "../src/scene/shaders/fluid_plain_drop.frag?raw";
+import fluidPlainFloor from "../src/scene/shaders/fluid_plain_floor.frag?raw";
 import skyPlain from "../src/scene/shaders/sky_plain.frag?raw";
 import solidPlain from "../src/scene/shaders/solid_plain.frag?raw";
 import waterPlain from "../src/scene/shaders/water_plain.frag?raw";
@@ -33,14 +37,40 @@ const kHarbor = {
   gravityMps2: 9.81,
 } as unknown as GreetingInfo;
 
+/** A tank of particles. */
+const kTank = {
+  ...kHarbor,
+  layers: ["particles"],
+  setting: "glassTank",
+  sideM: 4,
+  widthM: 0.8,
+  waterExtents: { sideM: 4, longM: 4, depthM: 2 },
+  wave: undefined,
+  wind: undefined,
+  obstacles: [],
+  hasBoats: false,
+  hasFloaters: false,
+} as unknown as GreetingInfo;
+
+/** Particles that fill the lower half of the tank's left part, and one high above them. */
+function tankFrame(timeS: number, n: number): ParticleFrame {
+  const perAxis = 12;
+  const count = perAxis ** 3 + 1;
+  const words = new Uint16Array(count * 6);
+  for (let at = 0; at + 1 < count; ++at) words.set([at % perAxis, Math.floor(at / perAxis) % perAxis, Math.floor(at / perAxis ** 2)].map((place) => 1 + (place * 30_000) / perAxis), 6 * at);
+  words.set([40_000, 30_000, 65_535], 6 * (count - 1));
+  const [minM, maxM] = [[-2, 0, -0.4], [2, 2, 0.4]] as [[number, number, number], [number, number, number]];
+  return { layer: "particles", tick: 0n, stateId: BigInt(n + 1), timeS, serverTimeS: timeS, level: "full", count, minM, maxM, wordMinM: minM, wordMaxM: maxM, maxSpeedMps: 1, radiusM: 0.04, buffer: words.buffer } as unknown as ParticleFrame;
+}
+
 interface Draw {
   /** Undefined: the canvas. */
   targetPx: number | undefined;
   materials: Set<string>;
 }
 
-/** Notes every call that draws, in the pictures after the first, whose light is baked. */
-function drawsOf(tier: TierName, picturesCount: number): Draw[] {
+/** Notes every call that draws, in the pictures after the first, whose light is baked; in the first one alone with a `picturesCount` of 0. */
+function drawsOf(tier: TierName, picturesCount: number, room = kHarbor): Draw[] {
   const draws: Draw[] = [];
   let target: WebGLRenderTarget | null = null;
   const calls: Record<string, unknown> = {
@@ -59,15 +89,16 @@ function drawsOf(tier: TierName, picturesCount: number): Draw[] {
   };
   const renderer = new Proxy(calls, { get: (from, key: string) => (key in from ? from[key] : () => null) }) as unknown as WebGLRenderer;
   const scene = new WaterScene(renderer, { ...kTiers[tier], texelType: FloatType }, () => {});
-  scene.enter(kHarbor, false);
+  scene.enter(room, false);
   scene.camera.position.set(0, 5, 20);
   for (let n = 0; n <= picturesCount; ++n) {
     const timeS = 1 + 0.1 * n;
     const resolutionCount = kHarbor.wave!.resolutionCount;
-    scene.take({ layer: "surface", tick: 0n, stateId: BigInt(n + 1), timeS, serverTimeS: timeS, level: "full", resolutionCount, countZ: resolutionCount, sideM: 16, widthM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2 * resolutionCount ** 2) }, timeS);
+    if (!room.wave) scene.take(tankFrame(timeS, n), timeS);
+    else scene.take({ layer: "surface", tick: 0n, stateId: BigInt(n + 1), timeS, serverTimeS: timeS, level: "full", resolutionCount, countZ: resolutionCount, sideM: 16, widthM: 16, quantumM: 0.001, buffer: new ArrayBuffer(2 * resolutionCount ** 2) }, timeS);
     scene.clock.hold(timeS);
     scene.render(timeS);
-    if (n === 0) draws.length = 0;
+    if (n === 0 && picturesCount > 0) draws.length = 0;
   }
   scene.dispose();
   return draws;
@@ -119,17 +150,52 @@ describe("a picture in the tier minimal", () => {
   });
 });
 
+describe("the first picture without graphics hardware", () => {
+  it("is drawn in the cheapest tier, with few programs and small targets", () => {
+    const tier = firstTier(true, false);
+    expect(tier).toBe("minimal");
+    for (const room of [kHarbor, kTank]) {
+      const draws = drawsOf(tier, 0, room);
+      const programs = new Set(draws.flatMap(({ materials }) => [...materials]));
+      expect(programs.size).toBeGreaterThan(4);
+      expect(programs.size).toBeLessThanOrEqual(8);
+      // The sky is baked into six faces of 128 x 128 texels.
+      expect(draws.reduce((sum, { targetPx }) => sum + (targetPx ?? 0), 0)).toBeLessThanOrEqual(6 * 128 ** 2 + 40_000);
+      expect(draws.filter(({ targetPx }) => targetPx === undefined).length).toBeLessThanOrEqual(4);
+    }
+  });
+});
+
+describe("a picture of a tank of particles in the tier minimal", () => {
+  const draws = drawsOf("minimal", 2, kTank);
+
+  it("takes at most four draws, straight onto the canvas", () => {
+    expect(draws.length / 2).toBeLessThanOrEqual(4);
+    // The solids' textures are emptied in the first picture.
+    for (const { targetPx } of draws) expect(targetPx ?? 0).toBe(0);
+    // The same count finds the volume and the picture of the liquid of the tier above.
+    expect(drawsOf("low", 2, kTank).filter(({ targetPx }) => (targetPx ?? 0) > 1000).length).toBeGreaterThan(4);
+  });
+
+  it("has the mesh of the liquid, and none of the programs that search for its surface", () => {
+    const names = new Set(draws.flatMap(({ materials }) => [...materials]));
+    for (const name of ["fluidPlain", "fluidPlainDrop", "fluidPlainFloor", "solidPlain", "skyPlain", "glass"]) expect(names).toContain(name);
+    expect([...names].filter((name) => name.startsWith("fluid") && !name.startsWith("fluidPlain"))).toEqual([]);
+  });
+});
+
 describe("a pixel of the plain programs", () => {
   it("reads at most two textures", () => {
     expect(readsOf(waterPlain, "OPEN_SEA", "BEACH", "SHORE", "FOAM")).toBeLessThanOrEqual(2);
     expect(readsOf(waterPlain, "WALLS", "FOAM")).toBeLessThanOrEqual(2);
     expect(readsOf(waterPlain, "SKIRT")).toBe(1);
     expect(readsOf(waterPlain, "OPEN_SEA", "DIVED")).toBeGreaterThan(2);
-    expect(readsOf(solidPlain)).toBe(0);
+    expect(readsOf(fluidPlain)).toBe(2);
+    for (const text of [solidPlain, fluidPlainDrop, fluidPlainFloor]) expect(readsOf(text)).toBe(0);
     expect(readsOf(skyPlain)).toBe(0);
   });
 
   it("does not branch, because both sides would be executed", () => {
-    for (const text of [waterPlain, solidPlain, skyPlain]) expect(preprocessed(text, ["OPEN_SEA", "BEACH", "FOAM"])).not.toMatch(/\b(if|for|while)\s*\(/);
+    for (const text of [waterPlain, solidPlain, skyPlain, fluidPlain, fluidPlainDrop, fluidPlainFloor]) expect(preprocessed(text, ["OPEN_SEA", "BEACH", "FOAM"])).not.toMatch(/\b(if|for|while)\s*\(/);
   });
 });

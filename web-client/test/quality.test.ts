@@ -95,6 +95,15 @@ describe("the automatic quality", () => {
     expect(governor.resolutionShare).toBe(1);
   });
 
+  it("climbs fast from the cheapest tier on a machine without graphics hardware that carries more, until it falls", () => {
+    const governor = new QualityGovernor(firstTier(true, false), "automatic");
+    expect(governor.tier).toBe("minimal");
+    draw(governor, 16, 5000);
+    expect([governor.tier, governor.resolutionShare]).toEqual(["low", 1]);
+    expect(draw(governor, 90, 2000)).toBe(1);
+    expect(draw(governor, 16, 5000)).toBe(0);
+  });
+
   it("tries a tier that was too slow again, ever more rarely", () => {
     const governor = new QualityGovernor("medium", "automatic");
     const byTier = (tier: TierName): number => (kTierNames.indexOf(tier) > kTierNames.indexOf("medium") ? 45 : 16);

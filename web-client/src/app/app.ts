@@ -44,7 +44,7 @@ import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
 import { PictureControls } from "./picture_controls";
-import { removePoster } from "./poster";
+import { removePoster, showPanels } from "./poster";
 import { SoundControls } from "./sound_controls";
 import { leadToFront } from "./to_front";
 import { ViewAddress } from "./view_address";
@@ -224,6 +224,7 @@ export class App {
       state: ({ state }) => {
         this.state = state;
         this.hud.connection(state);
+        if (state.name === "retrying" || state.name === "refused") showPanels();
         if (state.name !== "live") {
           this.fingers.clear();
           for (const panel of [this.room, this.boats]) panel.setLive(false);

@@ -30,7 +30,15 @@ async function sceneOf(search: string): Promise<string | undefined> {
   return rooms.find(({ name }) => name === (roomOf(search) || kFirstRoom))?.scene ?? wanted;
 }
 
-/** Removes the poster: the water is drawn. */
+/** Removes the poster: the water is drawn. The panels follow in the next frame, so that the browser does not paint them first. */
 export function removePoster(): void {
-  document.getElementById("poster")?.remove();
+  const poster = document.getElementById("poster");
+  if (!poster) return;
+  poster.remove();
+  requestAnimationFrame(showPanels);
+}
+
+/** Shows the panels, which wait for the first picture. */
+export function showPanels(): void {
+  document.body.classList.remove("starting");
 }

@@ -10,6 +10,7 @@ import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
 import { addShareButton } from "./share";
 import { wantsSteppedPictures } from "./stepped_pictures";
+import { showPanels } from "./poster";
 import { openWaterSpeaker } from "./water_speaker";
 import { installTestHooks } from "./test_hooks";
 import { kTexts } from "../ui/texts";
@@ -19,6 +20,7 @@ export function openWaterPage(): void {
   const made = makeRenderer(byId<HTMLCanvasElement>("view"));
   const isKiosk = isKioskAddress(location) && !isEmbeddedAddress(location);
   const openKiosk = (app?: App): void => void (isKiosk && import("./kiosk_page").then((page) => page.openKiosk(app)));
+  if (!made?.isSoftwareRenderer) showPanels();
   if (!made) {
     openKiosk();
     showNotice(kTexts.noWebGl);

@@ -43,7 +43,7 @@ class FrontPage {
     const identities = new IdentityStore(sessionStorageIfAny(), socketUrl(location.href));
     const linkToken = takeLinkToken(location, history);
     // Without a new token the store stays as it is, with the resume key of the room that the visitor comes from.
-    this.token = linkToken === undefined ? identities.token : identities.load(linkToken).token;
+    this.token = linkToken === undefined ? identities.peek().token : identities.load(linkToken).token;
     this.openCard = new OpenCard(this.token);
     this.list.append(this.openCard.element);
     const retry = make("button", { type: "button", "data-testid": "front-retry" }, [kTexts.page.retry]);

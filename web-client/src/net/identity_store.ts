@@ -28,15 +28,15 @@ export class IdentityStore {
     private readonly url: string,
   ) {}
 
-  /** The stored token; empty without one. */
-  get token(): string {
-    return this.read().token;
+  /** Returns the stored identity. `linkToken`: replaces the stored token. */
+  peek(linkToken?: string): Identity {
+    const stored = this.read();
+    return { ...stored, token: linkToken ?? stored.token };
   }
 
-  /** Returns the stored identity and removes the resume key from the store. `linkToken`: replaces the stored token. */
+  /** The same, and removes the resume key from the store. */
   load(linkToken?: string): Identity {
-    const stored = this.read();
-    const identity = { ...stored, token: linkToken ?? stored.token };
+    const identity = this.peek(linkToken);
     this.save(identity);
     return identity;
   }

@@ -5,11 +5,45 @@ import type { Frame, GroundAnswer, PageEvent, PageEventHandlers, PageWishes, Ses
 import type { RoomWish } from "../../client/rest/rooms";
 import { roomOf } from "./room_address";
 
-let prepared: Worker | undefined;
+type StartRequest = Extract<WorkerRequest, { kind: "start" }>;
 
-/** Starts the worker, so that it is loaded while the page makes its WebGL context: in software that takes as long. */
-export function prepareWorker(): void {
-  prepared ??= newWorker();
+/** A worker without a client, and what it has sent: of the frames of a layer the newest alone. */
+interface Prepared {
+  worker: Worker;
+  /** Undefined: it does not connect yet. */
+  url: string | undefined;
+  waiting: PageEvent[];
+}
+let prepared: Prepared | undefined;
+
+/** Starts the worker, and with `start` its connection, while the page loads and makes its WebGL context: in software that takes as long. */
+export function prepareWorker(start?: StartParameters): void {
+  const waiting: PageEvent[] = [];
+  const worker = newWorker();
+  worker.onmessage = ({ data: event }: MessageEvent<PageEvent>) => {
+    const older = event.kind === "frame" ? waiting.findIndex((other) => other.kind === "frame" && other.frame.layer === event.frame.layer) : -1;
+    const [superseded] = older >= 0 ? waiting.splice(older, 1) : [];
+    if (superseded?.kind === "frame") release(worker, superseded.frame);
+    waiting.push(event);
+  };
+  prepared = { worker, url: start?.url, waiting };
+  if (start) worker.postMessage(startRequest(start));
+}
+
+/** Returns a frame's buffer to its worker. */
+function release(worker: Worker, { layer, buffer }: Frame): void {
+  worker.postMessage({ kind: "release", layer, buffer } satisfies WorkerRequest, [buffer]);
+}
+
+/** `wish`: opens the room if it does not exist. */
+interface StartParameters {
+  url: string;
+  identity: Identity;
+  wish?: RoomWish | undefined;
+}
+
+function startRequest({ url, identity, wish }: StartParameters): StartRequest {
+  return { kind: "start", url, identity, wish, language: document.documentElement.lang };
 }
 
 function newWorker(): Worker {
@@ -18,9 +52,9 @@ function newWorker(): Worker {
 
 /** Each client has a worker of its own: the front page has one per room. */
 export function openWaterClient(handlers: PageEventHandlers): WaterClient {
-  const worker = prepared ?? newWorker();
+  const own = prepared ?? { worker: newWorker(), url: undefined, waiting: [] };
   prepared = undefined;
-  return new WaterClient(worker, handlers);
+  return new WaterClient(own, handlers);
 }
 
 export class WaterClient {
@@ -28,20 +62,21 @@ export class WaterClient {
   private nextGroundId = 1;
   private readonly groundAnswers = new Map<number, (answer: GroundAnswer) => void>();
 
+  private readonly worker: Worker;
+
   constructor(
-    private readonly worker: Worker,
-    handlers: PageEventHandlers,
+    private readonly prepared: Prepared,
+    private readonly handlers: PageEventHandlers,
   ) {
-    worker.onmessage = ({ data }: MessageEvent<PageEvent | GroundAnswer>) => {
-      if (data.kind !== "ground") return (handlers[data.kind] as (event: PageEvent) => void)(data);
-      this.groundAnswers.get(data.requestId)?.(data);
-      this.groundAnswers.delete(data.requestId);
-    };
+    this.worker = prepared.worker;
   }
 
-  /** `wish`: opens the room if it does not exist. */
+  /** Connects, and hands on what a connection that was prepared has received. `wish`: opens the room if it does not exist. */
   start(url: string, identity: Identity, wish?: RoomWish): void {
-    this.post({ kind: "start", url, identity, wish, language: document.documentElement.lang });
+    const { waiting } = this.prepared;
+    this.worker.onmessage = ({ data }: MessageEvent<PageEvent | GroundAnswer>) => this.handle(data);
+    if (this.prepared.url !== url) return this.post(startRequest({ url, identity, wish }));
+    for (const event of waiting.splice(0)) this.handle(event);
   }
 
   /** Changes what the page wants; what is left out stays. */
@@ -74,8 +109,8 @@ export class WaterClient {
   }
 
   /** Returns a frame's buffer to the worker; the frame must not be read afterwards. */
-  release({ layer, buffer }: Frame): void {
-    this.post({ kind: "release", layer, buffer }, [buffer]);
+  release(frame: Frame): void {
+    release(this.worker, frame);
   }
 
   /** Ends the worker, and with it the connection. */
@@ -83,8 +118,14 @@ export class WaterClient {
     this.worker.terminate();
   }
 
-  private post(request: WorkerRequest, transfer: Transferable[] = []): void {
-    this.worker.postMessage(request, transfer);
+  private handle(event: PageEvent | GroundAnswer): void {
+    if (event.kind !== "ground") return (this.handlers[event.kind] as (event: PageEvent) => void)(event);
+    this.groundAnswers.get(event.requestId)?.(event);
+    this.groundAnswers.delete(event.requestId);
+  }
+
+  private post(request: WorkerRequest): void {
+    this.worker.postMessage(request);
   }
 }
 

@@ -105,6 +105,7 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
   const edges = quality.plain ? undefined : new EdgesPass();
   if (quality.plain && water) solids.use = plainUse(water);
+  else if (quality.sparing && !water) solids.use = () => kOnCanvas;
   // The bubbles are drawn into the solids' textures, which plain water does not show.
   const whiteBefore = (white?.before ?? []).filter(({ name }) => !quality.plain || name !== "bubbles");
   // The flat shadow is drawn into the froth.

@@ -110,8 +110,8 @@ export function isSoftware(rendererName: string): boolean {
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(rendererName);
 }
 
-/** Returns the tier that an automatic choice begins with. `isHandheld`: the device is operated by fingers. */
+/** Returns the tier that an automatic choice begins with: without graphics hardware the cheapest, whose first picture comes soonest. `isHandheld`: the device is operated by fingers. */
 export function firstTier(isSoftwareRenderer: boolean, isHandheld: boolean): TierName {
-  if (isSoftwareRenderer) return "low";
+  if (isSoftwareRenderer) return "minimal";
   return isHandheld ? "medium" : "high";
 }

@@ -16,6 +16,8 @@ const kSlowMs: Record<TierName, number> = { minimal: 50, low: 50, medium: 36, hi
 const kFastMs = 20;
 const kSlowForMs = 1500;
 const kFastForMs = 10_000;
+/** The same below the tier "medium" before the first fall: a page without graphics hardware begins with the cheapest tier. */
+const kFirstFastForMs = 2000;
 /** Pictures much too slow lead down several rungs at once: `[times too slow, rungs]`. */
 const kFalls: readonly (readonly [number, number])[] = [[6, 4], [2.5, 2], [0, 1]];
 /** One longer pause is a hidden page or a shader being compiled, not a slow picture. */
@@ -102,7 +104,8 @@ export class QualityGovernor {
 
   private riseIfFast(): boolean {
     const next = this.rung + 1;
-    if (this.fastMs < kFastForMs || next >= kRungs.length || this.elapsedMs < this.notBeforeMs[next]!) return false;
+    const isFirstClimb = this.tier !== "medium" && kTiers[this.tier].plain && this.waitMs.every((ms) => ms === kFirstWaitMs);
+    if (this.fastMs < (isFirstClimb ? kFirstFastForMs : kFastForMs) || next >= kRungs.length || this.elapsedMs < this.notBeforeMs[next]!) return false;
     this.moveTo(next);
     return true;
   }

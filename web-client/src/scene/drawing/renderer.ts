@@ -28,6 +28,8 @@ export function makeRenderer(canvas: HTMLCanvasElement): MadeRenderer | undefine
   }
   try {
     const renderer = new WebGLRenderer({ canvas, context });
+    // Asking a program for errors waits until it is linked, which browsers do beside the page. They report a program that does not run by themselves.
+    renderer.debug.checkShaderErrors = import.meta.env.DEV;
     // Targets are cleared to zero in all channels.
     renderer.setClearColor(0x000000, 0);
     // SwiftShader converts every half float that it samples: the water of the harbor took 45 instead of 34 ms.

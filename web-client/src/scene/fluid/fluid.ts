@@ -19,6 +19,7 @@ import { FluidShadowPass } from "./fluid_shadow_pass";
 import { FluidSurfacePass } from "./fluid_surface_pass";
 import { FluidTilesPass } from "./fluid_tiles_pass";
 import { FluidVolumePass } from "./fluid_volume_pass";
+import { PlainLiquidPass } from "./plain_liquid_pass";
 
 /** The passes of one room's particles, in the order in which they are drawn. */
 interface FluidPasses {
@@ -28,11 +29,12 @@ interface FluidPasses {
   after: Pass[];
 }
 
-/** `field` undefined: no wave around the particles. In a wave a sparing quality draws only drops. */
+/** `field` undefined: no wave around the particles. A sparing quality draws drops alone in a wave, and a mesh in a tank. */
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "sparing" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
   if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
+  if (sparing) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kTankColourRatio)] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   // A wave has no floor of its own.

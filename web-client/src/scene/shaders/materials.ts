@@ -18,6 +18,12 @@ import flatShadowVert from "./flat_shadow.vert?raw";
 import fluidColumnFrag from "./fluid_column.frag?raw";
 import fluidDropFrag from "./fluid_drop.frag?raw";
 import fluidDropVert from "./fluid_drop.vert?raw";
+import fluidPlainFrag from "./fluid_plain.frag?raw";
+import fluidPlainVert from "./fluid_plain.vert?raw";
+import fluidPlainDropFrag from "./fluid_plain_drop.frag?raw";
+import fluidPlainDropVert from "./fluid_plain_drop.vert?raw";
+import fluidPlainFloorFrag from "./fluid_plain_floor.frag?raw";
+import fluidPlainFloorVert from "./fluid_plain_floor.vert?raw";
 import fluidPresentFrag from "./fluid_present.frag?raw";
 import fluidShadowFrag from "./fluid_shadow.frag?raw";
 import fluidShadowVert from "./fluid_shadow.vert?raw";
@@ -87,6 +93,9 @@ const kPrograms = {
   flatShadow: [flatShadowVert, flatShadowFrag],
   fluidColumn: [fullscreenVert, fluidColumnFrag],
   fluidDrop: [fluidDropVert, fluidDropFrag],
+  fluidPlain: [fluidPlainVert, fluidPlainFrag],
+  fluidPlainDrop: [fluidPlainDropVert, fluidPlainDropFrag],
+  fluidPlainFloor: [fluidPlainFloorVert, fluidPlainFloorFrag],
   fluidPresent: [fluidTileVert, fluidPresentFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
   fluidSurface: [fluidTileVert, fluidSurfaceFrag],
