@@ -198,7 +198,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Movin
 }
 
 /** Drops per s from one white particle of at least the second speed. */
-const kParticleDropsPerS = 2;
+const kParticleDropsPerS = 3;
 const kParticleSpeedsMps = [1.5, 5] as const;
 const kWhite = 100;
 /** At most so many particles of a frame are looked at, evenly spaced. */
