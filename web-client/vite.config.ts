@@ -9,7 +9,10 @@ const server = "http://127.0.0.1:8080";
 /** As TypeScript writes an enum. */
 const kEnum = /^export var (\w+);\n\(function \(\1\) \{(.*?)^\}\)\(\1 \|\| \(\1 = \{\}\)\);$/gms;
 
-/** Leaves out text that no browser needs: comments and indentation of the page's shaders, the shaders of three's own materials, which
+/** Around these no language of shaders needs space. Two signs in a row, as in `a - -b`, do. */
+const kSpaceAround = /[ \t]*([=*/,;(){}<>?:|&])[ \t]*/g;
+
+/** Leaves out text that no browser needs: comments, indentation and space of the page's shaders, the shaders of three's own materials, which
  *  the page does not use (a tenth of the page), and enums of Protobuf's descriptors, which bundlers keep unless they are called pure. */
 function withoutUnusedText() {
   return {
@@ -19,7 +22,8 @@ function withoutUnusedText() {
     transform(code: string, id: string) {
       if (/\.(frag|vert|glsl)\?raw$/.test(id)) {
         const source = readFileSync(id.replace(/\?raw$/, ""), "utf8").replace(/\/\/.*$/gm, "").replace(/^\s+/gm, "");
-        return `export default ${JSON.stringify(source)};`;
+        const packed = source.replace(/^[^#].*$/gm, (line) => line.replace(kSpaceAround, "$1"));
+        return `export default ${JSON.stringify(packed)};`;
       }
       if (id.endsWith("/wkt/gen/google/protobuf/descriptor_pb.js")) return code.replace(kEnum, "export var $1 = /* @__PURE__ */ (function ($1) {$2return $1;\n})({});");
       if (!id.endsWith("three.module.js")) return undefined;

@@ -1,6 +1,6 @@
 // Measures the page in headless Chromium against the real server, with software WebGL: time to the first picture, pictures per second, and
 // the time of each pass, and the processor time of the browser per picture, which depends little on what else runs on the machine. `npm run bench:page` in web-client builds the page and calls this. The server must be built (`./dev build`).
-//   bench_page.mjs [--scenes A,B] [--qualities minimal,high] [--seconds S] [--size 1280x720]
+//   bench_page.mjs [--scenes A,B] [--qualities minimal,high,automatic] [--seconds S] [--size 1280x720]
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -17,7 +17,7 @@ const kWaitMs = 120_000;
 /** Programs are compiled, and the water begins to move. */
 const kSettleMs = 5000;
 const kSamplesPerS = 2;
-const kTiers = ["minimal", "low", "medium", "high", "highest"];
+const kTiers = ["minimal", "low", "medium", "high", "highest", "automatic"];
 const kPassPictures = 12;
 
 const { values } = parseArgs({
@@ -54,7 +54,7 @@ async function measure(scene, quality, url) {
     const page = await context.newPage();
     const begunMs = performance.now();
     await page.goto(`${url}?quality=${quality}`);
-    await page.waitForFunction(() => (window.spindrift?.stats().delayMs ?? NaN) > 0, undefined, { timeout: kWaitMs, polling: 20 });
+    await page.waitForFunction(() => (window.spindrift?.stats().shownTimeS ?? null) !== null, undefined, { timeout: kWaitMs, polling: 20 });
     const firstS = (performance.now() - begunMs) / 1000;
     await sleep(kSettleMs);
     const rates = [];

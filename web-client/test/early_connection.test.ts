@@ -40,9 +40,9 @@ describe("the early connection", () => {
   it("starts at once, and once", () => {
     prepareWorker({ url: kUrl, identity: kIdentity });
     const [worker] = FakeWorker.made;
-    expect(worker!.posted).toMatchObject([{ kind: "start", url: kUrl, identity: kIdentity, language: "en" }]);
+    expect(worker!.posted).toMatchObject([{ kind: "start", url: kUrl, identity: kIdentity, language: "en" }, { kind: "want", wishes: { frameRateHz: 10 } }]);
     client().client.start(kUrl, kIdentity);
-    expect(worker!.posted).toHaveLength(1);
+    expect(worker!.posted).toHaveLength(2);
     expect(FakeWorker.made).toHaveLength(1);
   });
 

@@ -15,6 +15,8 @@ interface Prepared {
   waiting: PageEvent[];
 }
 let prepared: Prepared | undefined;
+/** Frames per second of each layer until the page is there. */
+const kWaitingRateHz = 10;
 
 /** Starts the worker, and with `start` its connection, while the page loads and makes its WebGL context: in software that takes as long. */
 export function prepareWorker(start?: StartParameters): void {
@@ -27,7 +29,10 @@ export function prepareWorker(start?: StartParameters): void {
     waiting.push(event);
   };
   prepared = { worker, url: start?.url, waiting };
-  if (start) worker.postMessage(startRequest(start));
+  if (!start) return;
+  worker.postMessage(startRequest(start));
+  // What nobody draws yet: the page asks for as many as its quality needs.
+  worker.postMessage({ kind: "want", wishes: { frameRateHz: kWaitingRateHz } } satisfies WorkerRequest);
 }
 
 /** Returns a frame's buffer to its worker. */
