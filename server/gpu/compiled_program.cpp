@@ -142,6 +142,49 @@ void waitForCompiler(const Context& ctx, GLuint program) {
   }
 }
 
+/// Returns the identity of a program on disk: another driver, or another version of it, compiles anew.
+std::string storeKey(const DeviceInfo& device, std::string_view text) {
+  return device.vendor + "\n" + device.name + "\n" + device.gl_version + "\n" + std::string(text);
+}
+
+/// Drivers without formats keep nothing; Mesa's have one where Mesa's own cache of shaders works.
+std::vector<GLint> binaryFormats() {
+  GLint count = 0;
+  glGetIntegerv(GL_NUM_PROGRAM_BINARY_FORMATS, &count);
+  std::vector<GLint> out(static_cast<std::size_t>(std::max(count, 0)));
+  if (!out.empty()) glGetIntegerv(GL_PROGRAM_BINARY_FORMATS, out.data());
+  return out;
+}
+
+/// Returns the linked program from its file, or 0.
+GLuint fromStore(Context& ctx, std::string_view key, std::string_view shader_path) {
+  const auto kept = ctx.programs().store().load(key);
+  if (!kept) return 0;
+  const GLuint id = glCreateProgram();
+  GLint is_fine = GL_FALSE;
+  // A format that the driver does not know would be an OpenGL error.
+  if (std::ranges::count(binaryFormats(), static_cast<GLint>(kept->format)) > 0) {
+    glProgramBinary(id, kept->format, kept->bytes.data(), static_cast<GLsizei>(kept->bytes.size()));
+    waitForCompiler(ctx, id);
+    glGetProgramiv(id, GL_LINK_STATUS, &is_fine);
+  }
+  if (is_fine) return id;
+  glDeleteProgram(id);
+  spdlog::info("{}: the driver does not take the program that was compiled earlier; it is compiled again", shader_path);
+  return 0;
+}
+
+void keep(ProgramStore& store, std::string_view key, GLuint program) {
+  GLint size_bytes = 0;
+  glGetProgramiv(program, GL_PROGRAM_BINARY_LENGTH, &size_bytes);
+  if (size_bytes <= 0) return;
+  ProgramStore::Binary binary;
+  binary.bytes.resize(static_cast<std::size_t>(size_bytes));
+  glGetProgramBinary(program, size_bytes, &size_bytes, &binary.format, binary.bytes.data());
+  binary.bytes.resize(static_cast<std::size_t>(size_bytes));
+  store.save(key, binary);
+}
+
 /// Checks the program against the limits that Context::create() requires of a device.
 void checkNeeds(Context& ctx, const CompiledProgram& program) {
   const auto over = [&](const char* what, std::int64_t used, std::int64_t stated) {
@@ -165,6 +208,19 @@ void checkNeeds(Context& ctx, const CompiledProgram& program) {
   }
   const auto& g = program.group_size;
   over("invocations of a work group", std::int64_t{g[0]} * g[1] * g[2], needs.max_work_group_invocations);
+}
+
+/// The linked program with what its users ask of it.
+std::shared_ptr<CompiledProgram> finished(Context& ctx, std::shared_ptr<CompiledProgram> program,
+                                          const EmbeddedShader& source, std::set<std::string> files) {
+  GLint size[3] = {0, 0, 0};
+  glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
+  for (std::size_t axis = 0; axis < 3; ++axis) program->group_size[axis] = static_cast<std::uint32_t>(size[axis]);
+  glObjectLabel(GL_PROGRAM, program->id, static_cast<GLsizei>(source.path.size()), source.path.data());
+  program->uses = usesOf(program->id, source);
+  checkNeeds(ctx, *program);
+  program->files = std::move(files);
+  return program;
 }
 
 /// `log`: the driver's, with files and lines. With a folder of shaders its text is at fault, not the driver.
@@ -212,6 +268,13 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
   text += shuffle_seed == 0 ? std::string(source.text) : shuffledGroups(source.text, shuffle_seed);
 
+  ProgramStore& store = ctx.programs().store();
+  const std::string key = store.isOn() ? storeKey(ctx.device(), text) : std::string{};
+  auto program = std::make_shared<CompiledProgram>();
+  ++ctx.ledgerEntry().programs_made_count;
+  if (store.isOn()) program->id = fromStore(ctx, key, shader_path);
+  if (program->id != 0) return finished(ctx, std::move(program), source, std::move(read.files));
+
   const GLchar* const pointer = text.data();
   const auto length = static_cast<GLint>(text.size());
   const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
@@ -226,9 +289,8 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   }
   if (!log.empty()) spdlog::debug("{}: {}", shader_path, log);
 
-  auto program = std::make_shared<CompiledProgram>();
   program->id = glCreateProgram();
-  ++ctx.ledgerEntry().programs_made_count;
+  if (store.isOn()) glProgramParameteri(program->id, GL_PROGRAM_BINARY_RETRIEVABLE_HINT, GL_TRUE);
   glAttachShader(program->id, shader);
   glLinkProgram(program->id);
   glDetachShader(program->id, shader);
@@ -239,14 +301,8 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
     return refused(ctx, shader_path, "link",
                    translateLog(source, logOf(program->id, glGetProgramiv, glGetProgramInfoLog)));
   }
-  GLint size[3] = {0, 0, 0};
-  glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
-  for (std::size_t axis = 0; axis < 3; ++axis) program->group_size[axis] = static_cast<std::uint32_t>(size[axis]);
-  glObjectLabel(GL_PROGRAM, program->id, static_cast<GLsizei>(shader_path.size()), shader_path.data());
-  program->uses = usesOf(program->id, source);
-  checkNeeds(ctx, *program);
-  program->files = std::move(read.files);
-  return program;
+  if (store.isOn()) keep(store, key, program->id);
+  return finished(ctx, std::move(program), source, std::move(read.files));
 }
 
 void CompiledProgram::become(CompiledProgram& fresh) {

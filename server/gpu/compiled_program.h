@@ -16,6 +16,7 @@
 #include <spindrift/gpu/program.h>
 
 #include "access_tracker.h"
+#include "program_store.h"
 
 namespace spindrift::gpu {
 
@@ -50,9 +51,12 @@ std::map<std::string, BlockLayout> blocksOf(std::uint32_t program_id, bool has_o
 /// Programs by shader and defines. At most kMaxUnused unused programs are kept, for the next room of the same kind.
 class ProgramCache {
  public:
+  /// `folder`: ProgramStore's.
+  explicit ProgramCache(std::filesystem::path folder) : store_(std::move(folder)) {}
   core::Result<std::shared_ptr<CompiledProgram>> get(Context& ctx, std::string_view shader_path,
                                                      const Defines& defines);
   std::uint64_t newHandle() { return ++last_handle_; }
+  [[nodiscard]] ProgramStore& store() { return store_; }
   /// Recompiles the programs that depend on one of these files of the context's shader folder. Errors are logged, and
   /// the old program stays in use.
   void reload(Context& ctx, const std::set<std::string>& files);
@@ -66,6 +70,7 @@ class ProgramCache {
   };
   void dropUnused();
 
+  ProgramStore store_;
   std::list<Entry> entries_;  ///< least recently asked for first
   std::uint64_t last_handle_ = 0;
 };

@@ -70,7 +70,9 @@ Context::Context(egl::Attempt chosen, const Checks& checks, const std::string& s
       checks_(checks),
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
-      programs_(std::make_unique<ProgramCache>()),
+      // Shuffled programs and those under development are used once.
+      programs_(std::make_unique<ProgramCache>(
+          checks.shuffle_seed == 0 && shader_folder.empty() ? ProgramStore::userFolder() : std::filesystem::path{})),
       dispatch_times_(checks.times ? std::make_unique<DispatchTimes>() : nullptr),
       shader_folder_(shader_folder.empty() ? nullptr : std::make_unique<ShaderFolder>(shader_folder)) {
   fence_delay_.set(checks.lag_fences_count);

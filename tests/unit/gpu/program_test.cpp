@@ -1,4 +1,5 @@
 #include <cstddef>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -6,9 +7,13 @@
 
 #include <gmock/gmock.h>
 
+#include <spindrift/core/crc32c.h>
+#include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/program.h>
 
 #include "gpu_fixture.h"
+#include "program_store.h"
+#include "temporary_folder.h"
 
 namespace spindrift::gpu {
 namespace {
@@ -24,6 +29,56 @@ TEST_F(ProgramTest, CompileErrorNamesFileAndLineOfTheInclude) {
   EXPECT_THAT(broken.error().message, HasSubstr("tests/block.glsl:10"));
   EXPECT_THAT(broken.error().message, HasSubstr("no_such_name"));
   EXPECT_EQ(ctx->ledger().program_count, 0u);
+}
+
+// Kept programs: tests of the files without a driver are in program_store_test.cpp.
+TEST(KeptPrograms, AreTakenByTheDriverAndCompiledAgainWhenItRefusesThem) {
+  const auto choice = testDevice();
+  ASSERT_TRUE(choice);
+  const test::TemporaryFolder folder;
+  const char* const before = std::getenv("XDG_CACHE_HOME");
+  const std::string kept_before = before ? before : "";
+  ::setenv("XDG_CACHE_HOME", folder.path().c_str(), 1);
+  const auto valuesOf = [&](std::int32_t offset) {
+    std::vector<std::int32_t> out;
+    auto ctx = Context::create(*choice);
+    if (!ctx) return out;
+    auto program = Program::create(**ctx, "tests/iota.comp", {{"GROUP", "24"}});
+    auto values = Buffer::create(**ctx, "values", 4 * 30);
+    auto counts = Buffer::create(**ctx, "counts", 8);
+    EXPECT_TRUE(program && values && counts);
+    values->bindStorage(0);
+    counts->bindStorage(1);
+    program->setUniform("item_count", 30u);
+    program->setUniform("offset", offset);
+    EXPECT_TRUE(program->dispatch(30));
+    EXPECT_EQ((*ctx)->debugErrorCount(), 0u);
+    return out = values->downloadVector<std::int32_t>(30);
+  };
+  const auto first = valuesOf(1);
+  const std::filesystem::path programs = folder.path() / "spindrift" / "programs";
+  if (first.empty() || !std::filesystem::exists(programs)) {
+    GTEST_SKIP() << "the driver gives no compiled programs (Mesa: only with its own cache of shaders)";
+  }
+  EXPECT_EQ(valuesOf(1), first);
+  for (const auto& entry : std::filesystem::directory_iterator(programs)) {
+    // Whole files with the right checksum, of which the driver knows nothing.
+    for (const std::uint32_t format : {0u, 0x875Fu}) {
+      ProgramStore::Binary nonsense{.format = format, .bytes = std::vector<std::byte>(500, std::byte{42})};
+      std::fstream file(entry.path(), std::ios::binary | std::ios::in | std::ios::out);
+      const std::uint64_t size_bytes = nonsense.bytes.size();
+      const std::uint32_t sum =
+          core::crc32c({reinterpret_cast<const std::uint8_t*>(nonsense.bytes.data()), nonsense.bytes.size()});
+      file.seekp(24);
+      file.write(reinterpret_cast<const char*>(&size_bytes), 8);
+      file.write(reinterpret_cast<const char*>(&format), 4);
+      file.write(reinterpret_cast<const char*>(&sum), 4);
+      file.write(reinterpret_cast<const char*>(nonsense.bytes.data()), 500);
+      file.close();
+      EXPECT_EQ(valuesOf(1), first);
+    }
+  }
+  before ? ::setenv("XDG_CACHE_HOME", kept_before.c_str(), 1) : ::unsetenv("XDG_CACHE_HOME");
 }
 
 TEST_F(ProgramTest, RefusesAShaderThatWasNotEmbedded) {
