@@ -54,11 +54,23 @@ void Hub::publish(const std::string& room, StreamIndex stream, const FrameBytes&
 }
 
 void Hub::wakeRoom(const std::string& room) {
-  const std::lock_guard lock(mutex_);
-  const auto found = rooms_.find(room);
-  if (found == rooms_.end()) return;
-  found->second.will_wake = false;
-  for (const Watcher& session : found->second.sessions) session.link->wakeForFrames();
+  std::vector<std::vector<std::shared_ptr<SessionLink>>> woken;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = rooms_.find(room);
+    if (found == rooms_.end()) return;
+    found->second.will_wake = false;
+    for (const Watcher& session : found->second.sessions) {
+      if (!session.link->takesFrames()) continue;
+      if (woken.empty() || woken.back().size() == kWokenTogetherCount) woken.emplace_back();
+      woken.back().push_back(session.link);
+    }
+  }
+  for (auto& links : woken) {
+    soon_([links = std::move(links)] {
+      for (const auto& link : links) link->writeNow();
+    });
+  }
 }
 
 void Hub::offerNewest(const std::string& room, StreamIndex stream, const FrameBytes& frame) {
@@ -89,7 +101,7 @@ void Hub::watch(SessionId session, StreamIndex stream, const Watch& watch) {
   if (std::exchange(member.watches[stream], wanted) == wanted || !member.room) return;
   std::vector<Watcher>& watchers = rooms_[*member.room].watchers[stream];
   if (wanted) {
-    watchers.push_back({session, member.link.get()});
+    watchers.push_back({session, member.link});
   } else {
     std::erase_if(watchers, [session](const Watcher& watcher) { return watcher.session == session; });
   }
@@ -126,10 +138,10 @@ std::size_t Hub::roomCount() const {
 
 void Hub::enterRoom(SessionId session, Member& member, const std::string& room) {
   Group& entered = rooms_[room];
-  entered.sessions.push_back({session, member.link.get()});
+  entered.sessions.push_back({session, member.link});
   member.room = room;
   for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
-    if (member.watches[stream]) entered.watchers[stream].push_back({session, member.link.get()});
+    if (member.watches[stream]) entered.watchers[stream].push_back({session, member.link});
   }
 }
 

@@ -1,5 +1,6 @@
 #include "message_stream.h"
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
@@ -23,6 +24,20 @@ constexpr std::array<std::uint8_t, 4> kProtocolErrorClose{0x88, 0x02, 0x03, 0xea
 core::ByteView bytesOf(const asio::const_buffer& buffer) {
   return {static_cast<const std::uint8_t*>(buffer.data()), buffer.size()};
 }
+
+/// Messages as frames: a header and the message itself in turn.
+struct Framed {
+  Framed(std::span<const core::SharedBytes> messages, bool are_text) {
+    for (const core::SharedBytes& message : messages) {
+      headers.push_back(frameHeader(message->size(), are_text));
+      parts.emplace_back(headers.back().data(), headers.back().size());
+      parts.emplace_back(message->data(), message->size());
+    }
+  }
+
+  boost::container::static_vector<FrameHeader, MessageStream::kMessageMaxCount> headers;
+  boost::container::static_vector<asio::const_buffer, 2 * MessageStream::kMessageMaxCount> parts;
+};
 
 }  // namespace
 
@@ -85,26 +100,41 @@ MessageStream::MessageStream(Transport&& stream)
 
 void MessageStream::beginFrames(std::function<bool(std::uint64_t)> on_fragments) {
   shared_->has_frames = true;
+  error_code ignored;
+  socket().non_blocking(true, ignored);  // for beginMessages()
   shared_->on_fragments = std::move(on_fragments);
 }
 
-asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::SharedBytes> messages, bool are_text) {
+BegunWrite MessageStream::beginMessages(std::span<const core::SharedBytes> messages) {
+  BegunWrite out;
+  if (isTls() || shared_->turn != Shared::Turn::kFree) return out;
+  const Framed framed(messages, false);
+  out.bytes_count = socket().write_some(framed.parts, out.error);
+  if (out.error == asio::error::would_block) out.error.clear();
+  out.is_all = out.bytes_count == asio::buffer_size(framed.parts);
+  if (out.bytes_count > 0 && !out.is_all) shared_->turn = Shared::Turn::kMessages;
+  return out;
+}
+
+asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::SharedBytes> messages, bool are_text,
+                                                         BegunWrite begun) {
   using Turn = Shared::Turn;
+  if (begun.error) co_return begun.error;
   const std::shared_ptr<Shared> shared = shared_;
-  while (shared->turn != Turn::kFree) (void)co_await shared->turn_ends.async_wait(kToken);
+  if (begun.bytes_count == 0)
+    while (shared->turn != Turn::kFree) (void)co_await shared->turn_ends.async_wait(kToken);
   shared->turn = Turn::kMessages;
-  boost::container::static_vector<FrameHeader, kMessageMaxCount> headers;
-  boost::container::static_vector<asio::const_buffer, 2 * kMessageMaxCount> parts;
-  for (const core::SharedBytes& message : messages) {
-    headers.push_back(frameHeader(message->size(), are_text));
-    parts.emplace_back(headers.back().data(), headers.back().size());
-    parts.emplace_back(message->data(), message->size());
+  Framed framed(messages, are_text);
+  for (asio::const_buffer& part : framed.parts) {
+    const std::size_t written_bytes = std::min(begun.bytes_count, part.size());
+    part += written_bytes;
+    begun.bytes_count -= written_bytes;
   }
   const auto unlimited = [](const error_code& failed, std::size_t) {
     return failed ? std::size_t{0} : std::numeric_limits<std::size_t>::max();
   };
   const auto [error, bytes_count] =
-      co_await asio::async_write(shared->below, std::span<const asio::const_buffer>(parts), unlimited, kToken);
+      co_await asio::async_write(shared->below, std::span<const asio::const_buffer>(framed.parts), unlimited, kToken);
   shared->endTurn(shared->beast_waits ? Turn::kBeast : Turn::kFree);
   co_return error;
 }

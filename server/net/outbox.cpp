@@ -170,11 +170,6 @@ std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {
   return changed;
 }
 
-core::Level Outbox::level() const {
-  const std::lock_guard lock(mutex_);
-  return ladder_.level();
-}
-
 bool Outbox::requestClose(CloseCode code, std::string reason) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_) return false;

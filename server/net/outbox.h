@@ -78,8 +78,6 @@ class Outbox {
   /// Evaluates from time to time how many frames of adapting watches were lost; returns the new level if it changed.
   /// The writer calls it after each sent message.
   std::optional<core::Level> reviewLevel(Clock::time_point now);
-  /// Highest level for adapting watches, from the last evaluation.
-  core::Level level() const;
 
   /// Requests a close after the queued control messages; unsent frames are dropped. Returns true for the first request,
   /// which alone counts.

@@ -40,12 +40,14 @@ class ServerImpl final : public Server {
       : context_{options, std::move(proxies), std::move(credentials), application},
         accept_strand_(asio::make_strand(io_)),
         acceptor_(accept_strand_) {
-    context_.hub.gatherFrames([this](std::function<void()> wake) {
-      const auto timer = std::make_shared<asio::steady_timer>(io_, kGatherTime);
-      timer->async_wait([timer, wake = std::move(wake)](const boost::system::error_code& error) {
-        if (!error) wake();
-      });
-    });
+    context_.hub.gatherFrames(
+        [this](std::function<void()> wake) {
+          const auto timer = std::make_shared<asio::steady_timer>(io_, kGatherTime);
+          timer->async_wait([timer, wake = std::move(wake)](const boost::system::error_code& error) {
+            if (!error) wake();
+          });
+        },
+        [this](std::function<void()> write) { asio::post(io_, std::move(write)); });
   }
   ServerImpl(const ServerImpl&) = delete;
   ServerImpl& operator=(const ServerImpl&) = delete;

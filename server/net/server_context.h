@@ -24,6 +24,13 @@ class Counters {
     const std::lock_guard lock(mutex_);
     stats_.*counter += static_cast<std::uint64_t>(count);
   }
+  void wrote(std::uint64_t bytes_count, std::uint64_t frame_count, bool is_at_once) {
+    const std::lock_guard lock(mutex_);
+    stats_.sent_bytes_count += bytes_count;
+    stats_.sent_frame_count += frame_count;
+    ++stats_.write_count;
+    stats_.waiting_write_count += is_at_once ? 0 : 1;
+  }
   void refused(Refused why) {
     const std::lock_guard lock(mutex_);
     ++stats_.refused_count[static_cast<std::size_t>(why)];

@@ -33,7 +33,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   void sendAnswer(core::SharedBytes message) override;
   void sendState(const StateTopic& topic, core::SharedBytes message) override;
   void offerFrame(StreamIndex stream, const FrameBytes& frame, Wake wake) override;
-  void wakeForFrames() override;
+  bool takesFrames() override { return outbox_.wakeForFrames(); }
+  void writeNow() override;
   void offerNewest(StreamIndex stream, const FrameBytes& frame) override;
   void setWatch(StreamIndex stream, const std::optional<Watch>& watch) override { outbox_.setWatch(stream, watch); }
   void enterRoom(std::shared_ptr<core::DemandTable> demand) override { outbox_.enterRoom(std::move(demand)); }
@@ -50,6 +51,7 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
     boost::container::small_vector<core::SharedBytes, 8> messages;
     std::size_t bytes_count = 0;
     std::size_t frame_count = 0;
+    BegunWrite begun{};
   };
 
   void configure(const std::string& subprotocol);
@@ -57,6 +59,11 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   bool takeFragments(std::uint64_t count);
   boost::asio::awaitable<void> readLoop();
   boost::asio::awaitable<void> writeLoop();
+  /// Sends what waits, as far as the kernel takes it at once. Returns what is left to the writer; kFrame: messages that
+  /// were gathered, and wait for the kernel, Beast or TLS, for their translation, or for other work of the thread.
+  Outbox::Kind sendAtOnce();
+  /// Does the same for a writer that sleeps, and wakes it only if something is left.
+  void wake();
   /// Hands a message of the client to the application.
   void receive(core::ByteView message, bool is_text);
   /// Hands over what a translator made of one.
@@ -70,10 +77,12 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   /// as the next two.
   boost::asio::awaitable<bool> writeGathered();
   boost::asio::awaitable<bool> writeTranslated(std::span<const core::SharedBytes> messages);
-  /// Writes messages of one kind.
-  boost::asio::awaitable<bool> write(std::span<const core::SharedBytes> messages, bool are_text);
-  /// Called after each write: evaluates whether the link can carry its level.
-  void reviewLevel();
+  /// Writes messages of one kind, from where `begun` ends.
+  boost::asio::awaitable<bool> write(std::span<const core::SharedBytes> messages, bool are_text,
+                                     std::size_t frame_count, BegunWrite begun);
+  /// Called after each write: lets the reader see whether answers still wait, and evaluates whether the link can carry
+  /// its level.
+  void afterWrite();
   /// Closes the socket when a write passes its deadline. One timer runs across writes and is not set again for each.
   void watchWrites();
   /// Sends the close frame and waits for the peer's until the close deadline.
@@ -94,6 +103,8 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
   std::unique_ptr<core::Translator> translator_;  ///< null: the client speaks the application's protocol
   Outbox outbox_;
   Gathered gathered_;
+  bool is_writer_idle_ = false;             ///< it waits on wake_timer_
+  core::Level level_ = core::Level::kFull;  ///< of the newest review
   TokenBucket message_tokens_;
   std::uint64_t untaken_fragment_count_ = 0;  ///< fragments for which no token was taken yet
   boost::beast::flat_buffer read_buffer_;

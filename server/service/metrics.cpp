@@ -177,6 +177,8 @@ void writeNetwork(Page& page, const net::ServerStats& stats) {
   page.one("sent_bytes_total", "counter", "Bytes of messages sent, without WebSocket headers.", stats.sent_bytes_count);
   page.one("sent_frames_total", "counter", "Layer frames sent.", stats.sent_frame_count);
   page.one("session_writes_total", "counter", "Writes to sessions, of one or more messages each.", stats.write_count);
+  page.one("session_writes_waiting_total", "counter", "Writes that the kernel did not take at once; with TLS all.",
+           stats.waiting_write_count);
   page.one("dropped_frames_total", "counter", "Layer frames that a newer one replaced before they were sent.",
            stats.dropped_frame_count);
   page.one("evicted_sessions_total", "counter", "Sessions that did not read: a stalled write or a full control queue.",

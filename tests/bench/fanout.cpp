@@ -154,7 +154,7 @@ core::Result<FanoutRow> measure(const FanoutCase& test, const std::optional<net:
   return out;
 }
 
-/// The readers of the case, to whom a thread sends the same frames with nothing between.
+/// A thread sends the same frames to the readers of the case, with nothing between.
 FanoutRow measureBareSend(const FanoutCase& test) {
   BareSender sender(test.crowd.client_count, test.rate_hz, [&] { return frameNow(test.frame_bytes); });
   FanoutRow out{.name = test.name};

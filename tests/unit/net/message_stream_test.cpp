@@ -64,15 +64,17 @@ class MessageStreamTest : public testing::Test {
     return out;
   }
   /// Starts writes of the session's, one message each.
-  std::shared_ptr<std::optional<error_code>> startMessages(std::vector<core::SharedBytes> messages) {
+  std::shared_ptr<std::optional<error_code>> startMessages(std::vector<core::SharedBytes> messages,
+                                                           BegunWrite begun = {}) {
     auto out = std::make_shared<std::optional<error_code>>();
-    const auto write = [](MessageStream& stream, std::vector<core::SharedBytes> all) -> asio::awaitable<error_code> {
+    const auto write = [](MessageStream& stream, std::vector<core::SharedBytes> all,
+                          BegunWrite first) -> asio::awaitable<error_code> {
       error_code error;
       for (const core::SharedBytes& one : all)
-        if (!error) error = co_await stream.writeMessages({&one, 1});
+        if (!error) error = co_await stream.writeMessages({&one, 1}, false, std::exchange(first, {}));
       co_return error;
     };
-    asio::co_spawn(io_, write(*stream_, std::move(messages)),
+    asio::co_spawn(io_, write(*stream_, std::move(messages), begun),
                    [out](const std::exception_ptr&, error_code error) { *out = error; });
     return out;
   }
@@ -132,6 +134,49 @@ TEST_F(MessageStreamTest, NoMessageFollowsACloseFrame) {
   EXPECT_EQ(peer_.available(), 0U);
   stream_->close();
   EXPECT_TRUE(waitFor(written)) << "fails when the connection ends";
+}
+
+TEST_F(MessageStreamTest, TheKernelTakesWhatItHasRoomForAtOnce) {
+  const std::vector<core::SharedBytes> small{test::shared("water"), test::shared("waves")};
+  const BegunWrite all = stream_->beginMessages(small);
+  EXPECT_TRUE(all.is_all);
+  EXPECT_EQ(all.bytes_count, 14U);
+  EXPECT_EQ(received(14), frameOf(*small[0]) + frameOf(*small[1]));
+}
+
+TEST_F(MessageStreamTest, TheRestOfABegunMessageComesBeforeAFrameOfBeast) {
+  const std::string pong = bytesOf({.opcode = Opcode::kPong, .payload = "pong", .masked = false});
+  core::Bytes bytes(kHugeBytes);
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<std::uint8_t>(k * 13 + k / 65'521);
+  const core::SharedBytes huge = core::share(std::move(bytes));
+  const BegunWrite begun = stream_->beginMessages({&huge, 1});
+  EXPECT_FALSE(begun.is_all);
+  EXPECT_FALSE(begun.error);
+  EXPECT_GT(begun.bytes_count, 0U);
+  const auto answered = startWrite(pong);
+  EXPECT_FALSE(hasEnded(answered));
+  const auto written = startMessages({huge}, begun);
+  EXPECT_TRUE(received(10 + kHugeBytes) == frameOf(*huge));
+  EXPECT_FALSE(waitFor(written));
+  EXPECT_EQ(received(pong.size()), pong);
+  EXPECT_EQ(waitFor(answered).bytes_count, pong.size());
+}
+
+TEST_F(MessageStreamTest, BeginsNothingWithinOrAfterAFrameOfBeast) {
+  const std::string close = "\x88\x02\x03\xe8";
+  const core::SharedBytes message = test::shared("water");
+  EXPECT_EQ(waitFor(startWrite(std::string_view(close).substr(0, 1))).bytes_count, 1U);
+  EXPECT_EQ(stream_->beginMessages({&message, 1}).bytes_count, 0U);
+  EXPECT_EQ(waitFor(startWrite(std::string_view(close).substr(1))).bytes_count, 3U);
+  EXPECT_EQ(stream_->beginMessages({&message, 1}).bytes_count, 0U);
+  EXPECT_EQ(received(close.size()), close);
+  EXPECT_EQ(peer_.available(), 0U);
+}
+
+TEST_F(MessageStreamTest, ReportsAConnectionThatIsGone) {
+  const core::SharedBytes message = test::shared("water");
+  stream_->close();
+  EXPECT_TRUE(stream_->beginMessages({&message, 1}).error);
 }
 
 TEST_F(MessageStreamTest, ReplacesACloseFrameInPieces) {

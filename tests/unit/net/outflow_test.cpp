@@ -89,6 +89,24 @@ TEST(Outflow, SendsNothingInsideAPartlyWrittenFrame) {
   for (int k = 0; k < 5; ++k) EXPECT_EQ(text(slow.receive()), "echo " + std::to_string(k));
 }
 
+TEST(Outflow, AFrameTakesOneCallPerReader) {
+  TestServer served;
+  constexpr std::size_t kReaderCount = Hub::kGatherSessionCount;
+  constexpr int kFrameCount = 20;
+  std::vector<WsClient> readers;
+  for (std::size_t k = 0; k < kReaderCount; ++k) readers.push_back(served.watcher(1));
+  const ServerStats before = served.server->stats();
+  for (int k = 0; k < kFrameCount; ++k) {
+    served.server->hub().publish("pool", 1, {core::share(core::Bytes(20'000, static_cast<std::uint8_t>(k))), {}});
+    for (WsClient& reader : readers) ASSERT_EQ(reader.receive(), core::Bytes(20'000, static_cast<std::uint8_t>(k)));
+  }
+  ASSERT_TRUE(eventually(
+      [&] { return served.server->stats().sent_frame_count - before.sent_frame_count == kFrameCount * kReaderCount; }));
+  const ServerStats after = served.server->stats();
+  EXPECT_EQ(after.write_count - before.write_count, kFrameCount * kReaderCount);
+  EXPECT_EQ(after.waiting_write_count, before.waiting_write_count);
+}
+
 TEST(Outflow, WritesTogetherWhatWaits) {
   TestServer served;
   WsClient slow = served.watcher(1, kUnlimitedRate_hz, kTinyReceiveBuffer);
@@ -114,6 +132,7 @@ TEST(Outflow, WritesTogetherWhatWaits) {
   EXPECT_EQ(text(slow.receive()), "echo") << "control goes first, also within a write";
   for (const core::Bytes& frame : frames) EXPECT_TRUE(slow.receive() == frame) << frame.size() << " bytes";
   ASSERT_TRUE(eventually([&] { return served.server->stats().sent_frame_count == 1 + frames.size(); }));
+  EXPECT_GE(served.server->stats().waiting_write_count, 1U) << "the large one";
   // The large one, then the echo with 1 to 30,000 bytes, then 20,000, then 70,000.
   EXPECT_EQ(served.server->stats().write_count, write_count + 4);
 }

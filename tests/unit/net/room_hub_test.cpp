@@ -16,6 +16,8 @@ struct RecordingLink final : SessionLink {
   int control_count = 0;
   int frame_count = 0;
   int wake_count = 0;
+  bool takes_frames = true;
+  std::function<void()> on_write;
   int newest_count = 0;
   std::shared_ptr<core::DemandTable> demand;  ///< of its room
   std::optional<double> rate_hz;
@@ -28,7 +30,11 @@ struct RecordingLink final : SessionLink {
     ++frame_count;
     if (wake == Wake::kNow) ++wake_count;
   }
-  void wakeForFrames() override { ++wake_count; }
+  bool takesFrames() override { return takes_frames; }
+  void writeNow() override {
+    ++wake_count;
+    if (on_write) on_write();
+  }
   void offerNewest(StreamIndex, const FrameBytes&) override { ++newest_count; }
   void setWatch(StreamIndex, const std::optional<Watch>& watch) override {
     rate_hz = watch ? std::optional(watch->max_rate_hz) : std::nullopt;
@@ -80,10 +86,15 @@ struct GatheringHub {
   test::DemandTables demands;
   Hub hub;
   std::vector<std::function<void()>> later;
+  int task_count = 0;
   std::vector<std::shared_ptr<RecordingLink>> links;
 
   GatheringHub() {
-    hub.gatherFrames([this](std::function<void()> wake) { later.push_back(std::move(wake)); });
+    hub.gatherFrames([this](std::function<void()> wake) { later.push_back(std::move(wake)); },
+                     [this](const std::function<void()>& write) {
+                       ++task_count;
+                       write();
+                     });
   }
   void addToPool(std::size_t count) {
     for (std::size_t k = 0; k < count; ++k) {
@@ -122,6 +133,27 @@ TEST(RoomHubGathers, ManySessionsAreWokenOnceForTheFramesOfAMoment) {
   ASSERT_EQ(test.later.size(), 2U) << "the next moment is waited for anew";
   test.later[1]();
   EXPECT_TRUE(test.allWere(3, 2));
+}
+
+TEST(RoomHubGathers, OneTaskWritesForSeveralSessionsThatHaveFrames) {
+  GatheringHub test;
+  test.addToPool(Hub::kGatherSessionCount);
+  test.links[3]->takes_frames = false;
+  test.hub.publish("pool", 3, {shared("surface"), {}});
+  test.later.at(0)();
+  EXPECT_EQ(test.task_count, static_cast<int>(Hub::kGatherSessionCount / Hub::kWokenTogetherCount));
+  EXPECT_EQ(test.links[3]->wake_count, 0);
+  EXPECT_EQ(test.links[4]->wake_count, 1);
+}
+
+TEST(RoomHubGathers, WritesWithoutTheHubsLock) {
+  GatheringHub test;
+  test.addToPool(Hub::kGatherSessionCount);
+  std::size_t room_count = 0;
+  test.links[0]->on_write = [&] { room_count = test.hub.roomCount(); };
+  test.hub.publish("pool", 3, {shared("surface"), {}});
+  test.later.at(0)();
+  EXPECT_EQ(room_count, 1U);
 }
 
 TEST(RoomHubGathers, ALateWakeUpFindsTheRoomGone) {

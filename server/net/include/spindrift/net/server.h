@@ -139,10 +139,16 @@ class Hub {
   /// In a room with this many sessions or more, sessions are woken once for all frames of the next moment, because most
   /// of the cost of a frame is the write, and a write takes all frames along that wait.
   static constexpr std::size_t kGatherSessionCount = 64;
-  /// Calls its argument once, about a millisecond later, on any thread and without the hub's lock.
-  using Later = std::function<void(std::function<void()>)>;
-  /// Without this call every frame wakes its sessions at once. Call it before the first session.
-  void gatherFrames(Later later) { later_ = std::move(later); }
+  /// So many of them are woken by one task.
+  static constexpr std::size_t kWokenTogetherCount = 16;
+  /// Calls its argument once on an I/O thread, without the hub's lock.
+  using Call = std::function<void(std::function<void()>)>;
+  /// `later` calls about a millisecond later, `soon` as soon as a thread is free. Without this every frame wakes its
+  /// sessions at once. Call it before the first session.
+  void gatherFrames(Call later, Call soon) {
+    later_ = std::move(later);
+    soon_ = std::move(soon);
+  }
 
   void add(SessionId session, std::shared_ptr<SessionLink> link);
   /// Removes the session; no call reaches its link afterwards.
@@ -161,7 +167,7 @@ class Hub {
   };
   struct Watcher {
     SessionId session = 0;
-    SessionLink* link = nullptr;  ///< owned by the session, which leaves the room before it is destroyed
+    std::shared_ptr<SessionLink> link;
   };
   struct Group {
     std::vector<Watcher> sessions;
@@ -173,7 +179,8 @@ class Hub {
   void leaveRoom(SessionId session, Member& member);
   void wakeRoom(const std::string& room);
 
-  Later later_;
+  Call later_;
+  Call soon_;
   mutable std::mutex mutex_;
   std::unordered_map<SessionId, Member> members_;
   std::map<std::string, Group> rooms_;
@@ -295,6 +302,7 @@ struct ServerStats {
   std::uint64_t sent_bytes_count = 0;       ///< message bytes of both planes, without WebSocket headers
   std::uint64_t sent_frame_count = 0;       ///< data plane only
   std::uint64_t write_count = 0;            ///< to sessions, of one or more messages each
+  std::uint64_t waiting_write_count = 0;    ///< those among them that the kernel did not take at once; with TLS all
   std::uint64_t dropped_frame_count = 0;    ///< replaced in their slot by a newer frame before they were sent
   std::uint64_t lowered_level_count = 0;    ///< times that a session's level was lowered
   std::uint64_t raised_level_count = 0;     ///< times that a session's level was raised again
