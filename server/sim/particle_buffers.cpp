@@ -12,7 +12,8 @@ ParticleBuffers::ParticleBuffers(Creation& create, std::size_t count, bool store
       sorted_velocity(create.scratch("sorted velocity", count, gpu::TexelFormat::kRGBA32F)),
       pressure_point(create.scratch("pressure point", count, gpu::TexelFormat::kRGBA32F)),
       motion_point(create.scratch("motion point", count, gpu::TexelFormat::kRGBA32F)),
-      acceleration(create.texels("acceleration", count, gpu::TexelFormat::kRGBA32F)) {
+      acceleration(create.texels("acceleration", count, gpu::TexelFormat::kRGBA32F)),
+      near_candidates(create.scratch("near candidates", 9 * count, gpu::TexelFormat::kRG32UI)) {
   if (stores_foam_source) foam_source = create.scratch("foam source", count, gpu::TexelFormat::kR32F);
   if (has_tension) surface_gradient = create.scratch("surface gradient", count, gpu::TexelFormat::kRGBA32F);
 }

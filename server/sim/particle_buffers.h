@@ -15,6 +15,7 @@ struct ParticleBuffers {
   gpu::TexelBuffer position, velocity;
   gpu::TexelBuffer sorted_position, sorted_velocity;
   gpu::TexelBuffer pressure_point, motion_point, acceleration;
+  gpu::TexelBuffer near_candidates;   ///< see grid/candidates.glsl
   gpu::TexelBuffer foam_source;       ///< only where storesFoamSource()
   gpu::TexelBuffer surface_gradient;  ///< only where hasTension()
 

@@ -15,6 +15,7 @@ void Sph::density(const ParticleBuffers& particles, const Population& population
   particles.pressure_point.bindStorage(PRESSURE_POINT);
   particles.motion_point.bindStorage(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
+  particles.near_candidates.bindStorage(NEAR_CANDIDATES);
   if (particles.foam_source) particles.foam_source.bindStorage(FOAM_SOURCE);
   if (particles.surface_gradient) particles.surface_gradient.bindStorage(SURFACE_GRADIENT);
   population.forParticles(density_);
@@ -24,6 +25,7 @@ void Sph::forces(const ParticleBuffers& particles, const Population& population)
   particles.pressure_point.bindTexel(PRESSURE_POINT);
   particles.motion_point.bindTexel(MOTION_POINT);
   particles.acceleration.bindStorage(ACCELERATION);
+  particles.near_candidates.bindTexel(NEAR_CANDIDATES);
   if (particles.surface_gradient) particles.surface_gradient.bindTexel(SURFACE_GRADIENT);
   population.forParticles(force_);
 }
@@ -58,7 +60,9 @@ void PositionBased::project(const ParticleBuffers& particles, const Population& 
     particles.pressure_point.bindStorage(PRESSURE_POINT);
     particles.acceleration.bindStorage(ACCELERATION);
     if (particles.surface_gradient) particles.surface_gradient.bindStorage(SURFACE_GRADIENT);
+    particles.near_candidates.bindStorage(NEAR_CANDIDATES);
     population.forParticles(multiplier_);
+    particles.near_candidates.bindTexel(NEAR_CANDIDATES);
     particles.pressure_point.bindTexel(PRESSURE_POINT);
     particles.motion_point.bindStorage(MOTION_POINT);
     population.forParticles(correct_);

@@ -215,7 +215,7 @@ std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
     bytes += std::uint64_t{d.particles->count} *
-                 (7 * 16 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0) + (hasTension(scene) ? 16 : 0)) +
+                 (7 * 16 + 9 * 8 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0) + (hasTension(scene) ? 16 : 0)) +
              std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
   if (d.wave) bytes += d.wave->counts().total() * waveCellBytes(scene);

@@ -1,9 +1,10 @@
 // The multiplier of each particle's density constraint C_i = rho_i / rho_0 - 1; without COHESION it is 0 where C_i < 0.
 // Reads SORTED_POSITION (the positions of this iteration), CELL_START, floor and walls. Writes PRESSURE_POINT (position, lambda [m^2])
-// and ACCELERATION.w (rho), with TENSION SURFACE_GRADIENT; counts in CROWDED.
+// ACCELERATION.w (rho), NEAR_CANDIDATES, with TENSION SURFACE_GRADIENT; counts in CROWDED.
 // Equation: lambda_i = -C_i / (sum_k |grad_k C_i|^2 + softness) (Macklin & Mueller 2013, eq. 11). Floor and walls
 // contribute to rho_i and to the particle's own gradient; they do not move.
 #define COUNT_CROWDED
+#define NOTE_NEAR
 #include "shared/groups.h"
 #include "particles/population.glsl"
 #include "grid/candidates.glsl"
@@ -37,6 +38,7 @@ void main() {
     for (int dx = -1; dx <= 1; ++dx) {
       const CandidateRange range = candidateRange(g, cell, dx, dz);
       const vec3 x = x_i + range.shift_m;
+      NearBits noted = noneNear();
       for (int j = range.first; j < range.last; ++j) {
         const vec3 r = fromCandidate(g, x, texelFetch(iterate, j).xyz);
         const float r2 = dot(r, r);
@@ -44,14 +46,17 @@ void main() {
         sum += densityShape(r2, support);
         pull += p;
         squares += dot(p, p);
+        noteNear(noted, r2, g);
 #if TENSION
         emptiness += surfaceShare(r, r2, support);
 #endif
       }
+      storeNear(i, dx, dz, range, noted);
     }
   }
 
   countCrowded();
+  endNear(i);
 
   const float rho = sim.mass_kg * sim.density_norm * sum + boundaryDensity(x_i);
   const float slope = sim.mass_kg * sim.slope_norm / sim.rest_density_kgpm3;

@@ -1,11 +1,12 @@
 // Density and pressure of each particle.
 // Reads SORTED_POSITION, SORTED_VELOCITY, CELL_START, floor and walls. Writes PRESSURE_POINT (position, p/rho^2, with MEAN_FORCE
-// p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho), with NEIGHBOUR_FOAM FOAM_SOURCE, with TENSION SURFACE_GRADIENT; counts in
-// CROWDED.
+// p), MOTION_POINT (velocity, m/rho), ACCELERATION.w (rho), NEAR_CANDIDATES, with NEIGHBOUR_FOAM FOAM_SOURCE, with TENSION
+// SURFACE_GRADIENT; counts in CROWDED.
 // Equations: rho_i = sum_j m W(r_ij) (thesis 3.6), plus the floor's virtual particles, cubic kernel (thesis, algorithm
 // 10), and the walls' shares; p_i from the equation of state (sph/pressure.glsl).
 // Invariant: rho_i >= m W(0) > 0, so the divisions are safe.
 #define COUNT_CROWDED
+#define NOTE_NEAR
 #include "shared/groups.h"
 #include "grid/candidates.glsl"
 #include "particles/population.glsl"
@@ -50,10 +51,12 @@ void main() {
     for (int dx = -1; dx <= 1; ++dx) {
       const CandidateRange range = candidateRange(g, cell, dx, dz);
       const vec3 x = x_i + range.shift_m;
+      NearBits noted = noneNear();
       for (int j = range.first; j < range.last; ++j) {
         const vec3 r = fromCandidate(g, x, texelFetch(sorted_position, j).xyz);
         const float r2 = dot(r, r);
         sum += densityShape(r2, support);
+        noteNear(noted, r2, g);
 #if TENSION
         emptiness += surfaceShare(r, r2, support);
 #endif
@@ -61,10 +64,12 @@ void main() {
         near += step(r2, H2);
 #endif
       }
+      storeNear(i, dx, dz, range, noted);
     }
   }
 
   countCrowded();
+  endNear(i);
 
   const float rho = sim.mass_kg * sim.density_norm * sum + boundaryDensity(x_i);
   const float pressure = pressureOf(rho);

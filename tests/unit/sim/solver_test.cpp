@@ -111,6 +111,21 @@ TEST_F(Solver, OneIterationOfPositionsAgreesWithTheReference) {
   }
 }
 
+TEST_F(Solver, AgreesWithTheReferenceWhereAColumnHasMoreCandidatesThanBits) {
+  for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
+    core::Scene scene = smallScene(1200);
+    scene.wave.reset();
+    scene.coupling.reset();
+    scene.particles->box_side_m = 3.0;
+    scene.particles->layers_count = 10;
+    scene.particles->support_ratio =
+        2.6;  // 53 candidates in a column inside of the lattice, grid/candidates.glsl has 32 bits
+    scene.particles->boundary_x = scene.particles->boundary_z = core::Boundary::kWall;
+    scene.particles->solver = solver;
+    compare(scene);
+  }
+}
+
 TEST_F(Solver, AgreesWithTheReferenceInABoxThatIsPeriodicInEveryDirection) {
   for (const auto solver : {core::PressureSolver::kWeaklyCompressible, core::PressureSolver::kPositionBased}) {
     core::Scene scene = smallScene(5 * 12 * 12);
