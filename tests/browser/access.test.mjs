@@ -20,6 +20,33 @@ const kZoomed = {
   "a phone of 320 px": { viewport: { width: 320, height: 692 }, deviceScaleFactor: 2, hasTouch: true, isMobile: true },
 };
 
+const nothing = async () => {};
+/** Steps through all that the page of the water shows. */
+const kWaterStates = {
+  "as it opens": nothing,
+  "with the whole panel": async (page) => {
+    await page.getByTestId("class-box").waitFor({ state: "attached", timeout: WAIT_MS });
+    if (await page.evaluate(() => document.body.classList.contains("panel-closed"))) await page.locator("#panel-toggle").dispatchEvent("click");
+    await page.evaluate(() => document.querySelectorAll("#panel details:not([hidden])").forEach((each) => (each.open = true)));
+  },
+  "with the panel closed": (page) => page.locator("#panel-toggle").dispatchEvent("click"),
+  "with the share card": async (page) => {
+    await page.getByTestId("share").dispatchEvent("click");
+    await page.getByTestId("share-card").waitFor({ timeout: WAIT_MS });
+  },
+  "with the card of keys": async (page) => {
+    await page.keyboard.press("Escape");
+    await page.getByTestId("share-card").waitFor({ state: "hidden", timeout: WAIT_MS });
+    await page.keyboard.press("?");
+    await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
+  },
+};
+const kPadStates = {
+  "with a finger": nothing,
+  "with the helm": (page) => page.getByTestId("pad-tool-boat").dispatchEvent("click"),
+  "with the name": (page) => page.getByTestId("pad-me").dispatchEvent("click"),
+};
+
 describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
   let server;
   let token;
@@ -66,37 +93,14 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
   const isClean = (opening, steps) => expectNone(findings, opening, steps);
   /** Nothing is cut off, covered or on top of something else. */
   const fits = (opening, steps) => expectNone(layoutFaults, opening, steps);
-  const nothing = async () => {};
 
   for (const [name, options] of Object.entries({ desk: kDesk, phone: kPhone })) {
     it(`has no finding on the water page: ${name}`, async () => {
-      await isClean(water(options), {
-        "as it opens": nothing,
-        "with the whole panel": async (page) => {
-          await page.getByTestId("class-box").waitFor({ state: "attached", timeout: WAIT_MS });
-          if (name === "phone") await page.locator("#panel-toggle").dispatchEvent("click");
-          await page.evaluate(() => document.querySelectorAll("#panel details:not([hidden])").forEach((each) => (each.open = true)));
-        },
-        "with the panel closed": (page) => page.locator("#panel-toggle").dispatchEvent("click"),
-        "with the share card": async (page) => {
-          await page.getByTestId("share").dispatchEvent("click");
-          await page.getByTestId("share-card").waitFor({ timeout: WAIT_MS });
-        },
-        "with the card of keys": async (page) => {
-          await page.keyboard.press("Escape");
-          await page.getByTestId("share-card").waitFor({ state: "hidden", timeout: WAIT_MS });
-          await page.keyboard.press("?");
-          await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
-        },
-      });
+      await isClean(water(options), kWaterStates);
     });
 
     it(`has no finding on the pad: ${name}`, async () => {
-      await isClean(open("pad", options), {
-        "with a finger": nothing,
-        "with the helm": (page) => page.getByTestId("pad-tool-boat").dispatchEvent("click"),
-        "with the name": (page) => page.getByTestId("pad-me").dispatchEvent("click"),
-      });
+      await isClean(open("pad", options), kPadStates);
     });
 
     it(`has no finding on the projector's view: ${name}`, async () => {
@@ -153,25 +157,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
     for (const locale of ["en-US", "de-DE"]) {
       const zoomed = { ...options, locale };
       it(`has no control cut off and no texts on one another, water page: ${name}, ${locale}`, async () => {
-        await fits(water(zoomed), {
-          "as it opens": nothing,
-          "with the whole panel": async (page) => {
-            await page.getByTestId("class-box").waitFor({ state: "attached", timeout: WAIT_MS });
-            if (await page.evaluate(() => document.body.classList.contains("panel-closed"))) await page.locator("#panel-toggle").dispatchEvent("click");
-            await page.evaluate(() => document.querySelectorAll("#panel details:not([hidden])").forEach((each) => (each.open = true)));
-          },
-          "with the panel closed": (page) => page.locator("#panel-toggle").dispatchEvent("click"),
-          "with the share card": async (page) => {
-            await page.getByTestId("share").dispatchEvent("click");
-            await page.getByTestId("share-card").waitFor({ timeout: WAIT_MS });
-          },
-          "with the card of keys": async (page) => {
-            await page.keyboard.press("Escape");
-            await page.getByTestId("share-card").waitFor({ state: "hidden", timeout: WAIT_MS });
-            await page.keyboard.press("?");
-            await page.getByTestId("keys-card").waitFor({ timeout: WAIT_MS });
-          },
-        });
+        await fits(water(zoomed), kWaterStates);
       });
 
       it(`has no control cut off and no texts on one another, front page: ${name}, ${locale}`, async () => {
@@ -186,11 +172,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
       });
 
       it(`has no control cut off and no texts on one another, pad: ${name}, ${locale}`, async () => {
-        await fits(open("pad", zoomed), {
-          "with a finger": nothing,
-          "with the helm": (page) => page.getByTestId("pad-tool-boat").dispatchEvent("click"),
-          "with the name": (page) => page.getByTestId("pad-me").dispatchEvent("click"),
-        });
+        await fits(open("pad", zoomed), kPadStates);
       });
     }
 

@@ -103,35 +103,16 @@ class ClusterKill : public ClusterTest {
   /// Connects the players as the same people; checks that they are known and own what they were promised. Begins a
   /// new round.
   void checkPeople() {
-    struct Promise {
-      std::uint32_t person_id;
-      std::set<std::uint32_t> boats;
-    };
-    std::vector<Promise> promises;
-    for (const Player& player : players_)
-      promises.push_back(
-          {player.promisedPersonId(), ledger_.sureBoats(player.room(), player.opening(), player.promisedPersonId())});
+    std::vector<Belongings> promises;
+    for (const Player& player : players_) promises.push_back(player.promised(ledger_));
     ledger_.beginRound();
     for (std::size_t k = 0; k < players_.size(); ++k) {
       Player& player = players_[k];
       SCOPED_TRACE(fmt::format("player {} in room {}", k + 1, player.room()));
-      ASSERT_TRUE(player.connect(edge_.port, ledger_)) << edge_.process->log();
-      const v1::Welcome welcome = player.client().welcome();
-      std::set<std::uint32_t> boats;
-      ASSERT_TRUE(player.client().waitFor([&](const v1::ServerMessage& message) {
-        for (const v1::Person& person : message.people().people()) {
-          if (person.person_id() != welcome.person_id()) continue;
-          boats.insert(person.boat_ids().begin(), person.boat_ids().end());
-          return true;
-        }
-        return false;
-      }));
-      for (const std::uint32_t boat_id : boats)
-        ledger_.claim({player.room(), player.opening(), welcome.person_id(), boat_id, 0});
+      const Belongings found = player.comeBack(edge_.port, ledger_);
+      ASSERT_NE(found.person_id, 0u) << edge_.process->log();
       if (promises[k].person_id == 0) continue;
-      EXPECT_TRUE(welcome.resumed());
-      EXPECT_EQ(welcome.person_id(), promises[k].person_id);
-      for (const std::uint32_t boat_id : promises[k].boats) EXPECT_TRUE(boats.contains(boat_id)) << "boat " << boat_id;
+      expectKept(player, promises[k], found);
       ++totals_.person_count;
       totals_.boat_count += promises[k].boats.size();
     }
@@ -142,13 +123,6 @@ class ClusterKill : public ClusterTest {
     std::size_t count = 0;
     for (std::size_t at = 0; (at = log.find("taken over from", at)) != std::string::npos; ++at) ++count;
     return count;
-  }
-
-  fs::path copyOfState(const std::string& name) {
-    fs::path copy = folder_.path() / name;
-    fs::remove_all(copy);
-    fs::copy(stateFolder(), copy, fs::copy_options::recursive);
-    return copy;
   }
 
   /// Plays, kills the server of the rooms, and keeps what it left behind before the other server has touched it. False
@@ -167,7 +141,7 @@ class ClusterKill : public ClusterTest {
       killed_ = Clock::now();
       is_over = true;
       EXPECT_EQ(running_.process->wait(), 128 + SIGKILL);
-      newest_ = copyOfState("newest");
+      newest_ = copyOf(stateFolder(), "newest");
       is_kept = takeoverCount() == before;
     }
     ++totals_.kill_count;
@@ -195,9 +169,7 @@ class ClusterKill : public ClusterTest {
   /// Compares the rooms of the new server with what the files of the killed one give, and these with what was
   /// acknowledged.
   void checkRooms(const std::map<std::string, v1::KeptState>& elsewhere) {
-    const fs::path older = folder_.path() / "older";
-    fs::remove_all(older);
-    fs::copy(newest_, older, fs::copy_options::recursive);
+    const fs::path older = copyOf(newest_, "older");
     removeNewestSnapshots(older);
     auto newest_store = history::StateStore::open({.folder = newest_});
     auto older_store = history::StateStore::open({.folder = older});
@@ -214,13 +186,10 @@ class ClusterKill : public ClusterTest {
       totals_.before_snapshot_count += found.before_snapshot_count;
       totals_.record_count += place->kept->records.size();
       place = core::Error{core::ErrorCode::kInternal, "closed"};  // releases the room
-      const auto from_newest = restoredRoom(**newest_store, room, device_);
-      ASSERT_TRUE(from_newest && *from_newest) << (from_newest ? "nothing usable" : from_newest.error().message);
-      const auto from_older = restoredRoom(**older_store, room, device_, (*from_newest)->tick());
-      ASSERT_TRUE(from_older && *from_older) << (from_older ? "nothing usable" : from_older.error().message);
-      EXPECT_THAT(differences(**from_newest, **from_older), testing::IsEmpty());
+      const auto restored = restoredTwice(**newest_store, **older_store, room, device_);
+      ASSERT_TRUE(restored);
       ASSERT_TRUE(elsewhere.contains(room));
-      EXPECT_THAT(differences(**from_newest, elsewhere.at(room)), testing::IsEmpty()) << "at the new server";
+      EXPECT_THAT(differences(*restored, elsewhere.at(room)), testing::IsEmpty()) << "at the new server";
       ++totals_.room_count;
     }
     for (const SentCommand& sent : ledger_.commands()) {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include <spindrift/rooms/room.h>
 #include <spindrift/scene/scene_loader.h>
@@ -229,6 +230,27 @@ KeptCommands findAll(std::vector<SentCommand> all, const std::string& room, std:
     }
   }
   return out;
+}
+
+std::optional<v1::KeptState> restoredTwice(history::StateStore& newest, history::StateStore& older,
+                                           const std::string& room, const gpu::DeviceChoice& device) {
+  auto from_newest = restoredRoom(newest, room, device);
+  const auto from_older = restoredRoom(older, room, device, from_newest && *from_newest ? (*from_newest)->tick() : 0);
+  for (const auto* restored : {&std::as_const(from_newest), &from_older}) {
+    if (*restored && **restored) continue;
+    ADD_FAILURE() << (restored == &from_older ? "from the older snapshot: " : "from the newest snapshot: ")
+                  << (*restored ? "its files cannot be used" : restored->error().message);
+    return std::nullopt;
+  }
+  EXPECT_THAT(differences(**from_newest, **from_older), testing::IsEmpty());
+  return **from_newest;
+}
+
+fs::path copyOf(const fs::path& folder, const std::string& name) {
+  fs::path copy = folder.parent_path() / name;
+  fs::remove_all(copy);
+  fs::copy(folder, copy, fs::copy_options::recursive);
+  return copy;
 }
 
 }  // namespace spindrift::test

@@ -1,4 +1,4 @@
-// What state_kill_test finds in the files that a killed server has left behind.
+// What state_kill_test and cluster_kill_test find in the files that a killed server has left behind.
 #pragma once
 
 #include <filesystem>
@@ -33,6 +33,13 @@ core::Result<std::optional<v1::KeptState>> restoredRoom(history::StateStore& sto
 
 /// Names what differs, with values; empty if the water, the time and the people are the same bit for bit.
 std::vector<std::string> differences(const v1::KeptState& a, const v1::KeptState& b);
+
+/// The room restored from its newest snapshot. Checks that an older one with more logs (`older`) gives the same.
+std::optional<v1::KeptState> restoredTwice(history::StateStore& newest, history::StateStore& older,
+                                           const std::string& room, const gpu::DeviceChoice& device);
+
+/// A copy of a folder beside it; replaces an earlier one.
+std::filesystem::path copyOf(const std::filesystem::path& folder, const std::string& name);
 
 /// How a command is kept.
 enum class Found { kInLog, kBeforeSnapshot, kNowhere };

@@ -8,6 +8,8 @@
 #include <utility>
 #include <variant>
 
+#include <gtest/gtest.h>
+
 #include <spindrift/scene/fields.h>
 #include <spindrift/wire/client_message.h>
 
@@ -146,6 +148,29 @@ bool Player::connect(std::uint16_t port, const Ledger& ledger) {
   resume_key_ = welcome.resume_key();
   person_id_ = welcome.person_id();
   return true;
+}
+
+Belongings Player::promised(const Ledger& ledger) const {
+  return {promised_person_id_, ledger.sureBoats(room_, opening_, promised_person_id_)};
+}
+
+Belongings Player::comeBack(std::uint16_t port, Ledger& ledger) {
+  if (!connect(port, ledger)) return {};
+  Belongings out{person_id_, {}};
+  const auto isMe = [&](const v1::Person& person) { return person.person_id() == person_id_; };
+  const auto people = client_->waitFor(
+      [&](const v1::ServerMessage& message) { return std::ranges::any_of(message.people().people(), isMe); });
+  if (!people) return {};
+  const v1::Person& me = *std::ranges::find_if(people->people().people(), isMe);
+  out.boats.insert(me.boat_ids().begin(), me.boat_ids().end());
+  for (const std::uint32_t boat_id : out.boats) ledger.claim({room_, opening_, person_id_, boat_id, 0});
+  return out;
+}
+
+void expectKept(const Player& player, const Belongings& promised, const Belongings& found) {
+  EXPECT_TRUE(player.client().welcome().resumed());
+  EXPECT_EQ(found.person_id, promised.person_id);
+  for (const std::uint32_t boat_id : promised.boats) EXPECT_TRUE(found.boats.contains(boat_id)) << "boat " << boat_id;
 }
 
 void Player::play(std::uint16_t port, Ledger& ledger, std::mt19937 random, const std::atomic<bool>& is_over) {

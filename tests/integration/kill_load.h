@@ -1,5 +1,5 @@
-// The load of state_kill_test: clients that send random commands as fast as they are answered, somebody who opens and
-// closes rooms, and a ledger of all that the server answered.
+// The load of state_kill_test and cluster_kill_test: clients that send random commands as fast as they are answered,
+// somebody who opens and closes rooms, and a ledger of all that the server answered.
 #pragma once
 
 #include <atomic>
@@ -70,6 +70,12 @@ class Ledger {
   std::uint64_t opening_count_ = 0;
 };
 
+/// Who a player is and which boats it has, as promised or as the server says.
+struct Belongings {
+  std::uint32_t person_id = 0;  ///< 0: nobody
+  std::set<std::uint32_t> boats;
+};
+
 /// One client of the load. It remains the same person across restarts.
 class Player {
  public:
@@ -81,11 +87,13 @@ class Player {
   /// Sends commands until the connection ends; a wanderer continues in another room until `is_over`.
   void play(std::uint16_t port, Ledger& ledger, std::mt19937 random, const std::atomic<bool>& is_over);
 
-  [[nodiscard]] ScriptedClient& client() { return *client_; }
+  [[nodiscard]] ScriptedClient& client() const { return *client_; }
   [[nodiscard]] const std::string& room() const { return room_; }
   [[nodiscard]] std::uint64_t opening() const { return opening_; }
   /// Of an earlier connection to the same room; 0: a command was never answered there, so that nothing was promised.
-  [[nodiscard]] std::uint32_t promisedPersonId() const { return promised_person_id_; }
+  [[nodiscard]] Belongings promised(const Ledger& ledger) const;
+  /// Connects as the same person, claims its boats, and returns what it has; nobody if that did not work.
+  Belongings comeBack(std::uint16_t port, Ledger& ledger);
   void forgetPerson();
 
  private:
@@ -106,6 +114,9 @@ class Player {
   std::string scene_;
   std::unique_ptr<ScriptedClient> client_;
 };
+
+/// Checks that a player who came back is known and has what was promised.
+void expectKept(const Player& player, const Belongings& promised, const Belongings& found);
 
 /// Opens and closes rooms over REST until the server does not answer or `is_over`.
 void openAndCloseRooms(std::uint16_t port, const std::vector<std::string>& names, Ledger& ledger, std::mt19937 random,

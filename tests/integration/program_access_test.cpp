@@ -29,42 +29,14 @@ class ProgramAccess : public ProgramTest {
     folder().write("audit.jsonl", "");
   }
 
-  /// False without a usable device: the test is then skipped.
+  /// ProgramTest::serve() with two rooms, tokens, JWTs and the audit log.
   bool serve(const std::vector<std::string>& more = {}, const std::string& log_level = "info") {
-    std::vector<std::string> arguments{"--log-level",
-                                       log_level,
-                                       "serve",
-                                       "--device",
-                                       "software",
-                                       "--port",
-                                       "0",
-                                       "--scene",
-                                       smallScene(),
-                                       "--room",
-                                       "lab=" + smallScene(),
-                                       "--jwt-key",
-                                       "hs256:" + path("secret"),
-                                       "--tokens-file",
-                                       path("tokens"),
-                                       "--audit-log",
-                                       path("audit.jsonl")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, arguments);
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      EXPECT_EQ(child_->wait(), 3) << child_->err();
-      return false;
-    }
-    port_ = static_cast<std::uint16_t>(std::stoi(line->substr(line->rfind(':') + 1)));
-    return true;
+    std::vector<std::string> all{
+        "--log-level",   log_level,      "--room",      "lab=" + smallScene(), "--jwt-key", "hs256:" + path("secret"),
+        "--tokens-file", path("tokens"), "--audit-log", path("audit.jsonl")};
+    all.insert(all.end(), more.begin(), more.end());
+    return ProgramTest::serve(all);
   }
-  /// Returns the log.
-  std::string stop() {
-    child_->signal(SIGTERM);
-    EXPECT_EQ(child_->wait(), 0) << child_->err();
-    return child_->err();
-  }
-  std::string path(const std::string& name) const { return (folder().path() / name).string(); }
 
   static std::string jwt(const std::string& role, const std::string& more = "", std::int64_t lifetime_s = 3600) {
     const auto now = std::chrono::system_clock::now().time_since_epoch();
@@ -104,9 +76,6 @@ class ProgramAccess : public ProgramTest {
       std::this_thread::sleep_for(std::chrono::milliseconds(25));
     return audit(name).size() >= count;
   }
-
-  std::unique_ptr<ChildProcess> child_;
-  std::uint16_t port_ = 0;
 };
 
 std::string text(const boost::json::object& object, const char* member) {

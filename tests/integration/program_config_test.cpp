@@ -1,5 +1,4 @@
 // Flags, environment and configuration file of `spindrift serve` as a process, and its log as JSON.
-#include <csignal>
 #include <filesystem>
 #include <sstream>
 
@@ -42,27 +41,21 @@ TEST_F(Config, FlagReplacesVariableReplacesFile) {
       "\"\nlog_format: \"json\"\n"
       "device: \"software\"\nweb_root: \"" +
       (folder().path() / "web").string() + "\"\n");
-  ChildProcess child(SPINDRIFT_PROGRAM, {"serve", "--config", file, "--port", "0", "--scene", small},
-                     {"SPINDRIFT_ADDRESS=127.0.0.1", "SPINDRIFT_PORT=2", "SPINDRIFT_GUESTS=viewer"});
-  const auto ready = child.waitForLine("Spindrift is ready: http://127.0.0.1:");
-  if (!ready) {
-    if (child.wait() == 3) GTEST_SKIP() << child.err();
-    FAIL() << "not ready: " << child.err();
-  }
-  const auto port = static_cast<std::uint16_t>(std::stoul(ready->substr(ready->rfind(':') + 1)));
-  EXPECT_GT(port, 2);
+  if (!start(SPINDRIFT_PROGRAM, {"serve", "--config", file, "--port", "0", "--scene", small},
+             {"SPINDRIFT_ADDRESS=127.0.0.1", "SPINDRIFT_PORT=2", "SPINDRIFT_GUESTS=viewer"}))
+    GTEST_SKIP() << "no device";
+  EXPECT_GT(port_, 2);
   {
-    ScriptedClient client(port, "pond");
+    ScriptedClient client(port_, "pond");
     client.hello();
     EXPECT_EQ(client.greeting().room(), "pond") << "from the file";
     EXPECT_EQ(client.welcome().role(), v1::ROLE_VIEWER) << "from the environment";
   }
-  child.signal(SIGTERM);
-  EXPECT_EQ(child.wait(), 0);
-  EXPECT_EQ(lineCount(child.out()), 1) << "the line stays as it is: " << child.out();
-  const auto log = jsonLines(child.err());
+  stop();
+  EXPECT_EQ(lineCount(child_->out()), 1) << "the line stays as it is: " << child_->out();
+  const auto log = jsonLines(child_->err());
   ASSERT_FALSE(log.empty());
-  EXPECT_THAT(child.err(), HasSubstr("terminated: closing"));
+  EXPECT_THAT(child_->err(), HasSubstr("terminated: closing"));
   for (const auto& line : log) {
     for (const char* key : {"time", "level", "thread", "message"}) EXPECT_TRUE(line.contains(key)) << key;
   }

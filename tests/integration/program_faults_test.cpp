@@ -33,52 +33,26 @@ std::size_t countOf(const std::string& words, const std::string& text) {
 
 class FaultyMachine : public ProgramTest {
  protected:
-  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all = {"serve", "--scene", smallScene(), "--device", "software", "--port", "0"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
+  std::vector<std::string> keeping() const {
+    return arguments({"--state-dir", path("state"), "--snapshot-every-s", "1"});
   }
-  std::vector<std::string> keeping() const { return arguments({"--state-dir", state(), "--snapshot-every-s", "1"}); }
-  std::string state() const { return (folder().path() / "state").string(); }
 
-  /// Starts a server and waits until it is ready; without a usable device the test is skipped.
-  void start(const std::string& program, const std::vector<std::string>& all,
-             const std::vector<std::string>& environment = {}) {
-    child_ = std::make_unique<ChildProcess>(program, all, environment);
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      const auto exit_code = child_->wait();
-      if (exit_code == 3) GTEST_SKIP() << child_->err();
-      FAIL() << "not ready: " << child_->err();
-    }
-    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
-  }
   /// start() with a limit of open files, hard and soft.
-  void startWithDescriptors(int count) {
+  bool startWithDescriptors(int count) {
     std::vector<std::string> all = {"-c", fmt::format("ulimit -n {}; exec \"$0\" \"$@\"", count), SPINDRIFT_PROGRAM};
     const auto more = keeping();
     all.insert(all.end(), more.begin(), more.end());
-    start("/bin/sh", all);
+    return start("/bin/sh", all);
   }
   double metric(const std::string& name) const {
     const std::string body = httpRequest(port_, "GET", "/metrics").body;
     const std::size_t at = body.find("\nspindrift_" + name + " ");
     return at == std::string::npos ? -1.0 : std::stod(body.substr(at + name.size() + 12));
   }
-  /// SIGTERM, then everything that the program wrote to its log.
-  std::string endAndReadLog() {
-    child_->signal(SIGTERM);
-    EXPECT_EQ(child_->wait(), 0) << child_->err();
-    return child_->err();
-  }
-
-  std::unique_ptr<ChildProcess> child_;
-  std::uint16_t port_ = 0;
 };
 
 TEST_F(FaultyMachine, FewDescriptorsLimitConnectionsAndKeepState) {
-  startWithDescriptors(128);
-  if (IsSkipped() || HasFatalFailure()) return;
+  if (!startWithDescriptors(128)) GTEST_SKIP() << "no device";
   ScriptedClient one(port_);
   ASSERT_TRUE(one.isOpen());
   one.hello();
@@ -106,15 +80,14 @@ TEST_F(FaultyMachine, FewDescriptorsLimitConnectionsAndKeepState) {
   EXPECT_GE(metric("state_snapshots_total{room=\"main\"}"), 2.0);
   EXPECT_EQ(metric("state_failures_total{room=\"main\"}"), 0.0);
   EXPECT_EQ(metric("failed_accepts_total"), 0.0) << "connections left descriptors to the rest";
-  const std::string log = endAndReadLog();
+  const std::string log = stop();
   EXPECT_THAT(log, HasSubstr("connections at a time instead of 768: the limit of open files is 128"));
   EXPECT_THAT(log, HasSubstr("open ones is reached"));
   EXPECT_LE(countOf("closed without a reply", log), 3u) << log;
 }
 
 TEST_F(FaultyMachine, NoDescriptorsAreReportedAndRecoveredFrom) {
-  start(SPINDRIFT_PROGRAM, arguments());
-  if (IsSkipped() || HasFatalFailure()) return;
+  if (!serve()) GTEST_SKIP() << "no device";
   ScriptedClient one(port_);
   one.hello();
   one.subscribe(v1::LAYER_SURFACE);
@@ -135,7 +108,7 @@ TEST_F(FaultyMachine, NoDescriptorsAreReportedAndRecoveredFrom) {
   ASSERT_EQ(::prlimit(child_->processId(), RLIMIT_NOFILE, &before, nullptr), 0);
   EXPECT_THAT(waiting.receiveAll(), HasSubstr("200 OK")) << "it was served when there were descriptors again";
   EXPECT_GE(metric("failed_accepts_total"), 1.0);
-  const std::string log = endAndReadLog();
+  const std::string log = stop();
   EXPECT_THAT(log, HasSubstr("could not be accepted (Too many open files); 1 are open and continue"));
   EXPECT_EQ(countOf("could not be accepted", log), 1u) << log;
 }
@@ -153,8 +126,8 @@ class SetClock : public FaultyMachine {
   }
   void setOffset(const std::string& offset) const { folder().write("offset", offset + "\n"); }
   std::vector<std::string> environment() const {
-    return {std::string("LD_PRELOAD=") + kLibrary, "FAKETIME_TIMESTAMP_FILE=" + (folder().path() / "offset").string(),
-            "FAKETIME_NO_CACHE=1", "DONT_FAKE_MONOTONIC=1", "FAKETIME_DONT_FAKE_MONOTONIC=1"};
+    return {std::string("LD_PRELOAD=") + kLibrary, "FAKETIME_TIMESTAMP_FILE=" + path("offset"), "FAKETIME_NO_CACHE=1",
+            "DONT_FAKE_MONOTONIC=1", "FAKETIME_DONT_FAKE_MONOTONIC=1"};
   }
   /// Whether a new client with the token is welcome.
   bool isWelcome(const std::string& token) const {
@@ -169,9 +142,8 @@ TEST_F(SetClock, MovesTokensOnly) {
   folder().write("tokens", fmt::format("operator operator-token-123\nplayer player-token-12345 until={:%FT%TZ}\n",
                                        fmt::gmtime(expiry)));
   auto all = keeping();
-  all.insert(all.end(), {"--tokens-file", (folder().path() / "tokens").string()});
-  start(SPINDRIFT_PROGRAM, all, environment());
-  if (IsSkipped() || HasFatalFailure()) return;
+  all.insert(all.end(), {"--tokens-file", path("tokens")});
+  if (!start(SPINDRIFT_PROGRAM, all, environment())) GTEST_SKIP() << "no device";
   ScriptedClient one(port_);
   one.hello({.token = "operator-token-123"});
   one.subscribe(v1::LAYER_SURFACE);
@@ -194,27 +166,26 @@ TEST_F(SetClock, MovesTokensOnly) {
   EXPECT_EQ(metric("clock_steps_total"), 2.0);
   const auto last = one.apply(splash(0.01));
   ASSERT_TRUE(last);
-  const std::string log = endAndReadLog();
+  const std::string log = stop();
   EXPECT_THAT(log, AllOf(HasSubstr("the system's clock was set forward by 7200 s, or the machine slept"),
                          HasSubstr("the system's clock was set back by 43200 s: water")));
 
   // A start while the clock is behind the state on disk continues from the newest snapshot all the same.
   setOffset("-20h");
-  start(SPINDRIFT_PROGRAM, all, environment());
-  if (HasFatalFailure()) return;
+  ASSERT_TRUE(start(SPINDRIFT_PROGRAM, all, environment()));
   ScriptedClient again(port_);
   again.hello({.token = "operator-token-123"});
   const auto tick = again.apply(splash(0.01));
   ASSERT_TRUE(tick);
   EXPECT_GT(*tick, *last);
-  EXPECT_THAT(endAndReadLog(), HasSubstr("room main: continues at tick"));
+  EXPECT_THAT(stop(), HasSubstr("room main: continues at tick"));
 }
 
 TEST_F(FaultyMachine, BrokenShaderEndsTheStartWithFileAndLine) {
   std::filesystem::copy(SPINDRIFT_SOURCE_DIR "/shaders", folder().path() / "shaders",
                         std::filesystem::copy_options::recursive);
   folder().write("shaders/wave/continuity.comp", "layout(local_size_x = 8) in;\nvoid main() { not_glsl(); }\n");
-  const Outcome outcome = runProgram(arguments({"--shader-dir", (folder().path() / "shaders").string()}));
+  const Outcome outcome = runProgram(arguments({"--shader-dir", path("shaders")}));
   if (outcome.exit_code == 3) GTEST_SKIP() << outcome.err;
   EXPECT_EQ(outcome.exit_code, 1) << outcome.err;
   EXPECT_EQ(outcome.out, "") << "it was never ready";

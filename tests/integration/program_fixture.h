@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <csignal>
 #include <memory>
 #include <string>
 #include <vector>
@@ -62,6 +63,46 @@ class ProgramTest : public testing::Test {
     return scene("wave { resolution_count: 32 side_m: 8 depth_m: 1 }\n", "small.textproto");
   }
   const TemporaryFolder& folder() const { return folder_; }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
+
+  /// `serve` with the small scene on the software device and a free port, unless `more` says otherwise.
+  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = {"serve"};
+    const auto setDefault = [&](const std::string& flag, const std::string& value) {
+      if (std::ranges::find(more, flag) == more.end()) all.insert(all.end(), {flag, value});
+    };
+    setDefault("--scene", smallScene());
+    setDefault("--device", "software");
+    setDefault("--port", "0");
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  /// Starts a server with arguments(more) and waits until it is ready. False without a usable device: the test is then
+  /// skipped.
+  bool serve(const std::vector<std::string>& more = {}, const std::vector<std::string>& environment = {}) {
+    return start(SPINDRIFT_PROGRAM, arguments(more), environment);
+  }
+  /// The same with all arguments of a program that becomes the server.
+  bool start(const std::string& program, const std::vector<std::string>& all,
+             const std::vector<std::string>& environment = {}) {
+    child_ = std::make_unique<ChildProcess>(program, all, environment);
+    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
+    if (!line) {
+      EXPECT_EQ(child_->wait(), 3) << "not ready: " << child_->err();
+      return false;
+    }
+    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
+    return true;
+  }
+  /// Ends the server; returns its log.
+  std::string stop(int signal = SIGTERM) {
+    child_->signal(signal);
+    EXPECT_EQ(child_->wait(), 0) << child_->err();
+    return child_->err();
+  }
+
+  std::unique_ptr<ChildProcess> child_;
+  std::uint16_t port_ = 0;
 
  private:
   TemporaryFolder folder_;

@@ -19,31 +19,14 @@ using testing::Not;
 class People : public ProgramTest {
  protected:
   /// The server's URL; empty without a usable device (the test is then skipped).
-  std::string serve(std::vector<std::string> more = {}, const std::vector<std::string>& environment = {}) {
-    std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, arguments, environment);
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      EXPECT_EQ(child_->wait(), 3) << child_->err();
-      return "";
-    }
-    port_ = line->substr(line->rfind(':') + 1);
-    if (port_.ends_with('/')) port_.pop_back();
-    return "ws://127.0.0.1:" + port_;
-  }
-  void stop() {
-    child_->signal(SIGINT);
-    EXPECT_EQ(child_->wait(), 0) << child_->err();
+  std::string urlOfServer(const std::vector<std::string>& more = {}, const std::vector<std::string>& environment = {}) {
+    return serve(more, environment) ? "ws://127.0.0.1:" + std::to_string(port_) : "";
   }
   std::string script(const std::string& text) const { return scene(text, "script.textproto"); }
   std::string logFile() const {
     for (const auto& entry : fs::directory_iterator(folder().path() / "logs")) return entry.path().string();
     return "";
   }
-
-  std::unique_ptr<ChildProcess> child_;
-  std::string port_;
 };
 
 constexpr const char* kSplash = R"(
@@ -52,7 +35,7 @@ constexpr const char* kSplash = R"(
 )";
 
 TEST_F(People, ScriptEndsWith0OrWith1) {
-  const std::string url = serve();
+  const std::string url = urlOfServer();
   if (url.empty()) GTEST_SKIP() << "no device";
   const Outcome good = runProgram({"script", "--url", url, script(kSplash)});
   EXPECT_EQ(good.exit_code, 0) << good.out << good.err;
@@ -65,7 +48,7 @@ TEST_F(People, ScriptEndsWith0OrWith1) {
   const Outcome json = runProgram({"script", "--url", url, "--json", "-", bad_script});
   EXPECT_EQ(json.exit_code, 1);
   EXPECT_FALSE(boost::json::parse(json.out).at("passed").as_bool());
-  stop();
+  stop(SIGINT);
 }
 
 TEST_F(People, ScriptWithoutServerOrFileIsReported) {
@@ -78,9 +61,9 @@ TEST_F(People, ScriptWithoutServerOrFileIsReported) {
 }
 
 TEST_F(People, HeldScriptHasASeedAndAReport) {
-  const std::string url = serve();
+  const std::string url = urlOfServer();
   if (url.empty()) GTEST_SKIP() << "no device";
-  const std::string file = (folder().path() / "report.xml").string();
+  const std::string file = path("report.xml");
   const auto report = [&file] {
     std::ifstream in(file);
     return std::string(std::istreambuf_iterator<char>(in), {});
@@ -102,44 +85,44 @@ TEST_F(People, HeldScriptHasASeedAndAReport) {
   expectOneErrorLine(runProgram({"script", "--url", url, "--seed", "-1", good}), 2, {"--seed", "-1"});
   expectOneErrorLine(runProgram({"script", "--url", url, "--junit", "/nonexistent/x.xml", good}), 2,
                      {"--junit", "/nonexistent"});
-  stop();
+  stop(SIGINT);
 }
 
 TEST_F(People, TokensAreReadAndNeverPrinted) {
   const std::string tokens = scene("operator chief-chief-chief\nplayer crew-crew-crew-1\n", "tokens");
-  const std::string url = serve({"--tokens", tokens, "--guests", "none"});
+  const std::string url = urlOfServer({"--tokens", tokens, "--guests", "none"});
   if (url.empty()) GTEST_SKIP() << "no device";
   EXPECT_EQ(runProgram({"script", "--url", url, script(kSplash)}).exit_code, 1) << "guests are turned away";
   const std::string as_crew = script(std::string("clients { name: \"a\" token_env: \"CREW\" }") + kSplash);
   EXPECT_EQ(runProgram({"script", "--url", url, as_crew}, {"CREW=crew-crew-crew-1"}).exit_code, 0);
   EXPECT_EQ(runProgram({"script", "--url", url, as_crew}, {"CREW=wrong-wrong-wrong"}).exit_code, 1);
-  stop();
+  stop(SIGINT);
   EXPECT_THAT(child_->err(), Not(HasSubstr("crew-crew")));
   EXPECT_THAT(child_->err(), Not(HasSubstr("wrong-wrong")));
 
-  const std::string second = serve({}, {"SPINDRIFT_TOKENS=operator chief-chief-chief; player crew-crew-crew-1"});
+  const std::string second = urlOfServer({}, {"SPINDRIFT_TOKENS=operator chief-chief-chief; player crew-crew-crew-1"});
   EXPECT_EQ(runProgram({"script", "--url", second, as_crew}, {"CREW=crew-crew-crew-1"}).exit_code, 0);
   EXPECT_EQ(runProgram({"script", "--url", second, script(kSplash)}).exit_code, 1) << "guests are viewers now";
-  stop();
+  stop(SIGINT);
 }
 
 TEST_F(People, GuestsArePlayersOfAReachableServer) {
   const auto statusOf = [this](const std::string& action, const std::string& token) {
     const std::string headers = "Content-Type: application/json\r\n";
-    return httpRequest(static_cast<std::uint16_t>(std::stoi(port_)), "POST", "/api/v1/rooms/main/commands",
+    return httpRequest(port_, "POST", "/api/v1/rooms/main/commands",
                        headers + (token.empty() ? "" : "Authorization: Bearer " + token + "\r\n"), action)
         .status;
   };
   const std::string splash = R"({"splash": {}})";
   const std::string pause = R"({"setPaused": {"paused": true}})";
-  if (serve().empty()) GTEST_SKIP() << "no device";
+  if (!serve()) GTEST_SKIP() << "no device";
   EXPECT_EQ(statusOf(pause, ""), 200U) << "on the loopback without a proxy";
-  stop();
+  stop(SIGINT);
 
-  ASSERT_FALSE(serve({"--trust-proxy", "127.0.0.1"}).empty());
+  ASSERT_TRUE(serve({"--trust-proxy", "127.0.0.1"}));
   const auto line = child_->waitForLine("Link of the operator: ");
   ASSERT_TRUE(line);
-  const std::string start = "Link of the operator: http://127.0.0.1:" + port_ + "/#token=";
+  const std::string start = "Link of the operator: http://127.0.0.1:" + std::to_string(port_) + "/#token=";
   ASSERT_THAT(*line, testing::StartsWith(start));
   const std::string token = line->substr(start.size());
   EXPECT_EQ(statusOf(splash, ""), 200U);
@@ -147,7 +130,7 @@ TEST_F(People, GuestsArePlayersOfAReachableServer) {
   child_->signal(SIGHUP);
   EXPECT_EQ(statusOf(pause, token), 200U);
   EXPECT_EQ(statusOf(pause, ""), 403U);
-  stop();
+  stop(SIGINT);
   EXPECT_THAT(child_->err(), HasSubstr("SIGHUP: 1 tokens"));
   EXPECT_THAT(child_->err(), Not(HasSubstr(token))) << "the log has no tokens";
 }
@@ -167,10 +150,10 @@ TEST_F(People, TokensThatCannotBeReadAreReported) {
 }
 
 TEST_F(People, ALogIsReplayedBitForBit) {
-  const std::string url = serve({"--record", (folder().path() / "logs").string(), "--hash-every", "10"});
+  const std::string url = urlOfServer({"--record", path("logs"), "--hash-every", "10"});
   if (url.empty()) GTEST_SKIP() << "no device";
   EXPECT_EQ(runProgram({"script", "--url", url, script(kSplash)}).exit_code, 0);
-  stop();
+  stop(SIGINT);
   const Outcome replay = runProgram({"replay", "--device", "software", logFile()});
   EXPECT_EQ(replay.exit_code, 0) << replay.out << replay.err;
   EXPECT_THAT(replay.out, HasSubstr("1 commands carried out again"));

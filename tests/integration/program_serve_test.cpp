@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <memory>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -50,36 +49,14 @@ class TakenPort {
   unsigned port_ = 0;
 };
 
-class Serve : public ProgramTest {
- protected:
-  /// `serve` with the small scene on the software device and a free port, unless `more` says otherwise.
-  std::vector<std::string> arguments(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> all = {"serve", "--scene", smallScene()};
-    const auto setDefault = [&](const std::string& flag, const std::string& value) {
-      if (std::ranges::find(more, flag) == more.end()) all.insert(all.end(), {flag, value});
-    };
-    setDefault("--device", "software");
-    setDefault("--port", "0");
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-};
+using Serve = ProgramTest;
 
 /// A server that is ready; without a usable device the test is skipped.
 class RunningServe : public Serve {
  protected:
   void SetUp() override {
     std::filesystem::create_directories(folder().path() / "web");
-    child_ = std::make_unique<ChildProcess>(
-        SPINDRIFT_PROGRAM,
-        arguments({"--web-root", (folder().path() / "web").string(), "--room", "b=" + smallScene()}));
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      const auto exit_code = child_->wait();
-      if (exit_code == 3) GTEST_SKIP() << child_->err();
-      FAIL() << "not ready: " << child_->err();
-    }
-    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
+    if (!serve({"--web-root", path("web"), "--room", "b=" + smallScene()})) GTEST_SKIP() << "no device";
   }
 
   void expectCleanEndOn(int signal) {
@@ -97,9 +74,6 @@ class RunningServe : public Serve {
     EXPECT_THAT(child_->err(), HasSubstr("room b: "));
     EXPECT_THAT(child_->err(), HasSubstr("1 sessions"));
   }
-
-  std::unique_ptr<ChildProcess> child_;
-  std::uint16_t port_ = 0;
 };
 
 TEST_F(Serve, NamesAPortInUseWithTheFlag) {

@@ -20,19 +20,6 @@ using testing::HasSubstr;
 
 class StopWhileRoomsOpen : public ProgramTest {
  protected:
-  /// False without a usable device: the test is then skipped.
-  bool serve(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments{"serve", "--device", "software", "--port", "0", "--scene", smallScene()};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, arguments);
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      EXPECT_EQ(child_->wait(), 3) << child_->err();
-      return false;
-    }
-    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
-    return true;
-  }
   /// Asks for a room in a thread of its own.
   std::future<HttpAnswer> openRoom(int number) const {
     return std::async(std::launch::async, [port = port_, number] {
@@ -40,9 +27,6 @@ class StopWhileRoomsOpen : public ProgramTest {
                          fmt::format(R"({{"name": "r{}", "scene": "splash"}})", number));
     });
   }
-
-  std::unique_ptr<ChildProcess> child_;
-  std::uint16_t port_ = 0;
 };
 
 /// A file of shaders that cannot be opened while the object lives (for at most fs.lease-break-time, 45 s): a build that
@@ -76,16 +60,14 @@ class EndlessFile {
 TEST_F(StopWhileRoomsOpen, LongBuildDelaysNeitherAnswersNorTheEnd) {
   const fs::path shaders = folder().path() / "shaders";
   fs::copy(fs::path(SPINDRIFT_SOURCE_DIR) / "shaders", shaders, fs::copy_options::recursive);
-  if (!serve({"--shader-dir", shaders.string(), "--audit-log", (folder().path() / "audit.jsonl").string()}))
-    GTEST_SKIP() << "no device";
+  if (!serve({"--shader-dir", shaders.string(), "--audit-log", path("audit.jsonl")})) GTEST_SKIP() << "no device";
   const EndlessFile endless(shaders / "sph" / "force.comp");  // the room that runs has no particles
   if (!endless.isLeased()) GTEST_SKIP() << "the file system of " << shaders << " has no leases";
   std::vector<std::future<HttpAnswer>> answers;
   for (int k = 0; k < 3; ++k) answers.push_back(openRoom(k));
   ASSERT_TRUE(endless.waitForReader());
   EXPECT_EQ(httpRequest(port_, "GET", "/healthz").status, 200U);
-  child_->signal(SIGTERM);
-  EXPECT_EQ(child_->wait(), 0) << child_->err();
+  stop();
   for (auto& answer : answers) {
     const HttpAnswer got = answer.get();
     EXPECT_EQ(got.status, 503U) << got.body;
@@ -97,13 +79,12 @@ TEST_F(StopWhileRoomsOpen, LongBuildDelaysNeitherAnswersNorTheEnd) {
 
 TEST_F(StopWhileRoomsOpen, EveryRequestIsAnswered) {
   for (int round = 0; round < 6; ++round) {
-    if (!serve({"--state-dir", (folder().path() / "state").string(), "--max-rooms", "32"})) GTEST_SKIP() << "no device";
+    if (!serve({"--state-dir", path("state"), "--max-rooms", "32"})) GTEST_SKIP() << "no device";
     std::vector<std::future<HttpAnswer>> answers;
     for (int k = 0; k < 4; ++k) answers.push_back(openRoom(10 * round + k));
     // From before the requests are read to in the middle of the builds.
     std::this_thread::sleep_for(40ms * round);
-    child_->signal(SIGTERM);
-    EXPECT_EQ(child_->wait(), 0) << child_->err();
+    stop();
     for (auto& answer : answers) {
       const HttpAnswer got = answer.get();
       // 0: the server listened no more when the connection was made, or closed it before it had read the request.

@@ -98,6 +98,15 @@ class KeptRoomTest : public RoomTest {
     comeBack();
   }
 
+  /// Crashes this many ticks from now: the room that comes back has the same state at that tick.
+  void expectSameAfterACrash(std::uint64_t tick_count) {
+    const std::uint64_t compared = room_->tick() + tick_count;
+    const std::uint64_t expected = hashAt(compared);
+    crashAndComeBack();
+    EXPECT_LE(room_->tick(), compared);
+    EXPECT_EQ(hashAt(compared), expected);
+  }
+
   bool runTicks(std::uint64_t count) {
     const std::uint64_t end = room_->tick() + count;
     return runUntil([&] { return room_->tick() >= end; });
@@ -127,13 +136,8 @@ TEST_F(KeptRoomTest, ResumesBitForBitFromTheFirstSnapshotAndTheLog) {
   send(5, splash(0.3, 1.0));
   ASSERT_TRUE(isAnswered(5));
   ASSERT_THAT(outlets_.rejected, IsEmpty());
-  const std::uint64_t compared = room_->tick() + 12;
-  const std::uint64_t expected = hashAt(compared);
-
-  crashAndComeBack();
-  EXPECT_LE(room_->tick(), compared);
+  expectSameAfterACrash(12);
   EXPECT_EQ(scene().storm().level_ratio(), 0.9);
-  EXPECT_EQ(hashAt(compared), expected);
   EXPECT_THAT(room_->water().boats(), SizeIs(2));
 }
 
@@ -144,10 +148,7 @@ TEST_F(KeptRoomTest, ResumesBitForBitFromALaterSnapshot) {
   ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count == 2; }));
   send(2, splash(0.3, 1.0));
   ASSERT_TRUE(isAnswered(2));
-  const std::uint64_t compared = room_->tick() + 10;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
-  EXPECT_EQ(hashAt(compared), expected);
+  expectSameAfterACrash(10);
 }
 
 TEST_F(KeptRoomTest, ResumesInTheReplacedScene) {
@@ -159,12 +160,9 @@ TEST_F(KeptRoomTest, ResumesInTheReplacedScene) {
   send(3, setParameter("particles.count", 700));
   ASSERT_TRUE(isAnswered(3));
   ASSERT_THAT(outlets_.rejected, IsEmpty());
-  const std::uint64_t compared = room_->tick() + 8;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
+  expectSameAfterACrash(8);
   EXPECT_EQ(scene().name(), "box");
   EXPECT_EQ(scene().particles().count(), 700u);
-  EXPECT_EQ(hashAt(compared), expected);
 }
 
 TEST_F(KeptRoomTest, ResumesBitForBitInPieces) {
@@ -191,11 +189,8 @@ TEST_F(KeptRoomTest, ResumesAtItsLevel) {
   send(2, coarser);
   ASSERT_TRUE(isAnswered(2));
   ASSERT_THAT(outlets_.rejected, IsEmpty());
-  const std::uint64_t compared = room_->tick() + 8;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
+  expectSameAfterACrash(8);
   EXPECT_EQ(scene().fidelity(), v1::FIDELITY_DRAFT);
-  EXPECT_EQ(hashAt(compared), expected);
 }
 
 TEST_F(KeptRoomTest, ResumesWithItsPauseSpeedAndSteps) {
@@ -219,18 +214,12 @@ TEST_F(KeptRoomTest, ResumesWithTheSeedOfAReset) {
   ASSERT_TRUE(isAnswered(1));
   EXPECT_EQ(scene().seed(), seed + 1);
   ASSERT_TRUE(runTicks(20));
-  const std::uint64_t compared = room_->tick() + 10;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();  // from the first snapshot and the log
+  expectSameAfterACrash(10);  // from the first snapshot and the log
   EXPECT_EQ(scene().seed(), seed + 1);
-  EXPECT_EQ(hashAt(compared), expected);
   const std::uint64_t snapshot_count = room_->keptStatus()->snapshot_count;
   ASSERT_TRUE(room_->askForSnapshot());
   ASSERT_TRUE(runUntil([&] { return room_->keptStatus()->snapshot_count > snapshot_count; }));
-  const std::uint64_t later = room_->tick() + 10;
-  const std::uint64_t expected_later = hashAt(later);
-  crashAndComeBack();  // from a snapshot that has the seed
-  EXPECT_EQ(hashAt(later), expected_later);
+  expectSameAfterACrash(10);  // from a snapshot that has the seed
 }
 
 TEST_F(KeptRoomTest, NobodyHoldsTheClockAfterARestart) {
@@ -340,10 +329,7 @@ TEST_F(KeptRoomTest, ResumesAfterADeviceFailure) {
   EXPECT_EQ(outlets_.scene_count, 1) << "all clients get a new greeting";
   send(4, splash());
   ASSERT_TRUE(isAnswered(4));
-  const std::uint64_t compared = room_->tick() + 6;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
-  EXPECT_EQ(hashAt(compared), expected) << "what is on disk continues from there";
+  expectSameAfterACrash(6);  // what is on disk continues from there
 }
 
 TEST_F(KeptRoomTest, FullDiskRefusesCommandsUntilThereIsSpace) {
@@ -366,10 +352,7 @@ TEST_F(KeptRoomTest, FullDiskRefusesCommandsUntilThereIsSpace) {
   send(3, splash());
   ASSERT_TRUE(isAnswered(3));
   EXPECT_THAT(outlets_.applied, ElementsAre(3));
-  const std::uint64_t compared = room_->tick() + 8;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
-  EXPECT_EQ(hashAt(compared), expected);
+  expectSameAfterACrash(8);
 }
 
 TEST_F(KeptRoomTest, PausedRoomTakesCommandsAgainAfterAFullDisk) {
@@ -401,10 +384,7 @@ TEST_F(KeptRoomTest, RetriesAFailedSnapshotSoon) {
   send(1, splash());
   ASSERT_TRUE(isAnswered(1));
   EXPECT_THAT(outlets_.applied, ElementsAre(1));
-  const std::uint64_t compared = room_->tick() + 8;
-  const std::uint64_t expected = hashAt(compared);
-  crashAndComeBack();
-  EXPECT_EQ(hashAt(compared), expected);
+  expectSameAfterACrash(8);
 }
 
 /// Sleeps when nobody is connected.

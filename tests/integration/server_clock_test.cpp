@@ -2,9 +2,7 @@
 // and the hash of the state.
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <boost/json.hpp>

@@ -5,7 +5,7 @@
 #include <tuple>
 
 #include "server_fixture.h"
-#include "silent_proxy.h"
+#include "tcp_link.h"
 #include "temporary_folder.h"
 
 namespace spindrift::test {
@@ -156,15 +156,15 @@ class HalfOpen : public FaultTest, public testing::WithParamInterface<bool> {
 TEST_P(HalfOpen, ClientIsCutOffAndItsBoatBecomesFree) {
   ScriptedClient bob = person({.name = "Bob"});
   bob.subscribe(v1::LAYER_BODIES);
-  SilentProxy proxy(server().port());
-  ScriptedClient ada(proxy.port());
+  TcpLink link(server().port());
+  ScriptedClient ada(link.port());
   ASSERT_TRUE(ada.isOpen());
   ada.hello({.name = "Ada"});
   ASSERT_NE(ada.welcome().person_id(), 0u);
   if (GetParam()) ada.subscribe(v1::LAYER_SURFACE);
   const std::uint32_t boat_id = ada.ask(spawnBoat(0, 4)).ack().boat_id();
   ASSERT_TRUE(ada.apply(controlBoat(boat_id, 0.5, 0)));
-  proxy.fallSilent();
+  link.cut();
   const auto begin = std::chrono::steady_clock::now();
 
   ASSERT_TRUE(bob.waitFor([&](const v1::ServerMessage& message) {

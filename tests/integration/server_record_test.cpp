@@ -1,6 +1,5 @@
 // A room's log: recorded from a live server with clients at work, replayed, and compared.
 #include <filesystem>
-#include <fstream>
 #include <optional>
 
 #include <spindrift/history/replay.h>

@@ -76,43 +76,17 @@ class StateKill : public ProgramTest {
     return std::chrono::milliseconds(std::uniform_int_distribution(low_ms, high_ms)(random_));
   }
 
-  std::unique_ptr<ChildProcess> launch() {
+  std::vector<std::string> kept() {
     static const char* const kSync[] = {"never", "snapshots", "always"};
     static const char* const kInterval[] = {"0.7", "10"};
-    return std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, std::vector<std::string>{"serve",
-                                                                                      "--device",
-                                                                                      "software",
-                                                                                      "--port",
-                                                                                      "0",
-                                                                                      "--scene",
-                                                                                      pool_,
-                                                                                      "--room",
-                                                                                      "tank=" + tank_,
-                                                                                      "--room",
-                                                                                      "sea=" + sea_,
-                                                                                      "--state-dir",
-                                                                                      stateFolder(),
-                                                                                      "--grace-s",
-                                                                                      "600",
-                                                                                      "--sync",
-                                                                                      kSync[below(3)],
-                                                                                      "--snapshot-every-s",
-                                                                                      kInterval[below(2)],
-                                                                                      "--address-share",
-                                                                                      "1"});
+    return arguments({"--scene", pool_, "--room", "tank=" + tank_, "--room", "sea=" + sea_,      //
+                      "--state-dir", stateFolder(), "--grace-s", "600", "--address-share", "1",  //
+                      "--sync", kSync[below(3)], "--snapshot-every-s", kInterval[below(2)]});
   }
-
   /// False without a usable device.
-  bool start() {
+  bool startKept() {
     const auto begin = Clock::now();
-    child_ = launch();
-    const auto line = child_->waitForLine("Spindrift is ready: http://127.0.0.1:");
-    if (!line) {
-      const auto exit_code = child_->wait();
-      EXPECT_EQ(exit_code, 3) << "the server did not come up: " << child_->err();
-      return false;
-    }
-    port_ = static_cast<std::uint16_t>(std::stoul(line->substr(line->rfind(':') + 1)));
+    if (!start(SPINDRIFT_PROGRAM, kept())) return false;
     totals_.longest_start_s = std::max(totals_.longest_start_s, seconds(Clock::now() - begin));
     return true;
   }
@@ -136,17 +110,10 @@ class StateKill : public ProgramTest {
     EXPECT_EQ(child_->wait(), 128 + SIGKILL) << child_->err();
   }
 
-  fs::path copyOfState(const std::string& name) {
-    fs::path copy = folder().path() / name;
-    fs::remove_all(copy);
-    fs::copy(stateFolder(), copy, fs::copy_options::recursive);
-    return copy;
-  }
-
   /// Checks what the killed server has left behind, and notes what a restarted one must have.
   void checkFiles() {
-    const fs::path newest = copyOfState("newest");
-    const fs::path older = copyOfState("older");
+    const fs::path newest = copyOf(stateFolder(), "newest");
+    const fs::path older = copyOf(stateFolder(), "older");
     removeNewestSnapshots(older);
     auto newest_store = history::StateStore::open({.folder = newest});
     auto older_store = history::StateStore::open({.folder = older});
@@ -162,20 +129,10 @@ class StateKill : public ProgramTest {
       SCOPED_TRACE("room " + name);
       if (neverOpened(name)) continue;
       checkCommands(**older_store, name);
-      const auto from_newest = restoredRoom(**newest_store, name, device_);
-      const auto from_older =
-          restoredRoom(**older_store, name, device_, from_newest && *from_newest ? (*from_newest)->tick() : 0);
-      ASSERT_TRUE(from_newest && from_older)
-          << "from the newest snapshot: " << (from_newest ? "restored" : from_newest.error().message)
-          << "\nfrom the older one: " << (from_older ? "restored" : from_older.error().message);
-      EXPECT_EQ(from_newest->has_value(), from_older->has_value());
-      if (!*from_newest || !*from_older) {
-        ADD_FAILURE() << "its files cannot be used";
-        continue;
-      }
-      EXPECT_THAT(differences(**from_newest, **from_older), testing::IsEmpty());
+      const auto restored = restoredTwice(**newest_store, **older_store, name, device_);
+      if (!restored) continue;
       ++totals_.hash_count;
-      expected_[name] = **from_newest;
+      expected_[name] = *restored;
       last_generation_[name] = lastGeneration(stateFolder(), name);
     }
   }
@@ -247,14 +204,8 @@ class StateKill : public ProgramTest {
 
   /// Connects the players again and checks who they are and what they own. Begins a new round.
   void checkPeople() {
-    struct Promise {
-      std::uint32_t person_id;
-      std::set<std::uint32_t> boats;
-    };
-    std::vector<Promise> promises;
-    for (const Player& player : players_)
-      promises.push_back(
-          {player.promisedPersonId(), ledger_.sureBoats(player.room(), player.opening(), player.promisedPersonId())});
+    std::vector<Belongings> promises;
+    for (const Player& player : players_) promises.push_back(player.promised(ledger_));
     ledger_.beginRound();
     const auto rooms = ledger_.rooms();
     for (std::size_t k = 0; k < players_.size(); ++k) {
@@ -264,26 +215,13 @@ class StateKill : public ProgramTest {
       const bool is_gone = fact == rooms.end() || fact->second.state != RoomFact::State::kOpen ||
                            fact->second.opening != player.opening();
       if (is_gone && player.room() != "main" && player.room() != "tank") continue;
-      ASSERT_TRUE(player.connect(port_, ledger_));
-      const v1::Welcome welcome = player.client().welcome();
-      const auto people = player.client().waitFor([&](const v1::ServerMessage& message) {
-        return message.has_people() && std::ranges::any_of(message.people().people(), [&](const v1::Person& person) {
-                 return person.person_id() == welcome.person_id();
-               });
-      });
-      ASSERT_TRUE(people);
-      std::set<std::uint32_t> boats;
-      for (const v1::Person& person : people->people().people())
-        if (person.person_id() == welcome.person_id()) boats.insert(person.boat_ids().begin(), person.boat_ids().end());
-      for (const std::uint32_t boat_id : boats)
-        ledger_.claim({player.room(), player.opening(), welcome.person_id(), boat_id, 0});
+      const Belongings found = player.comeBack(port_, ledger_);
+      ASSERT_NE(found.person_id, 0u);
       if (promises[k].person_id == 0 || is_gone) continue;
-      EXPECT_TRUE(welcome.resumed());
-      EXPECT_EQ(welcome.person_id(), promises[k].person_id);
-      for (const std::uint32_t boat_id : promises[k].boats) EXPECT_TRUE(boats.contains(boat_id)) << "boat " << boat_id;
+      expectKept(player, promises[k], found);
       for (const v1::KeptPerson& kept : expected_[player.room()].people().people()) {
-        if (kept.person_id() != welcome.person_id()) continue;
-        EXPECT_THAT(boats, testing::ElementsAreArray(kept.boat_ids())) << "boats as they were kept";
+        if (kept.person_id() != found.person_id) continue;
+        EXPECT_THAT(found.boats, testing::ElementsAreArray(kept.boat_ids())) << "boats as they were kept";
       }
       ++totals_.resumed_count;
       totals_.boat_count += promises[k].boats.size();
@@ -292,7 +230,7 @@ class StateKill : public ProgramTest {
 
   /// A server that is killed before it is ready changes nothing.
   void killAtStart() {
-    child_ = launch();
+    child_ = std::make_unique<ChildProcess>(SPINDRIFT_PROGRAM, kept());
     std::this_thread::sleep_for(after(20, 800));
     kill();
     ++totals_.start_kill_count;
@@ -316,8 +254,6 @@ class StateKill : public ProgramTest {
   std::mt19937 random_;
   Ledger ledger_;
   std::vector<Player> players_;
-  std::unique_ptr<ChildProcess> child_;
-  std::uint16_t port_ = 0;
   std::map<std::string, v1::KeptState> expected_;
   std::map<std::string, std::uint64_t> last_generation_;
   std::size_t checked_count_ = 0;
@@ -327,7 +263,7 @@ class StateKill : public ProgramTest {
 
 TEST_F(StateKill, RestartLosesNothingAcknowledged) {
   const std::uint64_t rounds = variableOr("SPINDRIFT_KILLS", kKillCount);
-  if (!start()) GTEST_SKIP() << "no device";
+  if (!startKept()) GTEST_SKIP() << "no device";
   for (std::uint64_t round = 1; round <= rounds; ++round) {
     SCOPED_TRACE(fmt::format("round {}", round));
     ASSERT_NO_FATAL_FAILURE(checkRestart());
@@ -337,17 +273,15 @@ TEST_F(StateKill, RestartLosesNothingAcknowledged) {
     countCommands();
     if (HasFailure()) break;
     if (below(6) == 0) killAtStart();
-    ASSERT_TRUE(start());
+    ASSERT_TRUE(startKept());
   }
   if (HasFailure()) return;
   ASSERT_NO_FATAL_FAILURE(checkRestart());
   ASSERT_NO_FATAL_FAILURE(checkPeople());
 
-  child_->signal(SIGTERM);
-  EXPECT_EQ(child_->wait(), 0) << child_->err();
-  ASSERT_TRUE(start());
-  child_->signal(SIGTERM);
-  EXPECT_EQ(child_->wait(), 0) << child_->err();
+  stop();
+  ASSERT_TRUE(startKept());
+  stop();
   for (const auto& [name, state] : expected_) {
     EXPECT_THAT(child_->err(), testing::ContainsRegex("room " + name +
                                                       ": continues at tick [0-9]+ of scene [a-z_]+, 0 ticks and 0 "

@@ -4,13 +4,10 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <random>
-#include <thread>
 
 #include <spindrift/net/client.h>
 

@@ -1,6 +1,5 @@
 // Beds and gauges in scene files: what loads, and what is refused with which words.
 #include <cstdint>
-#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -9,12 +8,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <png.h>
-#include <unistd.h>
 
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 
 #include "scene_error.h"
+#include "temporary_folder.h"
 
 namespace spindrift::scene {
 namespace {
@@ -113,11 +112,7 @@ TEST(Gauges, HaveNamesOfTheirOwnAndLieInTheWater) {
 
 class BedImage : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("spindrift_bed_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_ / "scenes");
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::filesystem::create_directories(folder_ / "scenes"); }
 
   /// Writes the values of a grayscale image, or of one with more components per pixel.
   void writeImage(const std::string& name, std::uint32_t width, std::uint32_t height, std::vector<std::uint16_t> values,
@@ -140,7 +135,8 @@ class BedImage : public testing::Test {
     return loadSceneFile(file);
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 TEST_F(BedImage, GivesDepthsBetweenThoseOfBlackAndWhite) {

@@ -1,13 +1,13 @@
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <spindrift/scene/scene_loader.h>
+
+#include "temporary_folder.h"
 
 namespace spindrift::scene {
 namespace {
@@ -256,18 +256,12 @@ TEST(SceneLoader, AcceptsAnEffectExactlyAtItsBounds) {
 
 class SceneFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("spindrift_scene_test_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    folder_.write(name, text);
+    return folder_.path() / name;
   }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder folder_;
 };
 
 TEST_F(SceneFile, LoadsWithItsNameAndDefaults) {
@@ -279,14 +273,14 @@ TEST_F(SceneFile, LoadsWithItsNameAndDefaults) {
 }
 
 TEST_F(SceneFile, ThatIsMissingIsUnavailable) {
-  const auto scene = loadSceneFile(folder_ / "none.textproto");
+  const auto scene = loadSceneFile(folder_.path() / "none.textproto");
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().code, core::ErrorCode::kUnavailable);
   EXPECT_THAT(scene.error().message, AllOf(HasSubstr("none.textproto"), HasSubstr("there is no such file")));
 }
 
 TEST_F(SceneFile, ThatIsADirectoryIsUnavailable) {
-  const auto scene = loadSceneFile(folder_);
+  const auto scene = loadSceneFile(folder_.path());
   ASSERT_FALSE(scene);
   EXPECT_EQ(scene.error().code, core::ErrorCode::kUnavailable);
   EXPECT_THAT(scene.error().message, HasSubstr("is a directory"));

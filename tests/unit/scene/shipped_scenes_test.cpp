@@ -1,6 +1,4 @@
 #include <filesystem>
-#include <set>
-#include <string>
 
 #include <gtest/gtest.h>
 

@@ -7,12 +7,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <spindrift/scene/parameters.h>
 #include <spindrift/scene/scene_loader.h>
 
 #include "scene_error.h"
+#include "temporary_folder.h"
 
 namespace spindrift::scene {
 namespace {
@@ -110,11 +110,7 @@ TEST(Series, InTheSceneAreCheckedRowByRow) {
 
 class SeriesFile : public testing::Test {
  protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("spindrift_series_" + std::to_string(::getpid()));
-    std::filesystem::create_directories(folder_ / "scenes");
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
+  void SetUp() override { std::filesystem::create_directories(folder_ / "scenes"); }
 
   /// Loads a scene file in the folder "scenes" whose series names this file.
   [[nodiscard]] core::Result<v1::Scene> load(const std::string& name) const {
@@ -124,7 +120,8 @@ class SeriesFile : public testing::Test {
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
 
-  std::filesystem::path folder_;
+  const test::TemporaryFolder temporary_;
+  const std::filesystem::path& folder_ = temporary_.path();
 };
 
 TEST_F(SeriesFile, GivesARowPerTime) {
