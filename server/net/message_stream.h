@@ -28,7 +28,7 @@
 
 namespace spindrift::net {
 
-/// What the kernel has taken of some messages.
+/// The part of some messages that the kernel has taken.
 struct BegunWrite {
   std::size_t bytes_count = 0;  ///< with their headers
   bool is_all = false;
