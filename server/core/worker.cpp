@@ -32,6 +32,10 @@ void Worker::push(Work work) {
   wake_.notify_one();
 }
 
+void Worker::setNiceness(int niceness) {
+  if (niceness_.exchange(niceness) != niceness) push([](bool) {});
+}
+
 void Worker::loop() {
   int niceness = 0;
   std::unique_lock lock(mutex_);

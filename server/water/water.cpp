@@ -65,7 +65,7 @@ core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& devi
   auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
   if (!sim) return withNeeds(sim.error(), scene);
   const double tick_ms = warmUp(**context, **sim);
-  spdlog::info("scene {}: {:.1f} MB on the device", scene.name(),
+  spdlog::debug("scene {}: {:.1f} MB on the device", scene.name(),
                static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
   return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
 }

@@ -25,9 +25,9 @@ class Worker {
   using Work = std::function<void(bool runs)>;
   /// Any thread.
   void push(Work work);
-  /// Any thread. Changes the priority of the pieces of work that have not begun. Threads that they start inherit it.
-  /// Only a privileged process can raise it again; where it cannot be changed, it stays.
-  void setNiceness(int niceness) { niceness_ = niceness; }
+  /// Any thread. Changes the priority as soon as the current piece of work is done; threads that later pieces start
+  /// inherit it. Only a privileged process can raise it again; where it cannot be changed, it stays.
+  void setNiceness(int niceness);
   /// Any thread. From now on waiting and new pieces are called with runs = false; the current one continues.
   void end();
   /// Any thread. Returns whether no work waits or runs.
