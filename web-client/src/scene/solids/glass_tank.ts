@@ -27,7 +27,7 @@ const kTable: Paint = [0.12, 0.075, 0.045, 0.2];
 const kTableEdge: Paint = [0.10, 0.06, 0.035, 0.2];
 const kSteel: Paint = [0.16, 0.17, 0.19, 0.05];
 /** Pale, so that it shows the light that the water focuses. */
-const kBase: Paint = [0.035, 0.15, 0.21, 0.1];
+const kBase: Paint = [0.5, 0.52, 0.51, 0.1];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
