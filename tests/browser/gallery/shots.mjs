@@ -20,7 +20,7 @@ const kShots = {
   breaking_wave: { tick: 144 },
   breaking_wave_particles: { tick: 96 },
   breaking_wave_wave: { tick: 150 },
-  dam_break: { tick: 102 },
+  dam_break: { tick: 66 },
   flume: { tick: 912 },
   flotsam: { tick: 300 },
   harbor: { tick: 330 },
