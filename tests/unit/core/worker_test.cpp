@@ -1,4 +1,5 @@
 #include <future>
+#include <memory>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,9 +11,9 @@ namespace spindrift::core {
 namespace {
 
 int nicenessOf(Worker& worker) {
-  std::promise<int> found;
-  worker.push([&found](bool) { found.set_value(getpriority(PRIO_PROCESS, 0)); });
-  return found.get_future().get();
+  const auto found = std::make_shared<std::promise<int>>();
+  worker.push([found](bool) { found->set_value(getpriority(PRIO_PROCESS, 0)); });
+  return found->get_future().get();
 }
 
 TEST(Worker, RunsPiecesAtThePriorityThatHoldsWhenTheyBegin) {
@@ -26,13 +27,13 @@ TEST(Worker, RunsPiecesAtThePriorityThatHoldsWhenTheyBegin) {
 
 TEST(Worker, CallsWaitingPiecesWithoutRunningThemWhenItEnds) {
   std::vector<bool> ran;
+  std::promise<void> begun;
+  std::promise<void> release;
   {
     Worker worker(0);
-    std::promise<void> begun;
-    std::promise<void> release;
-    worker.push([&](bool runs) {
+    worker.push([&, released = release.get_future().share()](bool runs) {
       begun.set_value();
-      release.get_future().wait();
+      released.wait();
       ran.push_back(runs);
     });
     worker.push([&](bool runs) { ran.push_back(runs); });
