@@ -66,7 +66,7 @@ core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& devi
   if (!sim) return withNeeds(sim.error(), scene);
   const double tick_ms = warmUp(**context, **sim);
   spdlog::debug("scene {}: {:.1f} MB on the device", scene.name(),
-               static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
+                static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
   return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
 }
 
