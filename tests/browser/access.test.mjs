@@ -125,7 +125,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
     try {
       await tabTo("#view");
       for (let k = 0; k < 4; ++k) await keyboard.press("ArrowLeft");
-      assert.ok(await page.getByTestId("key-cursor").isVisible());
+      await page.getByTestId("key-cursor").waitFor({ timeout: WAIT_MS }); // with the panels, after the first picture
       await keyboard.press("Enter");
       const { lastCommand } = await waitFor(page, "the splash", (stats) => stats.lastCommand?.case === "splash" && stats.lastAck);
       const middle = await page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [lastCommand.value.xM, lastCommand.value.zM]);
