@@ -23,6 +23,9 @@ export async function waitFor(page, what, accept, patience_ms = WAIT_MS) {
   }
 }
 
+/** Waits for the panels, which the page paints after its first picture. */
+export const panelsShown = (page) => page.waitForFunction(() => !document.body.classList.contains("starting"), undefined, { timeout: WAIT_MS });
+
 /** Where a position on the water is in the window. */
 export const pixelOf = (page, xM, zM) => page.evaluate(([x, z]) => window.spindrift.pixelOf(x, z), [xM, zM]);
 
@@ -39,6 +42,7 @@ export async function twoPeople(scene, first = () => {}) {
     await page.addInitScript(first);
     await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
     await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
+    await panelsShown(page);
     return page;
   };
   try {
