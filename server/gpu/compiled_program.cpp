@@ -210,9 +210,10 @@ void checkNeeds(Context& ctx, const CompiledProgram& program) {
   over("invocations of a work group", std::int64_t{g[0]} * g[1] * g[2], needs.max_work_group_invocations);
 }
 
-/// The linked program with what its users ask of it.
+/// Returns the linked program with its group size, blocks and files.
 std::shared_ptr<CompiledProgram> finished(Context& ctx, std::shared_ptr<CompiledProgram> program,
                                           const EmbeddedShader& source, std::set<std::string> files) {
+  ++ctx.ledgerEntry().programs_made_count;
   GLint size[3] = {0, 0, 0};
   glGetProgramiv(program->id, GL_COMPUTE_WORK_GROUP_SIZE, size);
   for (std::size_t axis = 0; axis < 3; ++axis) program->group_size[axis] = static_cast<std::uint32_t>(size[axis]);
@@ -271,7 +272,6 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
   ProgramStore& store = ctx.programs().store();
   const std::string key = store.isOn() ? storeKey(ctx.device(), text) : std::string{};
   auto program = std::make_shared<CompiledProgram>();
-  ++ctx.ledgerEntry().programs_made_count;
   if (store.isOn()) program->id = fromStore(ctx, key, shader_path);
   if (program->id != 0) return finished(ctx, std::move(program), source, std::move(read.files));
 

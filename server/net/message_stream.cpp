@@ -121,8 +121,9 @@ asio::awaitable<error_code> MessageStream::writeMessages(std::span<const core::S
   using Turn = Shared::Turn;
   if (begun.error) co_return begun.error;
   const std::shared_ptr<Shared> shared = shared_;
-  if (begun.bytes_count == 0)
+  if (begun.bytes_count == 0) {
     while (shared->turn != Turn::kFree) (void)co_await shared->turn_ends.async_wait(kToken);
+  }
   shared->turn = Turn::kMessages;
   Framed framed(messages, are_text);
   for (asio::const_buffer& part : framed.parts) {

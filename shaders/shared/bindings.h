@@ -134,8 +134,8 @@
 // How empty the sides of a particle are, in scenes with surface tension; particles/tension.glsl (binding shared with CELL_COUNT; no
 // pass has both).
 #define SURFACE_GRADIENT 7
-// Which candidates of a particle are near, nine times (first candidate, bits) per particle; grid/candidates.glsl (binding shared with CELL_ARRIVAL; no
-// pass has both).
+// Candidates of a particle that are near: nine times (first candidate, bits) per particle; grid/candidates.glsl (binding shared with
+// CELL_ARRIVAL; no pass has both).
 #define NEAR_CANDIDATES 9
 // Foam from few neighbours, one float per particle [0..1], in scenes that count neighbours (binding shared with
 // PACKED_WORDS; no pass has both).

@@ -2,17 +2,21 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import type { PageEvent, PageEventHandlers, WorkerRequest } from "../src/net/messages";
-import { openWaterClient, prepareWorker } from "../src/net/water_client";
+import { abandonWorker, openWaterClient, prepareWorker } from "../src/net/water_client";
 
 class FakeWorker {
   static made: FakeWorker[] = [];
   readonly posted: WorkerRequest[] = [];
+  isEnded = false;
   onmessage: (event: { data: unknown }) => void = () => {};
   constructor() {
     FakeWorker.made.push(this);
   }
   postMessage(request: WorkerRequest): void {
     this.posted.push(request);
+  }
+  terminate(): void {
+    this.isEnded = true;
   }
   send(...events: unknown[]): void {
     for (const data of events) this.onmessage({ data });
@@ -74,5 +78,18 @@ describe("the early connection", () => {
     expect(FakeWorker.made[0]!.posted.filter(({ kind }) => kind === "start")).toMatchObject([{ url: kUrl }, { url: "ws://host/ws/other" }]);
     client().client.start(kUrl, kIdentity);
     expect(FakeWorker.made[1]!.posted).toMatchObject([{ kind: "start", url: kUrl }]);
+  });
+
+  it("ends where no water is drawn, and where no page takes what it sends", () => {
+    prepareWorker({ url: kUrl, identity: kIdentity });
+    abandonWorker();
+    prepareWorker({ url: kUrl, identity: kIdentity });
+    const [abandoned, ignored] = FakeWorker.made;
+    for (let k = 0; k < 1000; ++k) ignored!.send({ kind: "people" });
+    expect([abandoned!.isEnded, ignored!.isEnded]).toEqual([true, false]);
+    ignored!.send({ kind: "people" });
+    expect(ignored!.isEnded).toBe(true);
+    client().client.start(kUrl, kIdentity);
+    expect(FakeWorker.made[2]!.posted).toMatchObject([{ kind: "start", url: kUrl }]);
   });
 });

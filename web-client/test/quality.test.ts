@@ -9,7 +9,7 @@ function costsOf(tier: TierName): number[] {
   const { maxPixelRatio, frameRateMaxHz, surfaceCellsCount, samplesCount, plain, fieldCountMax, seaTexelsCount, mirrorStepsCount, fluid, whitewater, rain, caustics, shadows } = kTiers[tier];
   return [
     ...[maxPixelRatio, frameRateMaxHz, surfaceCellsCount, samplesCount, Number(!plain), fieldCountMax, seaTexelsCount, mirrorStepsCount],
-    ...Object.values(fluid),
+    ...Object.values(fluid ?? { cellsPerSpacing: 0, scale: 0, dropsCount: 0, floorTexelsCount: 0 }),
     ...Object.values(whitewater),
     ...Object.values(rain),
     ...[caustics?.cellsCount ?? 0, caustics?.texelsCount ?? 0, shadows?.texelsCount ?? 0],

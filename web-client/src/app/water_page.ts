@@ -9,6 +9,7 @@ import { App } from "./app";
 import { keepChangesInAddress } from "./changed_values";
 import { connectInput } from "./input";
 import { addShareButton } from "./share";
+import { abandonWorker } from "../net/water_client";
 import { wantsSteppedPictures } from "./stepped_pictures";
 import { showPanels } from "./poster";
 import { openWaterSpeaker } from "./water_speaker";
@@ -22,6 +23,7 @@ export function openWaterPage(): void {
   const openKiosk = (app?: App): void => void (isKiosk && import("./kiosk_page").then((page) => page.openKiosk(app)));
   if (!made?.isSoftwareRenderer) showPanels();
   if (!made) {
+    abandonWorker();
     openKiosk();
     showNotice(kTexts.noWebGl);
     return;

@@ -17,6 +17,8 @@ interface Prepared {
 let prepared: Prepared | undefined;
 /** Frames per second of each layer until the page is there. */
 const kWaitingRateHz = 10;
+/** Events that wait for the page at most: more come only where none will be. */
+const kMostWaiting = 1000;
 
 /** Starts the worker, and with `start` its connection, while the page loads and makes its WebGL context: in software that takes as long. */
 export function prepareWorker(start?: StartParameters): void {
@@ -26,13 +28,19 @@ export function prepareWorker(start?: StartParameters): void {
     const older = event.kind === "frame" ? waiting.findIndex((other) => other.kind === "frame" && other.frame.layer === event.frame.layer) : -1;
     const [superseded] = older >= 0 ? waiting.splice(older, 1) : [];
     if (superseded?.kind === "frame") release(worker, superseded.frame);
-    waiting.push(event);
+    if (waiting.push(event) > kMostWaiting) abandonWorker();
   };
   prepared = { worker, url: start?.url, waiting };
   if (!start) return;
   worker.postMessage(startRequest(start));
   // What nobody draws yet: the page asks for as many as its quality needs.
   worker.postMessage({ kind: "want", wishes: { frameRateHz: kWaitingRateHz } } satisfies WorkerRequest);
+}
+
+/** Ends the prepared worker and its connection, for a page that draws no water. */
+export function abandonWorker(): void {
+  prepared?.worker.terminate();
+  prepared = undefined;
 }
 
 /** Returns a frame's buffer to its worker. */

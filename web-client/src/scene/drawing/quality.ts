@@ -7,9 +7,6 @@ export interface FluidQuality {
   cellsPerSpacing: number;
   /** Size of its picture as a share of the canvas. */
   scale: number;
-  /** Parts of a ray in it between reflections, and halvings of a step to find its surface. */
-  partsCount: number;
-  halvingsCount: number;
   /** Drops drawn for each particle that flies apart from the liquid. */
   dropsCount: number;
   /** Texels along each side of the map of a tank's floor. */
@@ -40,7 +37,7 @@ interface Tier {
   samplesCount: number;
   /** Shaders and meshes without what is slow on software renderers. */
   plain: boolean;
-  /** Draws sea, froth and flat shadows in every second picture, and particles on a wave as spheres. */
+  /** Draws sea, froth and flat shadows in every second picture. */
   sparing: boolean;
   /** Most texels along each side of the field texture; a finer surface is sampled. */
   fieldCountMax: number;
@@ -48,7 +45,8 @@ interface Tier {
   seaTexelsCount: number;
   /** Steps of a reflected ray in search of boats, rocks and walls; 0: water reflects only the sky. */
   mirrorStepsCount: number;
-  fluid: FluidQuality;
+  /** Undefined: particles over a wave are drops alone, and those of a tank a mesh. */
+  fluid: FluidQuality | undefined;
   whitewater: WhitewaterQuality;
   /** Rain: texels along each side of the tile with its rings, 0 without rings, and streaks in the air in the hardest rain. */
   rain: { ringTexelsCount: number; streaksCount: number };
@@ -74,27 +72,27 @@ export type QualityChoice = TierName | "automatic";
 export const kTiers: Record<TierName, Tier> = {
   minimal: {
     maxPixelRatio: 0.65, tankPixelRatio: 0.5, frameRateMaxHz: 10, surfaceCellsCount: 56, samplesCount: 1, plain: true, sparing: true, fieldCountMax: 128, seaTexelsCount: 96, mirrorStepsCount: 0,
-    fluid: { cellsPerSpacing: 0.8, scale: 0.45, partsCount: 2, halvingsCount: 3, dropsCount: 3, floorTexelsCount: 128 }, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
+    fluid: undefined, whitewater: { capacityCount: 1500, densityRatio: 0.3, frothTexelsCount: 192 },
     rain: { ringTexelsCount: 0, streaksCount: 1500 }, caustics: undefined, shadows: undefined,
   },
   low: {
     maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 30, surfaceCellsCount: 96, samplesCount: 1, plain: true, sparing: false, fieldCountMax: 256, seaTexelsCount: 128, mirrorStepsCount: 0,
-    fluid: { cellsPerSpacing: 1, scale: 0.5, partsCount: 3, halvingsCount: 5, dropsCount: 4, floorTexelsCount: 256 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
+    fluid: { cellsPerSpacing: 1, scale: 0.5, dropsCount: 4, floorTexelsCount: 256 }, whitewater: { capacityCount: 3000, densityRatio: 0.5, frothTexelsCount: 256 },
     rain: { ringTexelsCount: 0, streaksCount: 3000 }, caustics: undefined, shadows: undefined,
   },
   medium: {
     maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, sparing: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
-    fluid: { cellsPerSpacing: 1.25, scale: 0.75, partsCount: 3, halvingsCount: 5, dropsCount: 6, floorTexelsCount: 256 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
+    fluid: { cellsPerSpacing: 1.25, scale: 0.75, dropsCount: 6, floorTexelsCount: 256 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
     rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: undefined, shadows: { texelsCount: 1024 },
   },
   high: {
     maxPixelRatio: 1.5, tankPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
-    fluid: { cellsPerSpacing: 1.5, scale: 1, partsCount: 3, halvingsCount: 5, dropsCount: 14, floorTexelsCount: 512 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
+    fluid: { cellsPerSpacing: 1.5, scale: 1, dropsCount: 14, floorTexelsCount: 512 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
     rain: { ringTexelsCount: 256, streaksCount: 10_000 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 },
   },
   highest: {
     maxPixelRatio: 2, tankPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
-    fluid: { cellsPerSpacing: 2, scale: 1, partsCount: 3, halvingsCount: 5, dropsCount: 18, floorTexelsCount: 1024 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
+    fluid: { cellsPerSpacing: 2, scale: 1, dropsCount: 18, floorTexelsCount: 1024 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
     rain: { ringTexelsCount: 512, streaksCount: 16_000 }, caustics: { cellsCount: 384, texelsCount: 1024 }, shadows: { texelsCount: 4096 },
   },
 };

@@ -29,12 +29,15 @@ interface FluidPasses {
   after: Pass[];
 }
 
-/** `field` undefined: no wave around the particles. A sparing quality draws drops alone in a wave, and a mesh in a tank. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { sparing, texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "sparing" | "texelType">): FluidPasses {
+/** Drops for each particle that flies apart where drops are all that is drawn. */
+const kSparingDropsCount = 3;
+
+/** `field` undefined: no wave around the particles. */
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
-  if (field && sparing) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, quality.dropsCount)] };
-  if (sparing) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kTankColourRatio)] };
+  if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount)] };
+  if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kTankColourRatio)] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   // A wave has no floor of its own.

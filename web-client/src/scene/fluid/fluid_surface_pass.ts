@@ -35,7 +35,7 @@ export class FluidSurfacePass implements Pass {
   private readonly small: { target: WebGLRenderTarget; material: RawShaderMaterial } | undefined;
 
   /** `colourRatio`: water_optics.ts. */
-  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale, partsCount, halvingsCount }: FluidQuality) {
+  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale }: FluidQuality) {
     this.tiles = tiles;
     this.solids = solids;
     this.scale = scale;
@@ -59,7 +59,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { PARTS: partsCount, HALVINGS: halvingsCount, ...(!floorUniforms && { WAVE: 1 }) }, transparent: true },
+      { defines: floorUniforms ? {} : { WAVE: 1 }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

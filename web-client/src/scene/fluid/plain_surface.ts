@@ -1,7 +1,7 @@
 // The surface of a tank's particles as a mesh of few triangles, for the tier minimal: a coarse grid of their density on the CPU, and one
 // vertex in each cell that the surface crosses ("naive surface nets", Gibson 1998). Each vertex knows how much water lies behind it for the
 // eye, so that a pixel has nothing to search for. Pure.
-import { kWordsPerParticle, type ShownParticles } from "../frames/particle_values";
+import { forEachPlace, kWordsPerParticle, whiteOf, type ShownParticles } from "../frames/particle_values";
 import type { TankBox } from "./volume_shape";
 
 /** Radius of a particle's kernel in spacings of the particles at rest, and the integral of (1 - r^2)^3 over the unit ball. */
@@ -107,25 +107,15 @@ export class PlainSurface {
   }
 
   /** Adds every `stride`-th particle to the corners that its kernel reaches. */
-  private add({ frame, words, advanceS }: ShownParticles, stride: number): void {
+  private add(shown: ShownParticles, stride: number): void {
     const { lowM, cellM, countX, countY, countZ, density, white, reachM } = this;
-    const [minX, minY, minZ] = frame.wordMinM;
-    const perX = (frame.wordMaxM[0] - minX) / 65535;
-    const perY = (frame.wordMaxM[1] - minY) / 65535;
-    const perZ = (frame.wordMaxM[2] - minZ) / 65535;
-    const advance = (advanceS * frame.maxSpeedMps) / 127;
     const [sx, sy, sz] = [1 / cellM[0], 1 / cellM[1], 1 / cellM[2]];
     const [qx, qy, qz] = [(cellM[0] / reachM) ** 2, (cellM[1] / reachM) ** 2, (cellM[2] / reachM) ** 2];
     const [rx, ry, rz] = [reachM * sx, reachM * sy, reachM * sz];
     const scale = 1 / (kKernelIntegral * kReachSpacings ** 3);
-    for (let n = 0; n < frame.count; n += stride) {
-      const at = n * kWordsPerParticle;
-      const level = words[at + 3]!;
-      // The order on the wire is x, z, y.
-      const x = (minX + perX * words[at]! + advance * ((level << 24) >> 24) - lowM[0]) * sx;
-      const y = (minY + perY * words[at + 2]! + advance * ((level << 16) >> 24) - lowM[1]) * sy;
-      const z = (minZ + perZ * words[at + 1]! + advance * ((words[at + 4]! << 24) >> 24) - lowM[2]) * sz;
-      const foam = (words[at + 5]! & 255) / 255;
+    forEachPlace(shown, stride, (n, xM, yM, zM) => {
+      const [x, y, z] = [(xM - lowM[0]) * sx, (yM - lowM[1]) * sy, (zM - lowM[2]) * sz];
+      const foam = whiteOf(shown, n) / 255;
       const share = foam > 0.45 ? Math.min((foam - 0.45) / 0.55, 1) : 0;
       const toX = Math.min(Math.floor(x + rx), countX - 2);
       const toY = Math.min(Math.floor(y + ry), countY - 2);
@@ -146,7 +136,7 @@ export class PlainSurface {
           }
         }
       }
-    }
+    });
   }
 
   /** Beside walls and over the floor the part of the kernel behind them is added to the rest, so that water meets the glass at its own height. */
@@ -280,23 +270,18 @@ export class PlainSurface {
   }
 
   /** Particles outside of the surface are a few drops each, the same ones as long as their level velocity stays. */
-  private findDrops({ frame, words, advanceS }: ShownParticles): void {
+  private findDrops(shown: ShownParticles): void {
     const { lowM, cellM, countX, countY, countZ, density, drops } = this;
-    const { radiusM } = frame;
-    const per = [0, 1, 2].map((axis) => (frame.wordMaxM[axis]! - frame.wordMinM[axis]!) / 65535) as [number, number, number];
-    const advance = (advanceS * frame.maxSpeedMps) / 127;
+    const { radiusM } = shown.frame;
     this.dropsCount = 0;
-    for (let n = 0; n < frame.count && this.dropsCount + kDropsPerParticle <= kMostDropsCount; ++n) {
-      const at = n * kWordsPerParticle;
-      const level = words[at + 3]!;
-      const x = frame.wordMinM[0] + per[0] * words[at]! + advance * ((level << 24) >> 24);
-      const y = frame.wordMinM[1] + per[1] * words[at + 2]! + advance * ((level << 16) >> 24);
-      const z = frame.wordMinM[2] + per[2] * words[at + 1]! + advance * ((words[at + 4]! << 24) >> 24);
+    forEachPlace(shown, 1, (n, x, y, z) => {
+      if (this.dropsCount + kDropsPerParticle > kMostDropsCount) return;
       const i = Math.round((x - lowM[0]) / cellM[0]);
       const j = Math.round((y - lowM[1]) / cellM[1]);
       const k = Math.round((z - lowM[2]) / cellM[2]);
-      if (i < 1 || j < 1 || k < 1 || i > countX - 2 || j > countY - 2 || k > countZ - 2) continue;
-      if (density[(j * countZ + k) * countX + i]! > kSurface) continue;
+      if (i < 1 || j < 1 || k < 1 || i > countX - 2 || j > countY - 2 || k > countZ - 2) return;
+      if (density[(j * countZ + k) * countX + i]! > kSurface) return;
+      const level = shown.words[n * kWordsPerParticle + 3]!;
       for (let drop = 0; drop < kDropsPerParticle; ++drop) {
         const seed = level + 0.37 * drop;
         const size = scatter(seed, 4);
@@ -305,9 +290,9 @@ export class PlainSurface {
         drops[out + 1] = y + kDropSpreadRadii * radiusM * (2 * scatter(seed, 2) - 1);
         drops[out + 2] = z + kDropSpreadRadii * radiusM * (2 * scatter(seed, 3) - 1);
         drops[out + 3] = radiusM * (kDropRadii.least + (kDropRadii.most - kDropRadii.least) * size * size);
-        drops[out + 4] = (words[at + 5]! & 255) / 255;
+        drops[out + 4] = whiteOf(shown, n) / 255;
       }
-    }
+    });
   }
 
   private reserveVertex(): number {

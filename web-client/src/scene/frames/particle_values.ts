@@ -52,31 +52,37 @@ export function placeM(shown: ShownParticles, index: number): [number, number, n
   return [0, 1, 2].map((axis) => wordMinM[axis]! + (wordMaxM[axis]! - wordMinM[axis]!) * share[axis]! + velocity[axis]! * shown.advanceS) as [number, number, number];
 }
 
-/** Returns the first particle whose sphere the ray meets within `farM`; undefined if it meets no sphere. */
-export function pickParticle({ originM, direction }: Ray, shown: ShownParticles, farM = Infinity): number | undefined {
-  const { frame, words, advanceS } = shown;
-  const { wordMinM, wordMaxM, radiusM } = frame;
+/** Calls `visit` with every `stride`-th particle and where it is drawn, m. Makes no objects: there may be hundreds of thousands. */
+export function forEachPlace({ frame, words, advanceS }: ShownParticles, stride: number, visit: (index: number, xM: number, yM: number, zM: number) => void): void {
+  const { wordMinM, wordMaxM } = frame;
   const [minX, minY, minZ] = wordMinM;
   const [perX, perY, perZ] = [0, 1, 2].map((axis) => (wordMaxM[axis]! - wordMinM[axis]!) / 65535) as [number, number, number];
   const advance = (advanceS * frame.maxSpeedMps) / 127;
+  for (let index = 0; index < frame.count; index += stride) {
+    const at = index * kWordsPerParticle;
+    const low = words[at + 3]!;
+    // The order on the wire is x, z, y.
+    visit(index, minX + perX * words[at]! + advance * signedByte(low & 255), minY + perY * words[at + 2]! + advance * signedByte(low >> 8), minZ + perZ * words[at + 1]! + advance * signedByte(words[at + 4]! & 255));
+  }
+}
+
+/** Returns the first particle whose sphere the ray meets within `farM`; undefined if it meets no sphere. */
+export function pickParticle({ originM, direction }: Ray, shown: ShownParticles, farM = Infinity): number | undefined {
+  const { radiusM } = shown.frame;
   const [ox, oy, oz] = originM;
   const [dx, dy, dz] = direction;
   let nearestM = farM;
   let found: number | undefined;
-  // Without objects: there may be hundreds of thousands of particles.
-  for (let index = 0, at = 0; index < frame.count; ++index, at += kWordsPerParticle) {
-    const low = words[at + 3]!;
-    const x = minX + perX * words[at]! + advance * signedByte(low & 255) - ox;
-    const y = minY + perY * words[at + 2]! + advance * signedByte(low >> 8) - oy;
-    const z = minZ + perZ * words[at + 1]! + advance * signedByte(words[at + 4]! & 255) - oz;
+  forEachPlace(shown, 1, (index, xM, yM, zM) => {
+    const [x, y, z] = [xM - ox, yM - oy, zM - oz];
     const alongM = x * dx + y * dy + z * dz;
     const inside2 = radiusM * radiusM - (x * x + y * y + z * z - alongM * alongM);
-    if (inside2 < 0) continue;
+    if (inside2 < 0) return;
     const hitM = alongM - Math.sqrt(inside2);
     if (hitM > 0 && hitM < nearestM) {
       nearestM = hitM;
       found = index;
     }
-  }
+  });
   return found;
 }

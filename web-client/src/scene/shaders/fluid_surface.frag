@@ -3,7 +3,7 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass. PARTS: of the ray in the liquid, between reflections; HALVINGS: of a step, to find the surface.
+// volume is a tank with walls of glass.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -35,6 +35,8 @@ const float kStepCells = 0.85;
 // Where no kernel reaches, the surface is at least so many particle radii away.
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
+// Halvings of a step, to find the surface; parts of the ray in the liquid, between reflections.
+const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
 // Whiteness: light that it scatters over one particle radius.
 #ifdef WAVE
@@ -44,8 +46,8 @@ const float kWhiteness = 0.14;
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
 #else
-// Little water takes up little air: it is torn into clear lumps. With few pixels they would be noise.
-const float kAiry = 0.06, kTorn = HALVINGS > 3 ? 0.11 : 0.06;
+// Little water takes up little air: it is torn into clear lumps.
+const float kAiry = 0.06, kTorn = 0.11;
 const float kWhiteness = 0.01;
 #endif
 
@@ -110,7 +112,7 @@ vec2 liquidAt(vec3 at_m) {
 // Where the ray crosses the surface between two lengths of which one lies in the liquid.
 float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
   bool is_end_inside = liquidAt(from + ray * b_m).x > 0.0;
-  for (int i = 0; i < HALVINGS; ++i) {
+  for (int i = 0; i < kHalvings; ++i) {
     float middle_m = 0.5 * (a_m + b_m);
     if ((liquidAt(from + ray * middle_m).x > 0.0) == is_end_inside) b_m = middle_m;
     else a_m = middle_m;
@@ -197,11 +199,11 @@ void main() {
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
 
-  // Through the liquid to where the ray leaves it, reflected less than PARTS times.
+  // Through the liquid to where the ray leaves it, reflected less than kParts times.
   vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
   bool is_floor = false;
-  for (int part = 0; part < PARTS; ++part) {
+  for (int part = 0; part < kParts; ++part) {
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
     bool is_side = true;

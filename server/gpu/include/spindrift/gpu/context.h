@@ -51,7 +51,7 @@ struct Ledger {
   std::uint64_t program_count = 0;        ///< live Program objects
   std::uint64_t dispatch_count = 0;       ///< dispatches since the start
   std::uint64_t buffers_made_count = 0;   ///< buffers ever made: constant while a room steps
-  std::uint64_t programs_made_count = 0;  ///< programs ever compiled: one per shader and set of defines
+  std::uint64_t programs_made_count = 0;  ///< programs compiled or read from disk: one per shader and set of defines
   std::uint64_t barrier_count = 0;        ///< barriers since the start, both barrier() and those issued by Buffer
   std::uint64_t upload_count = 0;         ///< calls that copied bytes from the host into buffers
   std::uint64_t uploaded_bytes = 0;       ///< bytes that they copied
