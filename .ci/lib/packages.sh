@@ -71,7 +71,7 @@ run_as_root() {
 need_packages() {
   local group missing=() found=()
   if ! command -v dpkg-query >/dev/null; then
-    say "this is no Debian: trusting that these are installed: $(groups_text "$@")"
+    say "this is not Debian: trusting that these are installed: $(groups_text "$@")"
     return
   fi
   local all=()
