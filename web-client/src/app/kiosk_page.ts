@@ -31,6 +31,8 @@ export function openKiosk(app: App | undefined): void {
   const skippedMs = { visit: 0, watchdog: 0 };
   const updateVisit = (): void => kiosk?.update(performance.now() + skippedMs.visit);
   const updateGuard = (): void => guard.update(performance.now() + skippedMs.watchdog);
+  // At once: the tools of a visit must not be seen until the first tick.
+  updateVisit();
   window.setInterval(() => {
     updateVisit();
     updateGuard();
