@@ -11,9 +11,9 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a laboratory is painted concrete, which is seen from the side through the glass. */
-const kFill: Paint = [0.16, 0.30, 0.35, 0.3];
-const kFillCut: Paint = [0.30, 0.34, 0.35, 0.3];
+/** A bed in a tank is painted as its base is (solids/glass_tank.ts); its sides are seen through the glass. */
+const kFill: Paint = [0.03, 0.17, 0.29, 0.3];
+const kFillCut: Paint = [0.03, 0.09, 0.15, 0.3];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 

@@ -68,6 +68,8 @@ const kNoonSky = kSkies.at(-1)!;
 /** Storm level from which the sky begins to change. A breeze is under a clear sky. */
 const kFairStorm = 0.3;
 
+/** Direct light in a room at noon: white, so that white water is. */
+const kStudioKey: Rgb = [0.92, 0.94, 0.97];
 /** Light of lamps in a room, which adds to the daylight that windows let in. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
@@ -152,9 +154,9 @@ export function lightAt(hour: number, storm: number): Light {
 export function indoors(light: Light): Light {
   const daylight = Math.min(luminance(light.ambientUp) / luminance(kNoonSky.ambientUp), 1);
   const lamps = smoothstep(0.9, 0.2, daylight);
-  const from = (name: "key" | "ambientUp" | "ambientDown", lamp: Rgb): Rgb => {
+  const from = (noon: Rgb, lamp: Rgb): Rgb => {
     const tint = mapRgb(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b);
-    return mapRgb(mapRgb(kNoonSky[name], tint, (a, b) => a * b), lamp, (a, b) => a + lamps * b);
+    return mapRgb(mapRgb(noon, tint, (a, b) => a * b), lamp, (a, b) => a + lamps * b);
   };
   return {
     ...light,
@@ -162,9 +164,9 @@ export function indoors(light: Light): Light {
     keyDirection: kNoon,
     sharp: mix(light.sharp, 1, lamps),
     stars: 0,
-    key: from("key", kLampKey),
-    ambientUp: from("ambientUp", kLampAmbientUp),
-    ambientDown: from("ambientDown", kLampAmbientDown),
+    key: from(kStudioKey, kLampKey),
+    ambientUp: from(kNoonSky.ambientUp, kLampAmbientUp),
+    ambientDown: from(kNoonSky.ambientDown, kLampAmbientDown),
     exposure: mix(light.exposure, 1, lamps),
   };
 }
@@ -197,9 +199,8 @@ interface DerivedLight {
   water: Rgb;
   /** Direct light below level water on a surface that faces its refracted direction, relative to noon's times noon's colour. */
   keyBelow: Rgb;
-  /** Light of a room's walls, and of what is outside its windows, relative to noon. */
+  /** Light in a room, relative to noon. */
   room: Rgb;
-  window: Rgb;
 }
 
 /** Index of refraction of air over that of water. */
@@ -219,10 +220,8 @@ export function derive(light: Light): DerivedLight {
   // Clouds on a clear day cover little and are thin.
   const clouds = light.cloudCover - 0.1;
   const onLevel = ({ key, ambientUp }: Pick<Light, "key" | "ambientUp">, sine: number): Rgb => mapRgb(key, ambientUp, (k, a) => 1.25 * k * sine + a);
-  const relative = (name: "ambientUp" | "horizon"): Rgb => mapRgb(light[name], kNoonSky[name], (a, b) => a / b);
   return {
-    room: relative("ambientUp"),
-    window: relative("horizon"),
+    room: mapRgb(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b),
     veiled: [mixRgb(light.zenith, light.cloud, clouds), mixRgb(light.middle, light.cloud, clouds), mixRgb(light.horizon, light.cloud, 0.3 * clouds)],
     water: mapRgb(onLevel(light, light.keyDirection[1]), onLevel(kNoonSky, kNoon[1]), (a, b) => a / b),
     keyBelow: scale(light.key, throughSurface(light.keyDirection[1]) / throughSurface(kNoon[1])),

@@ -98,7 +98,6 @@ export class Sky {
       u_cloud_cover: { value: 0 },
       u_ambient_up: this.uniforms["u_ambient_up"]!,
       u_room_light: vector(),
-      u_window_light: vector(),
       u_lowest: { value: -1 },
     };
     this.outdoors = makeMaterial("skyBake", this.bakeUniforms, { side: BackSide, defines: plain ? { PLAIN: 1 } : {} });
@@ -134,7 +133,7 @@ export class Sky {
   setLight(outside: Light): void {
     this.light = outside;
     const light = this.isRoom ? indoors(outside) : outside;
-    const { veiled, water, keyBelow, room, window } = derive(light);
+    const { veiled, water, keyBelow, room } = derive(light);
     const set = (uniforms: Uniforms, name: string, rgb: Rgb): void => void (uniforms[name]!.value as Vector3).set(...rgb);
     this.sunDirection.set(...light.keyDirection);
     set(this.uniforms, "u_sun_light", light.key);
@@ -155,7 +154,6 @@ export class Sky {
     set(this.bakeUniforms, "u_cloud_lit", light.cloudLit);
     this.bakeUniforms["u_cloud_cover"]!.value = light.cloudCover;
     set(this.bakeUniforms, "u_room_light", room);
-    set(this.bakeUniforms, "u_window_light", window);
     this.uniforms["u_sun_sharp"]!.value = light.sharp;
     this.domeUniforms["u_has_disc"]!.value = !this.isRoom;
     this.domeUniforms["u_stars"]!.value = light.stars;

@@ -35,7 +35,7 @@ const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
 /** Lengths in the water of a tank count for its colour as these many of a model's: little more than they are, so that it is as clear as glass. */
-export const kTankColourRatio = 1.8 / kRealPerModelLength;
+export const kTankColourRatio = 4 / kRealPerModelLength;
 /** The same with a wave, whose water is shallow and over a bed: without a tint it would be hard to tell from it. */
 export const kWaveTankColourRatio = 2;
 

@@ -26,7 +26,7 @@ const float kDense = 0.7;
 const float kExposureS = 0.02;
 const float kLeastPx = 1.6;
 const float kLargeM = 0.07;
-const float kMist = 0.22;
+const float kMist = 0.22, kTankMist = 0.12;
 // Drops near the eye are not larger than this share of their distance: they would be flakes.
 const float kMostShare = 0.004;
 
@@ -43,7 +43,7 @@ void main() {
   v_strength_white = vec2(0.0);
 #ifdef VOLUME
   if (particle.density > kDense) return;
-  float strength = 1.0 - smoothstep(kAlone, u_has_water ? mix(kAmongOthers, kAmongWhite, particle.foam) : kAmongOthers, volumeAt(particle.center_m).r);
+  float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
 #else
   float strength = 1.0;
@@ -53,7 +53,7 @@ void main() {
   vec3 center_m = particle.center_m + 3.0 * u_radius_m * (random.xyz - 0.5);
   if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r + 0.3 * u_radius_m) return;
   // Few are large. Over a wave the first stands for the mist among them.
-  bool is_mist = u_has_water && u_drop == 0.0;
+  bool is_mist = u_drop == 0.0;
   float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
   if (is_mist) center_m = particle.center_m;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;
@@ -65,7 +65,7 @@ void main() {
   float width_px = 2.0 * radius_m * px_per_m;
   float length_px = width_px + min(speed_mps * kExposureS, 3.0 * radius_m) * px_per_m;
   // What is thinner than a pixel covers a part of it, and what flies covers each place for a part of the time.
-  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
+  v_strength_white = is_mist ? vec2(strength * (u_has_water ? kMist : kTankMist) * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   if (!is_mist) v_strength_white.x *= sqrt(width_px / length_px);

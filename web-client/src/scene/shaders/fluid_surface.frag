@@ -38,17 +38,21 @@ const int kMostSteps = 256, kMostStepsInside = 96;
 // Halvings of a step, to find the surface; parts of the ray in the liquid, between reflections.
 const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
-// Whiteness: light that it scatters over one particle radius.
+// Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
 const float kAiry = 0.3, kTorn = 0.3;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
+const vec3 kFroth = vec3(0.93, 0.96, 0.97);
+const vec2 kFrothSun = vec2(0.0, 1.05);
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
 #else
-// Little water takes up little air: it is torn into clear lumps.
-const float kAiry = 0.06, kTorn = 0.11;
-const float kWhiteness = 0.01;
+const float kAiry = 0.12, kTorn = 0.22;
+const float kLaceRadii = 22.0;
+const float kWhiteness = 0.4;
+const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, as what is around it
+const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
 
 float distanceAt(vec2 uv) {
@@ -84,15 +88,8 @@ float overWave(vec3 at_m) {
 
 // Noise; `at`: in particle radii.
 float lumps(vec3 at) {
-#ifdef WAVE
   at /= kLaceRadii;
   return texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5;
-#else
-  // Smooth, so that surfaces are: crossing waves of about 6 radii, bent.
-  at += 1.4 * sin(0.71 * at.yzx + vec3(0.0, 1.7, 3.1));
-  vec3 waves = sin(at * vec3(0.93, 1.01, 0.87));
-  return waves.x * waves.y + waves.z * waves.x;
-#endif
 }
 
 // Density over that of the surface, and its white share: white water is torn.
@@ -104,7 +101,11 @@ vec2 liquidAt(vec3 at_m) {
   vec2 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
   if (density.r > 0.6 * kSurface && white > 0.05) {
-    density.r -= white * (kAiry + kTorn * lumps(at_m / u_radius_m));
+    float torn = lumps(at_m / u_radius_m);
+    density.r -= white * (kAiry + kTorn * torn);
+#ifndef WAVE
+    white *= clamp(0.85 + 1.1 * torn, 0.0, 1.0);
+#endif
   }
   return vec2(density.r - kSurface, white);
 }
@@ -183,7 +184,7 @@ void main() {
 #ifdef WAVE
   mist = 1.0 - exp(-kMist / u_radius_m * mist);
 #endif
-  vec3 froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 0.7 + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  vec3 froth = kFroth * (u_sun_light * 0.7 + u_ambient_up * vec3(1.05, 0.98, 0.91));
   if (liquid.x <= 0.0) {
     if (mist < 0.01) discard;
     color = vec4(toDisplay(froth), mist);
@@ -258,7 +259,7 @@ void main() {
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
-  vec3 lit_froth = vec3(0.93, 0.96, 0.97) * (u_sun_light * 1.05 * sun * sun + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 
