@@ -5,7 +5,7 @@ in vec3 v_direction;
 uniform vec3 u_room_light;  // relative to noon
 layout(location = 0) out vec4 color;
 
-const vec3 kDeep = vec3(0.002, 0.010, 0.036), kBlue = vec3(0.005, 0.065, 0.19), kPale = vec3(0.20, 0.66, 1.0);
+const vec3 kDeep = vec3(0.002, 0.010, 0.036), kBlue = vec3(0.005, 0.065, 0.19), kPale = vec3(0.10, 0.60, 1.0);
 
 void main() {
   vec3 to = normalize(v_direction);
