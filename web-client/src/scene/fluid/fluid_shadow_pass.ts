@@ -13,8 +13,6 @@ import type { FluidParticles } from "./fluid_particles";
 import type { FluidVolumePass } from "./fluid_volume_pass";
 
 const kTargetPx = 160;
-/** The floor that is shaded, in sides of the tank. */
-const kShadedSides = 2;
 /** Texels along the map of a tiled floor over those of one without tiles. */
 const kTilesTexelsRatio = 4;
 /** The camera of the map looks down from this share of the tank's length over the floor. */
@@ -49,10 +47,11 @@ export class FluidShadowPass implements Pass {
     this.above = new OrthographicCamera(-sideM / 2, sideM / 2, widthM / 2, -widthM / 2, 0, 2 * kMapAboveSides * sideM);
     this.above.up.set(0, 0, -1);
     this.uniforms = { u_floor_light: { value: this.map.texture }, u_floor_size_m: { value: new Vector2(sideM, widthM) } };
-    const place = { u_floor_m: { value: 0 }, u_shaded_m: { value: kShadedSides * sideM } };
+    const place = { u_floor_m: { value: 0 }, u_shaded_m: { value: Math.max(sideM, widthM) } };
     this.column = new FullscreenPass(makeMaterial("fluidColumn", { ...volume.uniforms, ...sky.uniforms, ...place }, { depthTest: false, depthWrite: false }));
     const geometry = new BufferGeometry();
-    geometry.setAttribute("position", new BufferAttribute(new Float32Array([-0.5, 0, -0.5, -0.5, 0, 0.5, 0.5, 0, -0.5, 0.5, 0, 0.5]), 3));
+    const [x, z] = [0.5 * sideM, 0.5 * widthM].map((half) => half / place.u_shaded_m.value) as [number, number];
+    geometry.setAttribute("position", new BufferAttribute(new Float32Array([-x, 0, -z, -x, 0, z, x, 0, -z, x, 0, z]), 3));
     geometry.setIndex([0, 1, 2, 2, 1, 3]);
     const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: kTankColourRatio } };
     this.floor = new Mesh(

@@ -8,8 +8,7 @@ import { makeMaterial } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { kDropFloats, kVertexFloats, PlainSurface } from "./plain_surface";
 
-/** The floor that is shaded, in sides of the tank, and the cells of its mesh. */
-const kShadedSides = 1.5;
+/** Cells of the mesh that shades the floor. */
 const kFloorCells = [40, 20] as const;
 /** Light lost per length of water, in widths of the tank, and the most of it. */
 const kShadePerWidth = 1.6;
@@ -47,8 +46,7 @@ export class PlainLiquidPass implements Pass {
     const drop = makeMaterial("fluidPlainDrop", uniforms, { transparent: true, depthWrite: false });
     const shade = makeMaterial("fluidPlainFloor", {}, { blending: CustomBlending, blendSrc: DstColorFactor, blendDst: ZeroFactor, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
     this.materials = [depth, light, drop, shade];
-    const shaded = kShadedSides - 1;
-    this.floor = new Mesh(new PlaneGeometry(size.sideM + 2 * shaded * size.widthM, size.widthM * (1 + 2 * shaded), ...kFloorCells).rotateX(-Math.PI / 2), shade);
+    this.floor = new Mesh(new PlaneGeometry(size.sideM, size.widthM, ...kFloorCells).rotateX(-Math.PI / 2), shade);
     this.floor.geometry.setAttribute("a_passed", new BufferAttribute(new Float32Array(this.floor.geometry.getAttribute("position").count).fill(1), 1).setUsage(DynamicDrawUsage));
     const geometry = new BufferGeometry();
     this.meshes = [new Mesh(geometry, depth), new Mesh(geometry, light)];

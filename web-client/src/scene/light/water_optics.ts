@@ -34,7 +34,7 @@ const kBubblesShare = 0.55;
 const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
-/** Lengths in the water of a tank count for its colour as these many of a model's: little more than they are, so that it is as clear as glass. */
+/** Lengths in the water of a tank count for its colour as these many of a model's: depth is seen as colour, a sheet is clear. */
 export const kTankColourRatio = 4 / kRealPerModelLength;
 /** The same with a wave, whose water is shallow and over a bed: without a tint it would be hard to tell from it. */
 export const kWaveTankColourRatio = 2;

@@ -20,6 +20,5 @@ void main() {
   float focus = clamp(1.0 + 1.3 * (middle_m - around_m) / u_apart_m, 0.45, 1.6);
   // Light of the sky remains where the sun is refracted away.
   vec3 light = 0.35 + 0.65 * focus * exp(-u_loss_per_m * mean_m * u_colour_ratio);
-  vec2 rim = smoothstep(0.5, 0.4, abs(v_uv - 0.5));
-  color = vec4(mix(vec3(1.0), light * mix(1.0, 0.8, min(mean_m / u_apart_m, 1.0)), rim.x * rim.y), 1.0);
+  color = vec4(light * mix(1.0, 0.8, min(mean_m / u_apart_m, 1.0)), 1.0);
 }

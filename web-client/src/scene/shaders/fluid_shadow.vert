@@ -1,5 +1,5 @@
-// A square of the floor around the origin.
-in vec3 position;  // x, z in -1/2..1/2
+// The floor of a tank.
+in vec3 position;  // x, z over u_shaded_m
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform float u_floor_m;
