@@ -39,6 +39,8 @@ void main() {
   float strength = 1.0;
 #endif
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
+  // Particles that fly straight up have the same level velocity, but keep to their place.
+  if (dot(level, level) < 7.0) level += 31.0 * floor(particle.center_m.xz / (2.0 * u_radius_m));
   vec4 random = hash(vec3(level, u_drop));
   float radius_m = min(u_radius_m, kLargeM);
   // Few are large.
