@@ -33,7 +33,7 @@ const kShots = {
   river_mouth: { tick: 780, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 312 },
-  splash: { tick: 90 },
+  splash: { tick: 84 },
   splash_particles: { tick: 84 },
   splash_wave: { tick: 120 },
   still_pool: { tick: 60 },
