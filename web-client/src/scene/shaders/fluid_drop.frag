@@ -1,16 +1,11 @@
-// A drop. VOLUME: a lens that shows the sky upside down, bright where it mirrors the light from above, over a wave cloudy with air; otherwise of one colour.
+// A drop in a tank: a lens that shows the sky upside down, bright where it mirrors the light from above.
 #include <sky>
 
 flat in vec3 v_flight;
-flat in vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
+flat in vec2 v_strength_white;
 uniform mat4 u_camera_world;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
-uniform bool u_has_water;
-#ifndef VOLUME
-uniform vec3 u_displayed_sky[3];  // zenith, middle, horizon
-uniform vec3 u_displayed_foam;
-#endif
 layout(location = 0) out vec4 color;
 
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
@@ -21,13 +16,6 @@ void main() {
   float away2 = dot(local, local);
   if (away2 > 1.0) discard;
   if (texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
-  if (v_strength_white.y > 1.0) {
-    color = vec4(toDisplay(kFroth * (0.4 * u_sun_light + u_ambient_up)), v_strength_white.x * (1.0 - away2) * (1.0 - away2));
-    return;
-  }
-#ifndef VOLUME
-  color = vec4(mix(u_displayed_sky[1], u_displayed_foam, 0.5 + 0.5 * v_strength_white.y), v_strength_white.x * (1.0 - away2));
-#else
   vec2 screen = v_flight.xy * local.x + vec2(-v_flight.y, v_flight.x) * local.y;
   vec3 normal = mat3(u_camera_world) * vec3(screen, sqrt(1.0 - away2));
   vec3 toward = mat3(u_camera_world) * vec3(0.0, 0.0, 1.0);
@@ -40,6 +28,5 @@ void main() {
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 froth = kFroth * (u_sun_light * sun * sun + u_ambient_up);
-  color = vec4(toDisplay(mix(light, froth, u_has_water ? 0.35 + 0.5 * v_strength_white.y : 0.1 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
-#endif
+  color = vec4(toDisplay(mix(light, froth, 0.1 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
 }

@@ -40,7 +40,7 @@ const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
 // Whiteness: light that it scatters over one particle radius.
 #ifdef WAVE
-const float kAiry = 0.3, kTorn = 0.3;  // what is left of a clump are its drops
+const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
