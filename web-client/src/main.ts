@@ -4,12 +4,14 @@ import { isEmbeddedAddress, isKioskAddress, isPadAddress, isProjectorAddress, ta
 import { showPanels, showPoster } from "./app/poster";
 import { leadsToFront } from "./front/entrance";
 import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
-import { requestRooms } from "../client/rest/rooms";
+import { requestRooms, type RoomSummary } from "../client/rest/rooms";
 import { roomOf, wishOf } from "./net/room_address";
 import { prepareWorker, socketUrl } from "./net/water_client";
 import { translation } from "./net/translation";
 import { languageNow } from "./ui/language";
 
+/** The room of an address that names none, as in the server. */
+const kFirstRoom = "main";
 /** The panels wait for the first picture at most so long. */
 const kMostHiddenMs = 4000;
 
@@ -39,15 +41,18 @@ async function openRoomOrFront(): Promise<void> {
   const url = socketUrl(location.href);
   // Only looked at: the page that is opened takes it out of the address.
   const identity = new IdentityStore(sessionStorageIfAny(), url).peek(takeLinkToken(location, { replaceState: () => {} }));
-  if (await leadsToFront(location.search, url, identity.token, { requestRooms, fetch: (address, init) => fetch(address, init) })) {
+  // None where the server may not tell who asks.
+  const rooms = requestRooms(identity.token).catch((): RoomSummary[] => []);
+  if (await leadsToFront(location.search, url, identity.token, { requestRooms: () => rooms, fetch: (address, init) => fetch(address, init) })) {
     const { openFront } = await import("./front/front_page");
     showPanels();
     return openFront();
   }
-  void showPoster();
+  const wish = wishOf(location.search);
+  void rooms.then((all) => showPoster(all.find(({ name }) => name === (roomOf(location.search) || kFirstRoom))?.scene ?? wish?.scene));
   // The connection is there before the page is, which takes longer: frames, projectors and exhibits make their own.
   const isVisitor = ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location));
-  prepareWorker(isVisitor ? { url, identity, wish: wishOf(location.search) } : undefined);
+  prepareWorker(isVisitor ? { url, identity, wish } : undefined);
   const { openWaterPage } = await (water ?? load());
   openWaterPage();
 }

@@ -17,7 +17,7 @@ const kShots = {
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
-  breaking_wave: { tick: 144 },
+  breaking_wave: { tick: 156 },
   breaking_wave_particles: { tick: 84 },
   breaking_wave_wave: { tick: 150 },
   dam_break: { tick: 90 },

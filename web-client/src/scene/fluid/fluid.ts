@@ -36,7 +36,7 @@ const kSparingDropsCount = 3;
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: { sideM: number; widthM: number }, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
-  if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount)] };
+  if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount, true)] };
   if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kTankColourRatio)] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
@@ -44,7 +44,7 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, size, { ...quality, texelType, plain });
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
   const surface = new FluidSurfacePass(inputs, field ? 1 : kTankColourRatio, quality);
-  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount);
+  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };
 }

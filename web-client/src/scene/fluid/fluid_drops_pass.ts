@@ -15,16 +15,19 @@ export class FluidDropsPass implements Pass {
   readonly writes = ["canvas"] as const;
   private readonly material: RawShaderMaterial;
 
-  /** `volume` undefined: all particles over the wave are drops. `dropsCount`: drawn for each particle. */
+  /** `volume` undefined: all particles over the wave are drops. `isOverWave`: they are not in a tank. `dropsCount`: drawn for each particle. */
   constructor(
     private readonly particles: FluidParticles,
     volume: FluidVolumePass | undefined,
     solids: SolidsPass,
     sky: Sky,
     private readonly dropsCount: number,
+    isOverWave: boolean,
   ) {
     const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth } };
-    this.material = makeMaterial("fluidDrop", { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own }, { defines: volume ? { VOLUME: 1 } : {}, blending: NormalBlending, transparent: true, depthWrite: false });
+    const uniforms = { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own };
+    const blended = { blending: NormalBlending, transparent: true, depthWrite: false };
+    this.material = makeMaterial(isOverWave ? "fluidSpray" : "fluidDrop", uniforms, { defines: volume ? { VOLUME: 1 } : {}, ...blended });
   }
 
   draw({ renderer, camera, sizePx }: Picture): void {

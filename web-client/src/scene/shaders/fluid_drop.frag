@@ -1,4 +1,4 @@
-// A drop. VOLUME: a lens that shows the sky upside down, bright where it mirrors the light from above, over a wave cloudy with air; otherwise of one colour.
+// A drop in a tank: a lens that shows the sky upside down, bright where it mirrors the light from above; with air in it white.
 #include <sky>
 
 flat in vec3 v_flight;
@@ -6,14 +6,9 @@ flat in vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 uniform mat4 u_camera_world;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
-uniform bool u_has_water;
-#ifndef VOLUME
-uniform vec3 u_displayed_sky[3];  // zenith, middle, horizon
-uniform vec3 u_displayed_foam;
-#endif
 layout(location = 0) out vec4 color;
 
-const vec3 kFroth = vec3(0.93, 0.96, 0.97), kTankFroth = vec3(0.84, 1.0, 1.14);
+const vec3 kFroth = vec3(0.84, 1.0, 1.14);
 
 void main() {
   vec2 at = vec2(gl_PointCoord.x, 1.0 - gl_PointCoord.y) * 2.0 - 1.0;
@@ -21,14 +16,10 @@ void main() {
   float away2 = dot(local, local);
   if (away2 > 1.0) discard;
   if (texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
-  vec3 white = u_has_water ? kFroth : kTankFroth;
   if (v_strength_white.y > 1.0) {
-    color = vec4(toDisplay(white * (0.4 * u_sun_light + u_ambient_up)), v_strength_white.x * (1.0 - away2) * (1.0 - away2));
+    color = vec4(toDisplay(kFroth * (0.4 * u_sun_light + u_ambient_up)), v_strength_white.x * (1.0 - away2) * (1.0 - away2));
     return;
   }
-#ifndef VOLUME
-  color = vec4(mix(u_displayed_sky[1], u_displayed_foam, 0.5 + 0.5 * v_strength_white.y), v_strength_white.x * (1.0 - away2));
-#else
   vec2 screen = v_flight.xy * local.x + vec2(-v_flight.y, v_flight.x) * local.y;
   vec3 normal = mat3(u_camera_world) * vec3(screen, sqrt(1.0 - away2));
   vec3 toward = mat3(u_camera_world) * vec3(0.0, 0.0, 1.0);
@@ -40,7 +31,6 @@ void main() {
   vec3 glint = u_sun_sharp * u_sun_light * pow(max(dot(mirrored_ray, u_sun_direction), 0.0), 30.0) * 4.0;
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
-  vec3 froth = white * (u_sun_light * mix(u_has_water ? 0.0 : 0.6, u_has_water ? 1.0 : 1.2, sun * sun) + u_ambient_up);
+  vec3 froth = kFroth * (u_sun_light * mix(0.6, 1.2, sun * sun) + u_ambient_up);
   color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
-#endif
 }

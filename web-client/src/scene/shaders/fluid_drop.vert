@@ -1,32 +1,26 @@
-// Drops: what flies apart from the liquid, or all that is over a wave where no liquid is drawn (without VOLUME). A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
+// Drops of a tank: what flies apart from the liquid. A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
 // around it and stretched along their flight. They keep their places while it flies freely: their hash is that of its level velocity.
 #include <fluid_words>
-#ifdef VOLUME
 #include <fluid_volume>
-#endif
 
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec2 u_target_px;
 uniform float u_drop;
-uniform sampler2D u_field;
-uniform vec2 u_extent_m;  // length and width of the water
-uniform bool u_has_water;
 
 flat out vec3 v_flight;    // unit direction on the screen, and width over length
 flat out vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
 
-#ifdef VOLUME
 // Density of the volume at a particle between which it comes away from the liquid.
 const float kAlone = 0.30, kAmongOthers = 0.55, kAmongWhite = 0.9;
 // Density (as streamed) of particles that are never apart from it.
 const float kDense = 0.7;
-#endif
 // A drop is drawn as long as it flies in this time.
 const float kExposureS = 0.02;
 const float kLeastPx = 1.6;
 const float kLargeM = 0.07;
-const float kMist = 0.22, kTankMist = 0.12;
+// Share of what is behind it that the mist around a white particle hides.
+const float kMist = 0.12;
 // Drops near the eye are not larger than this share of their distance: they would be flakes.
 const float kMostShare = 0.004;
 
@@ -41,18 +35,13 @@ void main() {
   gl_PointSize = 1.0;
   v_flight = vec3(1.0, 0.0, 1.0);
   v_strength_white = vec2(0.0);
-#ifdef VOLUME
   if (particle.density > kDense) return;
   float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
-#else
-  float strength = 1.0;
-#endif
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
   vec4 random = hash(vec3(level, u_drop));
   vec3 center_m = particle.center_m + 3.0 * u_radius_m * (random.xyz - 0.5);
-  if (u_has_water && center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r + 0.3 * u_radius_m) return;
-  // Few are large. Over a wave the first stands for the mist among them.
+  // Few are large. The first stands for the mist among them.
   bool is_mist = u_drop == 0.0;
   float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
   if (is_mist) center_m = particle.center_m;
@@ -65,7 +54,7 @@ void main() {
   float width_px = 2.0 * radius_m * px_per_m;
   float length_px = width_px + min(speed_mps * kExposureS, 3.0 * radius_m) * px_per_m;
   // What is thinner than a pixel covers a part of it, and what flies covers each place for a part of the time.
-  v_strength_white = is_mist ? vec2(strength * (u_has_water ? kMist : kTankMist) * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
+  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   if (!is_mist) v_strength_white.x *= sqrt(width_px / length_px);

@@ -10,6 +10,8 @@ import causticsFrag from "./caustics.frag?raw";
 import causticsVert from "./caustics.vert?raw";
 import cellHash from "./cell_hash.glsl?raw";
 import farLand from "./far_land.glsl?raw";
+import drop from "./drop.glsl?raw";
+import dropFrag from "./drop.frag?raw";
 import edgesFrag from "./edges.frag?raw";
 import elevationFrag from "./elevation.frag?raw";
 import fieldFrag from "./field.frag?raw";
@@ -27,6 +29,7 @@ import fluidPlainFloorVert from "./fluid_plain_floor.vert?raw";
 import fluidPresentFrag from "./fluid_present.frag?raw";
 import fluidShadowFrag from "./fluid_shadow.frag?raw";
 import fluidShadowVert from "./fluid_shadow.vert?raw";
+import fluidSprayVert from "./fluid_spray.vert?raw";
 import fluidSurfaceFrag from "./fluid_surface.frag?raw";
 import fluidTileMarkVert from "./fluid_tile_mark.vert?raw";
 import fluidTileMarkFrag from "./fluid_tile_mark.frag?raw";
@@ -74,7 +77,6 @@ import solidFrag from "./solid.frag?raw";
 import solidPlain from "./solid_plain.glsl?raw";
 import solidPlainFrag from "./solid_plain.frag?raw";
 import solidVert from "./solid.vert?raw";
-import sprayFrag from "./spray.frag?raw";
 import tilesFrag from "./tiles.frag?raw";
 import waterBelowFrag from "./water_below.frag?raw";
 import waterFrag from "./water.frag?raw";
@@ -98,6 +100,7 @@ const kPrograms = {
   fluidPlainFloor: [fluidPlainFloorVert, fluidPlainFloorFrag],
   fluidPresent: [fluidTileVert, fluidPresentFrag],
   fluidShadow: [fluidShadowVert, fluidShadowFrag],
+  fluidSpray: [fluidSprayVert, dropFrag],
   fluidSurface: [fluidTileVert, fluidSurfaceFrag],
   fluidTileMark: [fluidTileMarkVert, fluidTileMarkFrag],
   fluidVolume: [fluidVolumeVert, fluidVolumeFrag],
@@ -121,7 +124,7 @@ const kPrograms = {
   skyPlain: [skyPlainVert, skyPlainFrag],
   solid: [solidVert, solidFrag],
   solidPlain: [solidVert, solidPlainFrag],
-  spray: [whitewaterVert, sprayFrag],
+  spray: [whitewaterVert, dropFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
   waterPlain: [waterVert, waterPlainFrag],
@@ -138,6 +141,7 @@ const kShared: Record<string, string> = {
   bicubic,
   caustics,
   cell_hash: cellHash,
+  drop,
   far_land: farLand,
   fluid_volume: fluidVolume,
   fluid_words: fluidWords,

@@ -1,0 +1,17 @@
+// A drop or a puff of mist: an ellipse along its flight, bright in its middle. Hidden behind solids.
+flat in vec3 v_flight;
+flat in vec4 v_light;
+uniform vec2 u_target_px;
+uniform sampler2D u_behind_depth;
+layout(location = 0) out vec4 color;
+
+void main() {
+  vec2 at = vec2(gl_PointCoord.x, 1.0 - gl_PointCoord.y) * 2.0 - 1.0;
+  float left = 1.0 - dot(at, at);
+  if (v_flight.z < 1.0) {
+    vec2 in_drop = vec2(dot(at, v_flight.xy), dot(at, vec2(-v_flight.y, v_flight.x)) / v_flight.z);
+    left = 1.0 - dot(in_drop, in_drop);
+  }
+  if (left <= 0.0 || texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
+  color = vec4(v_light.rgb, v_light.a * left * left);
+}

@@ -1,0 +1,59 @@
+// Drops of particles over a wave: those that fly apart from the liquid (VOLUME), or all. A particle stands for many drops and is drawn as a
+// few of them, one per draw (u_drop), around it and along its flight. They keep their places while it flies freely: their hash is that of
+// its level velocity. The first is the mist among them.
+#include <fluid_words>
+#ifdef VOLUME
+#include <fluid_volume>
+#endif
+#include <drop>
+
+uniform float u_drop;
+uniform sampler2D u_field;
+uniform vec2 u_extent_m;  // length and width of the water
+
+#ifdef VOLUME
+// Density of the volume at a particle between which it comes away from the liquid.
+const float kAlone = 0.30, kAmongOthers = 0.55, kAmongWhite = 0.9;
+#endif
+// Sunlight that a density takes up.
+const float kShade = 6.0;
+// Particles larger than this are drawn like those of this radius, m.
+const float kLargeM = 0.07;
+// Strength of a puff of mist, and its radius in particle radii.
+const float kMist = 0.075, kMistRadii = 3.2;
+// Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
+const float kFineRadii = 5.0, kLargeRadii = 2.5, kTrailS = 0.05;
+
+vec4 hash(vec3 at) {
+  vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
+  return fract(sin(mixed) * 43758.5453);
+}
+
+void main() {
+  Particle particle = unpackParticle();
+  noDrop();
+#ifdef VOLUME
+  float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
+  if (strength <= 0.0) return;
+#else
+  float strength = 1.0;
+#endif
+  vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
+  // Particles that fly straight up have the same level velocity, but keep to their place.
+  if (dot(level, level) < 7.0) level += 31.0 * floor(particle.center_m.xz / (2.0 * u_radius_m));
+  vec4 random = hash(vec3(level, u_drop));
+  float radius_m = min(u_radius_m, kLargeM);
+  // Few are large.
+  float large = pow(random.w, 6.0);
+  bool is_mist = u_drop == 0.0;
+  vec3 center_m = particle.center_m;
+  if (!is_mist) center_m += u_radius_m * mix(kFineRadii, kLargeRadii, random.w) * (random.xyz - 0.5) + particle.velocity_mps * (kTrailS * (random.w - 0.5));
+  if (center_m.y < texture(u_field, center_m.xz / u_extent_m + 0.5).r) return;
+#ifdef VOLUME
+  float sunlit = exp(-kShade * volumeAt(center_m + 4.0 * u_radius_m * u_sun_direction).r);
+#else
+  const float sunlit = 0.6;
+#endif
+  if (is_mist) drawDrop(center_m, particle.velocity_mps, kMistRadii * radius_m, true, strength * kMist * particle.foam, sunlit);
+  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.03, 0.25, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
+}
