@@ -26,24 +26,27 @@ struct Grid {
   [[nodiscard]] double quantum_m() const { return cell_m / (1u << cells.offset_bits); }
 };
 
-/// Returns a grid over the particles' domain, coarser than usual if it would have too many cells or positions.
+/// Returns a grid over the particles' domain. Where there would be too many cells they are larger, with as fine
+/// positions; where there would be too many positions along an axis, these are coarser.
 Grid gridOf(const core::ParticleView& particles) {
   Grid grid{.cells = {.cells_count = {}, .offset_bits = kOffsetBits}, .cell_m = kCellSpacings * 2 * particles.radius_m};
-  const auto fits = [&] {
+  for (;;) {
+    double most = 0.0, total = 1.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const double cells = std::ceil((particles.max_m[axis] - particles.min_m[axis]) / grid.cell_m);
-      if (!(cells <= kCoordinateMaxCount >> grid.cells.offset_bits)) return false;
-      grid.cells.cells_count[axis] = std::max(static_cast<std::uint32_t>(cells), 1u);
+      const double cells = std::max(std::ceil((particles.max_m[axis] - particles.min_m[axis]) / grid.cell_m), 1.0);
+      most = std::max(most, cells);
+      total *= cells;
+      grid.cells.cells_count[axis] = static_cast<std::uint32_t>(std::min(cells, double{kCoordinateMaxCount}));
     }
-    return grid.cells.totalCount() <= kCellMaxCount;
-  };
-  while (!fits()) {
-    if (grid.cells.offset_bits > 1)
-      --grid.cells.offset_bits;
-    else
+    if (total > kCellMaxCount || most > kCoordinateMaxCount >> 1) {
       grid.cell_m *= 2;
+      grid.cells.offset_bits = std::min(grid.cells.offset_bits + 1, kOffsetBitsMax);
+    } else if (most > kCoordinateMaxCount >> grid.cells.offset_bits) {
+      --grid.cells.offset_bits;
+    } else {
+      return grid;
+    }
   }
-  return grid;
 }
 
 core::Result<Grid> checkedGrid(const v1::ParticlesByCell& header) {

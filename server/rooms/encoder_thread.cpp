@@ -7,7 +7,12 @@
 
 namespace spindrift::rooms {
 
-EncoderThread::EncoderThread(FrameOutlet& outlet) : outlet_(outlet), thread_([this] { loop(); }) {}
+EncoderThread::EncoderThread(FrameOutlet& outlet)
+    : EncoderThread(outlet, std::clamp(std::thread::hardware_concurrency() / 4, 1u, 4u)) {}
+
+EncoderThread::EncoderThread(FrameOutlet& outlet, unsigned thread_count) : outlet_(outlet) {
+  for (unsigned k = 0; k < thread_count; ++k) threads_.emplace_back([this] { loop(); });
+}
 
 EncoderThread::~EncoderThread() {
   stop();
@@ -47,8 +52,10 @@ void EncoderThread::stop() {
     const std::lock_guard lock(mutex_);
     stopping_ = true;
   }
-  wake_.notify_one();
-  if (thread_.joinable()) thread_.join();
+  wake_.notify_all();
+  for (std::thread& thread : threads_) {
+    if (thread.joinable()) thread.join();
+  }
   const std::lock_guard lock(mutex_);
   waiting_.clear();  // frames are read from the memory of their device, which is destroyed next
 }
@@ -59,14 +66,20 @@ EncoderThread::FrameCounts EncoderThread::frameCounts(const std::string& room) c
   return known == rooms_.end() ? FrameCounts{} : known->second.counts;
 }
 
+std::deque<EncoderThread::Waiting>::iterator EncoderThread::next() {
+  return std::ranges::find_if(waiting_, [&](const Waiting& waiting) { return !rooms_[waiting.room].is_busy; });
+}
+
 void EncoderThread::loop() {
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, [&] { return stopping_ || !waiting_.empty(); });
+    wake_.wait(lock, [&] { return stopping_ || next() != waiting_.end(); });
     if (stopping_) return;
-    Waiting oldest = std::move(waiting_.front());
-    waiting_.pop_front();
+    const auto first = next();
+    Waiting oldest = std::move(*first);
+    waiting_.erase(first);
     KnownRoom& known = rooms_[oldest.room];
+    known.is_busy = true;
     if (!known.encoder) known.encoder = std::make_shared<codec::FrameEncoder>();
     ++known.counts.encoded_count;
     const auto encoder = known.encoder;  // the room may be forgotten while this runs
@@ -74,6 +87,9 @@ void EncoderThread::loop() {
     const Costs spent = encode(oldest, *encoder);
     oldest.frame = {};  // releases the readback slot
     lock.lock();
+    if (const auto found = rooms_.find(oldest.room); found != rooms_.end() && found->second.encoder == encoder)
+      found->second.is_busy = false;
+    if (!waiting_.empty()) wake_.notify_one();  // another thread can take a newer frame of this room
     for (std::size_t k = 0; k < costs_.size(); ++k) {
       for (std::size_t level = 0; level < core::kLevelCount; ++level) {
         costs_[k][level].frame_count += spent[k][level].frame_count;

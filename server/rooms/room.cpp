@@ -309,6 +309,7 @@ void Room::publishVitals(TimePoint now) {
                    .asleep = data_.time.isAsleep(),
                    .lost = change_.isLost(),
                    .waiting_command_count = static_cast<std::uint32_t>(desk_.waitingCount()),
+                   .device_bytes = data_.water->deviceBytes(),
                    .dropped_frame_count = frames_.droppedCount(),
                    .tick_times = data_.tick_meter.times(),
                    .diagnostics = frames_.diagnostics(),

@@ -122,6 +122,8 @@ void writeRooms(Page& page, const std::vector<RoomSample>& rooms) {
        [](Sample r) { return r.vitals->diagnostics.step_ms / 1e3; });
   each("room_substeps", "gauge", "Substeps per tick.", [](Sample r) { return r.vitals->diagnostics.substeps_count; });
   each("room_particles", "gauge", "Particles now.", [](Sample r) { return r.vitals->diagnostics.particle_count; });
+  each("room_device_bytes", "gauge", "Memory of the room's water on its device.",
+       [](Sample r) { return r.vitals->device_bytes; });
   each("room_boats", "gauge", "Boats on the water.", [](Sample r) { return r.vitals->diagnostics.boat_count; });
   each("room_sessions", "gauge", "Sessions in the room.", [](Sample r) { return r.session_count; });
   each("room_people", "gauge", "People in the room, those away included.", [](Sample r) { return r.person_count; });

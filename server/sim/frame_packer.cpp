@@ -6,28 +6,10 @@
 
 #include <shared/bindings.h>
 
+#include <spindrift/sim_setup/frame_layout.h>
 #include <spindrift/sim_setup/scene_parts.h>
 
 namespace spindrift::sim {
-namespace {
-
-constexpr std::size_t kFrameSlotCount = 4;  ///< one being filled, one in flight, one at the encoder, one spare
-/// Number of packed particles, number of live particles.
-constexpr std::size_t kParticleHeaderWords = 2;
-constexpr std::size_t kWordsPerParticle = 3;
-constexpr std::size_t kWordsPerBody = 7;  ///< boat or floater
-
-std::size_t surfaceWords(core::CellCounts count) {
-  return (count.total() + 1) / 2;
-}
-std::size_t foamWords(core::CellCounts count) {
-  return (count.total() + 3) / 4;
-}
-std::size_t particleWords(std::uint32_t count) {
-  return kParticleHeaderWords + std::size_t{count} * kWordsPerParticle;
-}
-
-}  // namespace
 
 FramePacker::FramePacker(Creation& create, const core::Scene& scene, const Derived& derived) : ctx_(create.context()) {
   if (derived.wave) {
@@ -44,31 +26,20 @@ FramePacker::FramePacker(Creation& create, const core::Scene& scene, const Deriv
     pack_floaters_ = create.pass("stream/pack_floaters.comp");
     floater_words_ = scene.floaters->capacity_count * kWordsPerBody;
   }
-  resize(create, derived);
+  resize(create, scene, derived);
 }
 
-void FramePacker::resize(Creation& create, const Derived& derived) {
-  const std::uint32_t particles = derived.particles ? derived.particles->count : 0;
-  const core::ReducedCounts reduced_counts = core::reducedCounts(surface_, particles);
-  // The slot has room for all levels at once.
-  std::size_t words = body_words_ + floater_words_;
-  for (const core::Level level : core::kLevels) {
-    if (isSent(level, reduced_counts.planes)) {
-      words += surfaceWords(surfaceCount(level)) + (pack_foam_ ? foamWords(foamCount(level)) : 0);
-    }
-    if (particles > 0 && isSent(level, reduced_counts.particles)) {
-      words += particleWords(std::min(particles, core::budgetOf(level).particle_count));
-    }
-  }
-  gpu::Buffer packed = create.buffer("packed frame", words * 4, gpu::BufferContent::kScratch);
-  auto ring = create.ring("frames", words * 4, kFrameSlotCount);
+void FramePacker::resize(Creation& create, const core::Scene& scene, const Derived& derived) {
+  const std::size_t slot_bytes = frameSlotBytes(scene, derived);
+  gpu::Buffer packed = create.buffer("packed frame", slot_bytes, gpu::BufferContent::kScratch);
+  auto ring = create.ring("frames", slot_bytes, kFrameSlotCount);
   if (create.error()) return;
   packed.declareDisjointWrites();  // each layer and level writes its own part
   packed_ = std::move(packed);
   ring_ = std::move(ring);
   pending_.clear();
-  particles_ = particles;
-  reduced_counts_ = reduced_counts;
+  particles_ = derived.particles ? derived.particles->count : 0;
+  reduced_counts_ = core::reducedCounts(surface_, particles_);
 }
 
 core::CellCounts FramePacker::surfaceCount(core::Level level) const {

@@ -28,7 +28,7 @@ class FramePacker {
 
   /// Replaces the buffers for another number of particles and keeps the programs. Frames in flight are lost. An error
   /// changes nothing.
-  void resize(Creation& create, const Derived& derived);
+  void resize(Creation& create, const core::Scene& scene, const Derived& derived);
 
   /// The parts to pack from. Frames have no layers of parts that are null. `population` belongs to `particles`.
   struct Parts {

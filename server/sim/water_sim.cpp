@@ -1,5 +1,6 @@
 #include <shared/bindings.h>
 
+#include "fits_device.h"
 #include "shader_defines.h"
 #include "water_sim_parts.h"
 
@@ -189,6 +190,7 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
 WaterSim::~WaterSim() = default;
 
 core::Result<void> WaterSim::build() {
+  if (auto fits = fitsDevice(ctx_, scene_, derived_); !fits) return fits;
   Creation create(ctx_, shaderDefines(scene_));
   const auto make = [&]<typename Part>(std::unique_ptr<Part>& part, const auto&... arguments) {
     part = std::make_unique<Part>(create, arguments...);
@@ -252,7 +254,7 @@ void WaterSim::Parts::makeCheckpoints(Creation& create) {
 core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
   Creation create(ctx);
   ParticleBuffers fresh(create, derived.particles->count, storesFoamSource(scene), hasTension(scene));
-  resizeOthers(create, derived);
+  resizeOthers(create, scene, derived);
   if (create.error()) return *create.error();
   std::swap(*particles, fresh);
   makeCheckpoints(create);
@@ -260,15 +262,15 @@ core::Result<void> WaterSim::Parts::resize(gpu::Context& ctx, const core::Scene&
   return create.result();
 }
 
-core::Result<void> WaterSim::Parts::resizeBack(gpu::Context& ctx, const Derived& derived) {
+core::Result<void> WaterSim::Parts::resizeBack(gpu::Context& ctx, const core::Scene& scene, const Derived& derived) {
   Creation create(ctx);
-  resizeOthers(create, derived);
+  resizeOthers(create, scene, derived);
   return create.result();
 }
 
-void WaterSim::Parts::resizeOthers(Creation& create, const Derived& derived) {
+void WaterSim::Parts::resizeOthers(Creation& create, const core::Scene& scene, const Derived& derived) {
   grid->resize(create, *derived.particles);
-  frames->resize(create, derived);
+  frames->resize(create, scene, derived);
   diagnostics->resize(create, derived);
 }
 

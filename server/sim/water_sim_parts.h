@@ -99,8 +99,8 @@ struct WaterSim::Parts {
   /// the old ones, and other parts may have either size: call resizeBack().
   core::Result<void> resize(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
   /// Call it after resize() failed; `derived` is that of the old size.
-  core::Result<void> resizeBack(gpu::Context& ctx, const Derived& derived);
-  void resizeOthers(Creation& create, const Derived& derived);
+  core::Result<void> resizeBack(gpu::Context& ctx, const core::Scene& scene, const Derived& derived);
+  void resizeOthers(Creation& create, const core::Scene& scene, const Derived& derived);
 };
 
 }  // namespace spindrift::sim

@@ -7,6 +7,7 @@
 
 #include <spindrift/sim_state/relay_particles.h>
 
+#include "fits_device.h"
 #include "shader_defines.h"
 #include "water_sim_parts.h"
 
@@ -44,13 +45,16 @@ core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core:
 core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene) {
   auto derived = derive(scene);
   if (!derived) return derived.error();
-  auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
-  if (auto built = sim->build(); !built) return built.error();
+  // Water settles before this one has its buffers, so that the device never holds both.
+  std::vector<float> settled_positions;
   if (scene.particles && scene.particles->settle_s > 0 && !isTwoWay(scene)) {
     auto settled = settledPositions(ctx, scene);
     if (!settled) return settled.error();
-    sim->parts_->settled_positions = *std::move(settled);
+    settled_positions = *std::move(settled);
   }
+  auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
+  if (auto built = sim->build(); !built) return built.error();
+  sim->parts_->settled_positions = std::move(settled_positions);
   sim->reset();
   return sim;
 }
@@ -102,9 +106,10 @@ core::Result<void> WaterSim::adopt(PreparedScene prepared) {
 }
 
 core::Result<void> WaterSim::replaceParticles(const PreparedScene& prepared) {
+  if (auto fits = fitsDevice(ctx_, prepared.scene, prepared.derived); !fits) return fits;
   if (auto sized = parts_->resize(ctx_, prepared.scene, prepared.derived); !sized) {
     // The device has no memory for the new sizes. It just held the old ones; the particles have not changed.
-    if (auto back = parts_->resizeBack(ctx_, derived_); !back) device_error_ = back.error();
+    if (auto back = parts_->resizeBack(ctx_, scene_, derived_); !back) device_error_ = back.error();
     return sized;
   }
   derived_ = prepared.derived;

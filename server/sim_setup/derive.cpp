@@ -8,6 +8,7 @@
 
 #include <spindrift/sim_setup/derive.h>
 #include <spindrift/sim_setup/dispersion.h>
+#include <spindrift/sim_setup/frame_layout.h>
 #include <spindrift/sim_setup/ground.h>
 #include <spindrift/sim_setup/incident_waves.h>
 #include <spindrift/sim_setup/lattice.h>
@@ -194,7 +195,8 @@ std::uint32_t stepsFor(double interval_s, double max_dt_s) {
   return static_cast<std::uint32_t>(std::clamp(std::ceil(interval_s / max_dt_s - 1e-9), 1.0, 1e6));
 }
 
-/// Bytes per wave cell: elevation, flow, transfers, tables of a varied basin, buffers read by particles and boats.
+/// Bytes per wave cell: elevation, flow, transfers, tables of a varied basin, buffers read by particles and boats,
+/// checkpoints.
 std::uint64_t waveCellBytes(const core::Scene& scene) {
   // Elevation; flow and transfer; the share that limits transfers.
   std::uint64_t bytes = 4 + 2 * (scene.wave->stencil == core::Stencil::kNinePoint ? 16 : 8) + 4;
@@ -208,20 +210,27 @@ std::uint64_t waveCellBytes(const core::Scene& scene) {
   if (hasPressureHead(scene)) bytes += 4;
   if (hasBreakers(scene)) bytes += 32;
   if (hasSurfaceFoam(scene)) bytes += isTwoWay(scene) ? 9 : 8;
-  return bytes;
+  // The state, copied twice by checkpoints.
+  std::uint64_t state = 4 + (scene.wave->stencil == core::Stencil::kNinePoint || isNonlinear(scene) ? 16 : 8);
+  if (isNonlinear(scene) && disperses(scene)) state += 16;
+  if (exchangesWater(scene)) state += 8;
+  if (hasMatchedLayer(scene)) state += 4;
+  if (hasBreakers(scene)) state += 16;
+  if (hasSurfaceFoam(scene)) state += 4;
+  return bytes + 2 * state;
 }
 
 std::uint64_t deviceBytes(const core::Scene& scene, const Derived& d) {
   std::uint64_t bytes = sizeof(shared::SimUniforms);
   if (d.particles) {
-    bytes += std::uint64_t{d.particles->count} *
-                 (7 * 16 + 9 * 8 + 8 + 4 + (storesFoamSource(scene) ? 4 : 0) + (hasTension(scene) ? 16 : 0)) +
+    bytes += std::uint64_t{d.particles->count} * (7 * 16 + 9 * 8 + 8 + 4 + 2 * 2 * 16 +
+                                                  (storesFoamSource(scene) ? 4 : 0) + (hasTension(scene) ? 16 : 0)) +
              std::uint64_t{d.particles->cell_count} * 8 + 12;
   }
   if (d.wave) bytes += d.wave->counts().total() * waveCellBytes(scene);
   if (disperses(scene)) bytes += dispersionBytes(*d.wave);
   if (hasWindSea(scene)) bytes += windSeaBytes(d.wave->counts());
-  return bytes;
+  return bytes + (1 + kFrameSlotCount) * frameSlotBytes(scene, d);
 }
 
 /// Bound of the neighbour candidates in a column of three cells (all cells of the column in a box that is periodic in

@@ -180,10 +180,15 @@ core::Result<ParticleLayout> layOutParticles(const core::Scene& scene, double vo
   const auto atLeastOne = [](double v) { return static_cast<std::uint32_t>(std::max(std::lround(v), 1L)); };
   out.layers_count = atLeastOne(volume_m3 > 0 ? volume_m3 / area_m2 / std::cbrt(volume_m3 / p.count) : p.layers_count);
   out.columns_x_count = atLeastOne(fill_x_m / std::sqrt(area_m2 * out.layers_count / p.count));
-  out.pitch_x_m = fill_x_m / out.columns_x_count;
-  out.columns_z_count = atLeastOne(fill_z_m / out.pitch_x_m);
+  // A lattice can have more particles than were wanted, but not more than are allowed.
+  for (;; --out.columns_x_count) {
+    out.pitch_x_m = fill_x_m / out.columns_x_count;
+    out.columns_z_count = atLeastOne(fill_z_m / out.pitch_x_m);
+    const std::uint64_t count = std::uint64_t{out.columns_x_count} * out.columns_z_count * out.layers_count;
+    out.count = static_cast<std::uint32_t>(count);
+    if (count <= kMaxParticleCount || out.columns_x_count == 1) break;
+  }
   out.pitch_z_m = fill_z_m / out.columns_z_count;
-  out.count = out.columns_x_count * out.columns_z_count * out.layers_count;
   out.spacing_m = std::sqrt(out.pitch_x_m * out.pitch_z_m);
   const double s = out.spacing_m;
   out.volume_m3 = volume_m3 > 0 ? volume_m3 : area_m2 * s * out.layers_count;

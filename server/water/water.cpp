@@ -4,11 +4,9 @@
 #include <thread>
 #include <utility>
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include <spindrift/scene/scene_loader.h>
-#include <spindrift/sim_setup/derive.h>
 #include <spindrift/water/water.h>
 
 namespace spindrift::water {
@@ -47,26 +45,16 @@ double warmUp(gpu::Context& context, sim::WaterSim& sim) {
   return tick_ms;
 }
 
-/// A device without memory for the scene: says how much the whole scene needs.
-core::Error withNeeds(core::Error error, const v1::Scene& scene) {
-  if (error.code != core::ErrorCode::kUnavailable) return error;
-  const auto derived = sim::derive(scene::toCore(scene));
-  if (derived)
-    error.message +=
-        fmt::format(" (scene {} needs {:.0f} MB)", scene.name(), static_cast<double>(derived->device_bytes) / 1e6);
-  return error;
-}
-
 }  // namespace
 
 core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene) {
   auto context = gpu::Context::create(device);
   if (!context) return context.error();
   auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
-  if (!sim) return withNeeds(sim.error(), scene);
+  if (!sim) return sim.error();
   const double tick_ms = warmUp(**context, **sim);
-  spdlog::debug("scene {}: {:.1f} MB on the device", scene.name(),
-                static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
+  spdlog::info("scene {}: {:.1f} MB on the device", scene.name(),
+               static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
   return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
 }
 

@@ -1,4 +1,6 @@
 // How often a room makes frames.
+#include <spindrift/sim_setup/frame_layout.h>
+
 #include "room_fixture.h"
 
 namespace spindrift::test {
@@ -19,6 +21,20 @@ TEST_F(RoomFrames, FollowWallTimeWhenTicksAreSlow) {
   }
   ASSERT_LE(room_->tick(), first_tick + kRoundCount);
   EXPECT_GE(outlets_.frame_count, kRoundCount - 2);
+}
+
+TEST_F(RoomFrames, AreDroppedAndNotWaitedForWhileNoneIsEncoded) {
+  constexpr std::uint64_t kTickCount = 60;
+  outlets_.keeps_frames = true;
+  ASSERT_TRUE(runUntil([&] { return outlets_.kept_frames.size() == sim::kFrameSlotCount; }));
+  const std::uint64_t tick = room_->tick();
+  ASSERT_TRUE(runUntil([&] { return room_->tick() >= tick + kTickCount; })) << "the room continues";
+  EXPECT_EQ(outlets_.kept_frames.size(), sim::kFrameSlotCount) << "no more memory is taken";
+  EXPECT_TRUE(runUntil([&] { return room_->vitals()->dropped_frame_count > 0; }));
+  outlets_.keeps_frames = false;
+  outlets_.kept_frames.clear();
+  outlets_.frame_count = 0;
+  EXPECT_TRUE(runUntil([&] { return outlets_.frame_count > 2; })) << "frames come again";
 }
 
 TEST_F(RoomFrames, SayWhichLevelsTakeThem) {

@@ -313,8 +313,8 @@ TEST_F(Rest, MetricsCountSessionsCommandsFramesAndRefusals) {
   for (const char* line :
        {"spindrift_room_ticks_total{room=\"main\"} ", "spindrift_room_real_time_factor{room=\"main\"} ",
         "spindrift_room_sessions{room=\"main\"} 1\n", "spindrift_sessions 1\n",
-        "spindrift_room_particles{room=\"main\"} ", "spindrift_commands_applied_total 1\n",
-        "spindrift_commands_rejected_total{reason=\"out_of_range\"} 1\n",
+        "spindrift_room_particles{room=\"main\"} ", "spindrift_room_device_bytes{room=\"main\"} ",
+        "spindrift_commands_applied_total 1\n", "spindrift_commands_rejected_total{reason=\"out_of_range\"} 1\n",
         "spindrift_refused_total{reason=\"origin\"} 1\n",
         "spindrift_encoded_frames_total{layer=\"surface\",packing=\"plain\",level=\"full\"} ",
         "spindrift_encode_seconds_total{layer=\"surface\",packing=\"packed\",level=\"full\"} 0\n",

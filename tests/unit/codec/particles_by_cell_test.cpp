@@ -140,6 +140,39 @@ TEST(ParticlesByCell, FitAWorldThatIsLargeForItsParticles) {
   expectSame(cloud);
 }
 
+TEST(ParticlesByCell, ManyCellsDoNotMakePositionsCoarser) {
+  Cloud cloud({-12, -1.5, -12}, {12, 5, 12}, 0.02);  // 600 x 163 x 600 cells, more than there can be
+  for (int k = 0; k < 300; ++k) cloud.add({-12 + 0.08 * k, -1.5 + 0.02 * k, 12 - 0.08 * k}, {k % 9, 0, -1}, 212, 0);
+  const v1::LayerFrame frame = packed(cloud);
+  const v1::ParticlesByCell& header = frame.particles_by_cell();
+  EXPECT_DOUBLE_EQ(header.cell_m() / (1 << header.offset_bits()), 0.02 / 16) << "a sixteenth of a spacing, as always";
+  expectSame(cloud);
+}
+
+TEST(ParticlesByCell, AreAsManyAsASceneCanHave) {
+  constexpr std::uint32_t kCount = 4'194'240;
+  Cloud cloud({-12, -1.5, -12}, {12, 5, 12}, 0.02);
+  cloud.words.reserve(3 * kCount);
+  std::mt19937 random(11);
+  for (std::uint32_t k = 0; k < kCount; ++k) {
+    cloud.words.push_back(static_cast<std::uint32_t>(random()));
+    cloud.words.push_back(static_cast<std::uint32_t>(random() & 0x1fffu));  // near the ground
+    cloud.words.push_back(212u << 8);
+  }
+  cloud.view.count = kCount;
+  cloud.view.words = cloud.words;
+  const auto samples = decodePackedParticles(packed(cloud));
+  ASSERT_TRUE(samples) << samples.error().message;
+  ASSERT_EQ(samples->count, kCount);
+  // Positions are random: their sum tells whether they are the same.
+  double sum_m = 0.0, plain_sum_m = 0.0;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    sum_m += samples->position_m[3 * i];
+    plain_sum_m += -12 + 24.0 * (cloud.words[3 * i] & 0xffffu) / 65535;
+  }
+  EXPECT_NEAR(sum_m, plain_sum_m, 1e-5 * kCount);
+}
+
 TEST(ParticlesByCell, PositionsTakeHardlyMoreThanTheBound) {
   const Cloud cloud = water(40, 0.2);
   Cloud still = cloud;

@@ -60,7 +60,7 @@ core::FrameView frame() {
 struct EncoderThreadTest : testing::Test {
   HeldOutlet outlet;
   const std::shared_ptr<core::DemandTable> demand = std::make_shared<core::DemandTable>();
-  EncoderThread encoder{outlet};
+  EncoderThread encoder{outlet, 1};
 
   void SetUp() override {
     const codec::Stream surface = codec::streamOf(v1::LAYER_SURFACE, v1::PACKING_PLAIN);
@@ -108,6 +108,23 @@ TEST_F(EncoderThreadTest, AForgottenRoomLeavesTheQueue) {
   ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(2));
   EXPECT_THAT(outlet.published(), ElementsAre("busy", "open"));
   EXPECT_EQ(encoder.frameCounts("closed").encoded_count, 0u);
+}
+
+struct TwoEncoderThreads : EncoderThreadTest {
+  EncoderThread two{outlet, 2};
+};
+
+TEST_F(TwoEncoderThreads, ARoomThatTakesLongDoesNotHoldUpTheOthers) {
+  two.submit("long", demand, frame());
+  ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(1));
+  two.submit("long", demand, frame());  // waits: a room is encoded by one thread at a time
+  two.submit("other", demand, frame());
+  ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(2));
+  EXPECT_THAT(outlet.published(), ElementsAre("long", "other"));
+  EXPECT_EQ(two.frameCounts("long").encoded_count, 1u);
+  outlet.permit(3);
+  ASSERT_NO_FATAL_FAILURE(outlet.waitForHeld(3));
+  EXPECT_THAT(outlet.published(), ElementsAre("long", "other", "long"));
 }
 
 }  // namespace

@@ -88,9 +88,9 @@ TEST(Fidelity, FillsABoxWithMoreLayersAndMakesDropsSmaller) {
 
 TEST(Fidelity, StaysInsideTheRanges) {
   const v1::Scene fine =
-      parsed("tick_rate_hz: 200 wave { resolution_count: 1024 } particles { count: 1000000 }", v1::FIDELITY_REFERENCE);
-  EXPECT_EQ(fine.wave().resolution_count(), 1024u);
-  EXPECT_EQ(fine.particles().count(), 1048576u);
+      parsed("tick_rate_hz: 200 wave { resolution_count: 2000 } particles { count: 4000000 }", v1::FIDELITY_REFERENCE);
+  EXPECT_EQ(fine.wave().resolution_count(), 2048u);
+  EXPECT_EQ(fine.particles().count(), 4194240u);
   EXPECT_EQ(fine.tick_rate_hz(), 240.0);
   const v1::Scene coarse = parsed("wave { resolution_count: 32 } particles { count: 1 }", v1::FIDELITY_DRAFT);
   EXPECT_EQ(coarse.wave().resolution_count(), 32u);

@@ -28,7 +28,7 @@ TEST(Absorption, DefaultFollowsTheStencil) {
   const auto sponge = derive(scene);
   ASSERT_TRUE(matched && sponge);
   const std::uint64_t cells = std::uint64_t{scene.wave->resolution_count} * scene.wave->resolution_count;
-  EXPECT_EQ(matched->device_bytes, sponge->device_bytes + 4 * cells);
+  EXPECT_EQ(matched->device_bytes, sponge->device_bytes + 3 * 4 * cells);
   scene.wave->dispersion = core::Dispersion::kNone;
   scene.wave->absorption.reset();
   EXPECT_TRUE(hasMatchedLayer(scene)) << "without dispersion, too";

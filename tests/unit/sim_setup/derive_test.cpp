@@ -213,20 +213,24 @@ TEST(Derive, TaitWaterTakesSmallerSteps) {
               1e-12);
 }
 
-TEST(Derive, CountsUpToAMillionFitTheirDispatches) {
-  core::Scene scene = boxScene(1'048'576);
-  scene.particles->layers_count = 16;
-  const auto d = derive(scene);
-  ASSERT_TRUE(d) << d.error().message;
-  EXPECT_LE(d->particles->count / 64 + 1, 65535u);
-  EXPECT_GE(d->device_bytes, std::uint64_t{d->particles->count} * 7 * 16);
+TEST(Derive, TheLargestNumberOfParticlesFitsItsDispatch) {
+  for (const double layers_count : {1.0, 3.0, 16.0, 64.0}) {
+    core::Scene scene = boxScene(kMaxParticleCount);
+    scene.particles->layers_count = layers_count;
+    scene.particles->headroom_m = 0.5;
+    const auto d = derive(scene);
+    ASSERT_TRUE(d) << d.error().message;
+    EXPECT_LE(d->particles->count, kMaxParticleCount) << "a lattice of fewer, not of more";
+    EXPECT_GT(d->particles->count, 0.98 * kMaxParticleCount);
+    EXPECT_GE(d->device_bytes, std::uint64_t{d->particles->count} * 7 * 16);
+  }
 }
 
-TEST(Derive, MillionParticlesFitTheDefaultHeadroom) {
+TEST(Derive, FourMillionParticlesFitTheDefaultHeadroom) {
   core::Scene scene;
   scene.wave.emplace();
   scene.particles.emplace();
-  scene.particles->count = 1'048'576;
+  scene.particles->count = kMaxParticleCount;
   scene.coupling.emplace();
   const auto d = derive(scene);
   ASSERT_TRUE(d) << d.error().message;

@@ -17,8 +17,8 @@ struct CellCounts {
   bool operator==(const CellCounts&) const = default;
 };
 
-/// Largest number of cells of a water.
-inline constexpr std::size_t kWaveMaxCellCount = std::size_t{1024} * 1024;
+/// Largest number of cells of a water. Not every device has buffers for so many.
+inline constexpr std::size_t kWaveMaxCellCount = std::size_t{2048} * 2048;
 /// Largest number of cells along an axis.
 inline constexpr std::uint32_t kWaveMaxSideCount = 4096;
 

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -136,6 +137,9 @@ class Context {
   /// Returns the number of OpenGL errors seen by the debug callback, and of refused dispatches. 0 in a healthy program.
   [[nodiscard]] std::uint64_t debugErrorCount() const { return debug_error_count_.load(); }
   [[nodiscard]] const Ledger& ledger() const { return ledger_; }
+  /// Returns the memory that buffers can still take: that which the machine, or the control group of the process, has
+  /// available where the device is software, otherwise what the driver says. None if unknown.
+  [[nodiscard]] std::optional<std::uint64_t> freeMemory_bytes() const;
 
   // Test modes -----------------------------------------------------------------------------------------------------
 

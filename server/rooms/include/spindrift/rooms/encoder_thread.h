@@ -11,6 +11,7 @@
 #include <mutex>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include <spindrift/codec/frame_encoder.h>
 #include <spindrift/codec/stream.h>
@@ -20,7 +21,7 @@
 
 namespace spindrift::rooms {
 
-/// Receives encoded frames, on the encoder thread; must not block.
+/// Receives encoded frames, on a thread of the encoder, those of a room on one at a time; must not block.
 class FrameOutlet {
  public:
   virtual ~FrameOutlet() = default;
@@ -30,11 +31,15 @@ class FrameOutlet {
                        const core::FrameLevels& levels) = 0;
 };
 
-/// Encodes frames in the order of their rooms' arrival. At most one frame waits per room: a newer one replaces it in
-/// its place of the queue, and the loss is counted. So no room waits for more than one frame of each other room.
+/// Encodes frames in the order of their rooms' arrival, those of a room one after the other. At most one frame waits
+/// per room: a newer one replaces it in its place of the queue, and the loss is counted. So no room waits for more than
+/// one frame of each other room. A machine with many processors has several threads, so that a room whose frames take
+/// long (25 ms for a million particles) does not hold up the others.
 class EncoderThread {
  public:
+  /// A thread for every four processors, at most four.
   explicit EncoderThread(FrameOutlet& outlet);
+  EncoderThread(FrameOutlet& outlet, unsigned thread_count);
   ~EncoderThread();
   EncoderThread(const EncoderThread&) = delete;
   EncoderThread& operator=(const EncoderThread&) = delete;
@@ -43,7 +48,7 @@ class EncoderThread {
   void submit(const std::string& room, std::shared_ptr<const core::DemandTable> demand, core::FrameView frame);
   /// Call it when the room was closed.
   void forget(const std::string& room);
-  /// Ends the thread. Waiting frames and those submitted later are dropped. Idempotent.
+  /// Ends the threads. Waiting frames and those submitted later are dropped. Idempotent.
   void stop();
 
   struct FrameCounts {
@@ -71,11 +76,14 @@ class EncoderThread {
     core::FrameView frame;
   };
   struct KnownRoom {
-    std::shared_ptr<codec::FrameEncoder> encoder;  ///< used by the thread only
+    std::shared_ptr<codec::FrameEncoder> encoder;  ///< used by the thread that has made the room busy
+    bool is_busy = false;
     FrameCounts counts;
   };
 
   void loop();
+  /// Returns the first frame whose room is not being encoded.
+  std::deque<Waiting>::iterator next();
   /// Encodes the watched streams and levels of a frame and publishes them.
   Costs encode(const Waiting& job, codec::FrameEncoder& encoder);
 
@@ -86,7 +94,7 @@ class EncoderThread {
   std::map<std::string, KnownRoom> rooms_;
   bool stopping_ = false;
   Costs costs_{};
-  std::thread thread_;
+  std::vector<std::thread> threads_;
 };
 
 }  // namespace spindrift::rooms

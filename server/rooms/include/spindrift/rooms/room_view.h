@@ -51,6 +51,7 @@ struct RoomVitals {
   bool asleep = false;
   bool lost = false;  ///< the device failed; new water is being built
   std::uint32_t waiting_command_count = 0;
+  std::uint64_t device_bytes = 0;  ///< buffers of its water
   std::uint64_t dropped_frame_count = 0;
   TickTimes tick_times;  ///< since the room opened
   core::DiagnosticsView diagnostics;

@@ -1,6 +1,8 @@
 // Starting positions of the particles, and the grid around them. Part of derive().
 #pragma once
 
+#include <shared/groups.h>
+
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/sim_setup/derive.h>
@@ -10,6 +12,8 @@ namespace spindrift::sim {
 /// Largest number of grid cells, 8 bytes each. A pool of a million particles at the default headroom has about 7
 /// million.
 inline constexpr std::uint32_t kMaxCellCount = 1u << 26;
+/// Largest number of particles, 4,194,240: those of one dispatch.
+inline constexpr std::uint32_t kMaxParticleCount = MAX_GROUPS * PARTICLE_GROUP;
 
 /// Lays out the particles. `volume_m3`: volume of the water, if given; otherwise it follows from the scene's layers.
 /// Errors as derive().

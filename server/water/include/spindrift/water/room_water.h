@@ -54,6 +54,8 @@ class RoomWater {
   [[nodiscard]] std::optional<TickWork> workWith(const v1::SetParameter& change) const;
   /// Duration of a tick measured when the water was built [ms].
   [[nodiscard]] double warmTick_ms() const { return water_->warmTick_ms(); }
+  /// Returns the size of its buffers.
+  [[nodiscard]] std::uint64_t deviceBytes() const { return water_->context().ledger().buffer_bytes; }
   /// Water::levelCosts().
   [[nodiscard]] const LevelCosts& levelCosts() const { return water_->levelCosts(); }
   /// Replaces the water by another one, which is bound from now on; returns the old one for destruction. The room's
