@@ -22,12 +22,12 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::chrono::seconds kLimit{180};
-/// What one comparison may take on a slow machine: none starts with less time left.
-constexpr std::chrono::seconds kReserve{15};
+/// No block starts after it. Making a scene and a block take less than the rest of three minutes.
+constexpr std::chrono::seconds kLimit{165};
 constexpr int kWarmUpTicks = 3;
 constexpr int kPairs = 8;
 constexpr double kBlock_s = 0.03;
+constexpr int kBlockMaxTicks = 256;
 /// A change is kept if it is faster by more than this, and by so many errors of the mean.
 constexpr double kLeastGain = 0.01;
 constexpr double kErrors = 3.0;
@@ -82,22 +82,25 @@ class Side {
   std::unique_ptr<sim::WaterSim> water_;
 };
 
-/// Logarithms of the time of a candidate over that of the best profile, one per pair of blocks.
-core::Result<std::vector<double>> compare(gpu::Context& best, gpu::Context& candidate, const core::Scene& scene) {
+/// Logarithms of the time of a candidate over that of the best profile, one per pair of blocks; none if it is too late.
+core::Result<std::vector<double>> compare(gpu::Context& best, gpu::Context& candidate, const core::Scene& scene,
+                                          Clock::time_point deadline) {
   Side a(best, scene), b(candidate, scene);
   if (!a.isMade() || !b.isMade()) return core::Error{core::ErrorCode::kInternal, "the scene cannot be made"};
   for (Side* side : {&b, &a}) side->run_s(kWarmUpTicks);
-  const double tick_s = std::min(a.run_s(1), b.run_s(1));
-  const int ticks = std::clamp(static_cast<int>(std::ceil(kBlock_s / tick_s)), 1, 256);
+  int ticks = 1;
+  while (std::min(a.run_s(ticks), b.run_s(ticks)) < kBlock_s && ticks < kBlockMaxTicks) ticks *= 2;
   std::vector<double> out;
   for (int pair = 0; pair < kPairs; ++pair) {
+    if (Clock::now() > deadline) return std::vector<double>();
     const bool a_first = pair % 2 == 0;
     const double first_s = (a_first ? a : b).run_s(ticks);
     const double second_s = (a_first ? b : a).run_s(ticks);
     out.push_back(a_first ? std::log(second_s / first_s) : std::log(first_s / second_s));
   }
   if (a.hash() != b.hash())
-    return core::Error{core::ErrorCode::kInternal, "the state depends on it: please report this line"};
+    return core::Error{core::ErrorCode::kInternal,
+                       "the states differ: they depend on it, or equal runs differ on this device; report this line"};
   return out;
 }
 
@@ -117,7 +120,7 @@ Estimate estimateOf(const std::vector<double>& values) {
 }  // namespace
 
 core::Result<boost::json::object> measureTuning(const gpu::DeviceChoice& device, std::FILE* out) {
-  const auto deadline = Clock::now() + kLimit - kReserve;
+  const auto deadline = Clock::now() + kLimit;
   auto scenes = tunedScenes();
   if (!scenes) return scenes.error();
   const auto contextWith = [&](const std::optional<gpu::TuningProfile>& profile) {
@@ -148,12 +151,12 @@ core::Result<boost::json::object> measureTuning(const gpu::DeviceChoice& device,
       std::string line = fmt::format("{:<20} {:>6} {:>6} ", field.name, now, value);
       for (const TunedScene& each : *scenes) {
         if (std::ranges::none_of(each.fields, [&](auto start) { return field.name.starts_with(start); })) continue;
-        is_late = is_late || Clock::now() > deadline;
-        if (is_late) break;
-        auto compared = compare(**best, **candidate, each.scene);
+        auto compared = compare(**best, **candidate, each.scene, deadline);
         if (!compared)
           return core::Error{compared.error().code,
                              fmt::format("{} {} on {}: {}", field.name, value, each.name, compared.error().message)};
+        is_late = compared->empty();
+        if (is_late) break;
         const Estimate own = estimateOf(*compared);
         line += fmt::format(" {} {:.3f} +- {:.3f} ", each.name, std::exp(own.mean), own.error);
         ratios.insert(ratios.end(), compared->begin(), compared->end());

@@ -1,9 +1,8 @@
 // States do not depend on the tuning profile: each value of each field, against the profile of a CPU.
-#include <cctype>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <spindrift/sim/water_sim.h>
@@ -14,13 +13,15 @@
 namespace spindrift::sim {
 namespace {
 
+constexpr std::size_t kMostValues = 5;
+
 /// Particles of a fixed number on a wave; breakers that become particles on waves that disperse. Sides and numbers fill
 /// no whole group.
 std::vector<core::Scene> tunedScenes() {
   core::Scene carried = smallScene(700);
   carried.wave->resolution_count = 37;
   core::Scene breaking = smallScene(900);
-  breaking.wave->resolution_count = 70;
+  breaking.wave->resolution_count = 80;
   breaking.wave->side_m = 12.0;
   breaking.wave->depth_m = 1.0;
   breaking.wave->dispersion = core::Dispersion::kAiry;
@@ -39,44 +40,33 @@ std::vector<std::uint64_t> hashesWith(const gpu::TuningProfile& profile) {
   std::vector<std::uint64_t> out;
   for (const core::Scene& scene : tunedScenes()) {
     auto sim = WaterSim::create(**ctx, scene);
-    EXPECT_TRUE(sim) << sim.error().message;
+    if (!sim) throw std::runtime_error(sim.error().message);
     EXPECT_TRUE((*sim)->start(core::Splash{0.0, 0.0, 1.5, 0.9, 0.15}));
     for (int tick = 0; tick < 40; ++tick) (*sim)->step();
-    if (scene.coupling->mode == core::CouplingMode::kTwoWay)
+    if (scene.coupling->mode == core::CouplingMode::kTwoWay) {
       EXPECT_GT((*sim)->health().emitted_count, 0u) << "no particle tells groups apart";
+    }
     out.push_back((*sim)->stateHash());
   }
   EXPECT_EQ((*ctx)->debugErrorCount(), 0u);
   return out;
 }
 
-struct TunedValue {
-  const gpu::TuningField* field;
-  std::uint32_t value;
-};
-
-std::vector<TunedValue> allValues() {
-  std::vector<TunedValue> out;
-  for (const gpu::TuningField& field : gpu::tuningFields())
-    for (const std::uint32_t value : field.allowed) out.push_back({&field, value});
-  return out;
-}
-
-class Tuning : public ::testing::TestWithParam<TunedValue> {};
+/// The argument counts the values of every field: one profile compiles all programs anew, which takes seconds.
+class Tuning : public ::testing::TestWithParam<std::size_t> {};
 
 TEST_P(Tuning, LeavesStatesAsTheyAre) {
   static const std::vector<std::uint64_t> expected = hashesWith({});
   if (expected.empty()) GTEST_SKIP() << "no device";
   gpu::TuningProfile profile;
-  profile.*GetParam().field->value = GetParam().value;
+  for (const gpu::TuningField& field : gpu::tuningFields()) {
+    ASSERT_LE(field.allowed.size(), kMostValues) << field.name;
+    profile.*field.value = field.allowed[GetParam() % field.allowed.size()];
+  }
   EXPECT_EQ(hashesWith(profile), expected);
 }
 
-INSTANTIATE_TEST_SUITE_P(EachValue, Tuning, ::testing::ValuesIn(allValues()), [](const auto& test) {
-  std::string name = fmt::format("{}_{}", test.param.field->name, test.param.value);
-  std::erase(name, '_');
-  return name;
-});
+INSTANTIATE_TEST_SUITE_P(EachValue, Tuning, ::testing::Range(std::size_t{0}, kMostValues));
 
 }  // namespace
 }  // namespace spindrift::sim
