@@ -75,6 +75,8 @@ class Side {
     ctx_.finish();
     return std::chrono::duration<double>(Clock::now() - begin).count();
   }
+  /// Set if the device hung: further ticks took no time.
+  [[nodiscard]] const std::optional<core::Error>& error() const { return water_->deviceError(); }
   std::uint64_t hash() { return ctx_.makeCurrent() ? water_->stateHash() : 0; }
 
  private:
@@ -98,6 +100,8 @@ core::Result<std::vector<double>> compare(gpu::Context& best, gpu::Context& cand
     const double second_s = (a_first ? b : a).run_s(ticks);
     out.push_back(a_first ? std::log(second_s / first_s) : std::log(first_s / second_s));
   }
+  for (const Side* side : {&a, &b})
+    if (side->error()) return *side->error();
   if (a.hash() != b.hash())
     return core::Error{core::ErrorCode::kInternal,
                        "the states differ: they depend on it, or equal runs differ on this device; report this line"};
