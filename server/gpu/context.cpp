@@ -61,18 +61,26 @@ core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choic
 core::Result<std::unique_ptr<Context>> Context::create(const DeviceChoice& choice, const Checks& checks) {
   auto chosen = selectDevice(egl::candidates(), choice, egl::openUsable, egl::close, Machine::real());
   if (!chosen) return chosen.error();
-  return std::unique_ptr<Context>(new Context(*std::move(chosen), checks, choice.shader_folder));
+  const auto tuning = choice.tuning ? core::Result<TuningProfile>(*choice.tuning) : chosenTuning(chosen->info);
+  if (!tuning) {
+    egl::close(*chosen->handles);
+    return tuning.error();
+  }
+  return std::unique_ptr<Context>(new Context(*std::move(chosen), checks, *tuning, choice.shader_folder));
 }
 
-Context::Context(egl::Attempt chosen, const Checks& checks, const std::string& shader_folder)
+Context::Context(egl::Attempt chosen, const Checks& checks, const TuningProfile& tuning,
+                 const std::string& shader_folder)
     : egl_(std::make_unique<egl::Handles>(*chosen.handles)),
       device_(std::move(chosen.info)),
       checks_(checks),
+      tuning_(tuning),
       accesses_(std::make_unique<AccessTracker>(checks.barriers)),
       staging_(std::make_unique<Staging>(*this)),
       // Shuffled programs and those under development are used once.
-      programs_(std::make_unique<ProgramCache>(
-          checks.shuffle_seed == 0 && shader_folder.empty() ? ProgramStore::userFolder() : std::filesystem::path{})),
+      programs_(std::make_unique<ProgramCache>(checks.shuffle_seed == 0 && shader_folder.empty()
+                                                   ? ProgramStore::userFolder("programs")
+                                                   : std::filesystem::path{})),
       dispatch_times_(checks.times ? std::make_unique<DispatchTimes>() : nullptr),
       shader_folder_(shader_folder.empty() ? nullptr : std::make_unique<ShaderFolder>(shader_folder)) {
   fence_delay_.set(checks.lag_fences_count);

@@ -68,11 +68,11 @@ std::string read(std::ifstream& file, const Digest& key, ProgramStore::Binary& o
 ProgramStore::ProgramStore(fs::path folder, std::uintmax_t max_bytes)
     : folder_(std::move(folder)), max_bytes_(max_bytes) {}
 
-fs::path ProgramStore::userFolder() {
+fs::path ProgramStore::userFolder(std::string_view name) {
   // A relative path counts as not set (XDG Base Directory Specification).
   for (const auto& [variable, below] : {std::pair{"XDG_CACHE_HOME", ""}, std::pair{"HOME", ".cache"}}) {
     const char* const value = std::getenv(variable);
-    if (value && fs::path(value).is_absolute()) return fs::path(value) / below / "spindrift" / "programs";
+    if (value && fs::path(value).is_absolute()) return fs::path(value) / below / "spindrift" / name;
   }
   static std::atomic<bool> is_said = false;
   if (!is_said.exchange(true))

@@ -29,9 +29,9 @@ class ProgramStore {
   /// more, the oldest are removed.
   explicit ProgramStore(std::filesystem::path folder, std::uintmax_t max_bytes = kMaxBytes);
 
-  /// Returns the folder spindrift/programs in $XDG_CACHE_HOME, or in ~/.cache; empty where neither is known, which the
-  /// log says once.
-  static std::filesystem::path userFolder();
+  /// Returns the folder spindrift/NAME in $XDG_CACHE_HOME, or in ~/.cache; empty where neither is known, which the log
+  /// says once.
+  static std::filesystem::path userFolder(std::string_view name);
 
   /// Returns what was saved under this key: all that the program depends on (driver, text, defines). Nothing if there
   /// is no such file, or it is broken or foreign, which is logged.

@@ -41,7 +41,7 @@ class DispersedSlope {
   void ascend(std::size_t level);
   void run(Pass& pass, std::size_t level);
 
-  gpu::Tuning tuning_;
+  gpu::TuningProfile tuning_;
   bool keeps_last_step_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom
   /// Tables of the grids that one work group solves, one grid behind the other.

@@ -21,11 +21,13 @@ NeighborGrid::NeighborGrid(Creation& create, const ParticleLayout& layout)
 
 void NeighborGrid::resize(Creation& create, const ParticleLayout& layout) {
   using enum gpu::TexelFormat;
-  Cells fresh{.count = create.scratch("cell count", layout.cell_count + 1, kR32UI),
+  const std::uint32_t block_count = layout.cell_count / (SCAN_GROUP * create.context().tuning().scan_items) + 1;
+  Cells fresh{.block_count = block_count,
+              .count = create.scratch("cell count", layout.cell_count + 1, kR32UI),
               .start = create.scratch("cell start", layout.cell_count + 1, kR32UI),
               .arrival = create.scratch("cell arrival", layout.count, kRG32UI),
               .member = create.scratch("cell member", layout.count, kR32UI),
-              .block_total = create.scratch("block total", layout.cell_count / SCAN_BLOCK + 1, kR32UI)};
+              .block_total = create.scratch("block total", block_count, kR32UI)};
   if (!create.error()) cells_ = std::move(fresh);
 }
 
@@ -41,7 +43,7 @@ void NeighborGrid::build(const ParticleBuffers& particles, const Population& pop
   cells_.count.bindTexel(CELL_COUNT);
   cells_.start.bindStorage(CELL_START);
   cells_.block_total.bindStorage(BLOCK_TOTAL);
-  population.forScanBlocks(scan_blocks_);
+  population.forScanBlocks(scan_blocks_, cells_.block_count);
   population.forOneGroup(scan_totals_);
   cells_.block_total.bindTexel(BLOCK_TOTAL);
   population.forCells(scan_add_);

@@ -31,6 +31,7 @@ class NeighborGrid {
 
  private:
   struct Cells {
+    std::uint32_t block_count = 0;  ///< blocks of the prefix sum
     gpu::TexelBuffer count, start, arrival, member, block_total;
   };
 

@@ -85,8 +85,8 @@ void Population::forCells(Pass& pass) const {
   run(pass, POOL_CELL_ARGS, std::min<std::uint32_t>(cell_count_ / pass.groupSize()[0] + 1, MAX_GROUPS));
 }
 
-void Population::forScanBlocks(Pass& pass) const {
-  run(pass, POOL_BLOCK_ARGS, cell_count_ / SCAN_BLOCK + 1);
+void Population::forScanBlocks(Pass& pass, std::uint32_t block_count) const {
+  run(pass, POOL_BLOCK_ARGS, std::min<std::uint32_t>(block_count, MAX_GROUPS));
 }
 
 void Population::forOneGroup(Pass& pass) const {

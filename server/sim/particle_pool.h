@@ -53,7 +53,7 @@ class Population {
   void forParticles(Pass& pass) const;
   /// Covers cell_count + 1 invocations, or fewer that loop over them: at most MAX_GROUPS groups.
   void forCells(Pass& pass) const;
-  void forScanBlocks(Pass& pass) const;  ///< covers cell_count + 1
+  void forScanBlocks(Pass& pass, std::uint32_t block_count) const;
   void forOneGroup(Pass& pass) const;
   /// Makes the counts visible to passes, as the functions above do. Does nothing without a pool.
   void bind() const;

@@ -254,7 +254,7 @@ Spray resampleSpray(const CarriedState& before, const core::Scene& scene, const 
   out.pool[POOL_COUNT] = out.pool[POOL_LIVE] = out.pool[POOL_EMITTED] = static_cast<std::uint32_t>(count);
   if (count > 0) {
     // A frame may be packed before the next tick plans its dispatches.
-    out.pool[POOL_PARTICLE_ARGS] = static_cast<std::uint32_t>((count + PARTICLE_GROUP - 1) / PARTICLE_GROUP);
+    out.pool[POOL_PARTICLE_ARGS] = static_cast<std::uint32_t>((count + POOL_GROUP - 1) / POOL_GROUP);
     out.pool[POOL_PARTICLE_ARGS + 1] = out.pool[POOL_PARTICLE_ARGS + 2] = 1;
   }
   return out;

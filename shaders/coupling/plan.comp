@@ -33,10 +33,10 @@ void main() {
   pool[POOL_COUNT] = count;
   pool[POOL_LIVE] = 0u;  // counted by the sort
   pool[POOL_EMITTED] += wanted;
-  arguments(POOL_EMIT_ARGS, groupsOf(wanted, PARTICLE_GROUP), any_wanted ? 1u : 0u);
+  arguments(POOL_EMIT_ARGS, groupsOf(wanted, POOL_GROUP), any_wanted ? 1u : 0u);
   const bool any_particle = count > 0u;
-  arguments(POOL_PARTICLE_ARGS, groupsOf(count, PARTICLE_GROUP), any_particle ? 1u : 0u);
+  arguments(POOL_PARTICLE_ARGS, groupsOf(count, POOL_GROUP), any_particle ? 1u : 0u);
   arguments(POOL_CELL_ARGS, any_particle ? min(groupsOf(sim.cell_count + 1u, SCAN_GROUP), MAX_GROUPS) : 0u, any_particle ? 1u : 0u);
-  arguments(POOL_BLOCK_ARGS, any_particle ? groupsOf(sim.cell_count + 1u, SCAN_BLOCK) : 0u, any_particle ? 1u : 0u);
+  arguments(POOL_BLOCK_ARGS, any_particle ? groupsOf(sim.cell_count + 1u, POOL_SCAN_BLOCK) : 0u, any_particle ? 1u : 0u);
   arguments(POOL_ONE_ARGS, any_particle ? 1u : 0u, any_particle ? 1u : 0u);
 }

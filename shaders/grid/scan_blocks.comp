@@ -1,5 +1,4 @@
-// Exclusive prefix sum, first of three passes: each group scans one block of SCAN_BLOCK cells and writes the block's
-// total.
+// Exclusive prefix sum, first of three passes: each group scans blocks of SCAN_BLOCK cells and writes their totals.
 // Reads CELL_COUNT [cell_count + 1]. Writes CELL_START (sum of the cells before it in its block), BLOCK_TOTAL.
 // Algorithm: as Blelloch's, with a serial run of SCAN_ITEMS per invocation, then Hillis & Steele over the group in
 // shared memory.
@@ -14,9 +13,9 @@ layout(std430, binding = BLOCK_TOTAL) restrict writeonly buffer BlockTotal { uin
 
 shared uint sums[SCAN_GROUP];
 
-void main() {
+void scan(uint block) {
   const uint lane = gl_LocalInvocationID.x;
-  const uint first = gl_WorkGroupID.x * SCAN_BLOCK + lane * SCAN_ITEMS;
+  const uint first = block * SCAN_BLOCK + lane * SCAN_ITEMS;
   uint before[SCAN_ITEMS];
   uint total = 0u;
   for (uint k = 0u; k < SCAN_ITEMS; ++k) {
@@ -35,5 +34,10 @@ void main() {
   for (uint k = 0u; k < SCAN_ITEMS; ++k) {
     if (first + k <= sim.cell_count) cell_start[first + k] = base + before[k];
   }
-  if (lane == SCAN_GROUP - 1u) block_total[gl_WorkGroupID.x] = sums[lane];
+  if (lane == SCAN_GROUP - 1u) block_total[block] = sums[lane];
+}
+
+void main() {
+  const uint block_count = sim.cell_count / SCAN_BLOCK + 1u;
+  for (uint block = gl_WorkGroupID.x; block < block_count; block += gl_NumWorkGroups.x) scan(block);
 }

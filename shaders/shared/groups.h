@@ -1,14 +1,20 @@
-// Work group sizes. The host reads them from the linked programs (GL_COMPUTE_WORK_GROUP_SIZE), never from here; only
-// the scan's block length is used on both sides.
+// Work group sizes. The host reads them from the linked programs (GL_COMPUTE_WORK_GROUP_SIZE), never from here. Those with an #ifndef are
+// the values of a CPU, and fields of gpu::TuningProfile.
 #ifndef SPINDRIFT_SHARED_GROUPS_H
 #define SPINDRIFT_SHARED_GROUPS_H
 
 // One invocation per particle. 64 is two warps on NVIDIA and eight SIMD vectors of llvmpipe; 8 and 256 were slower
 // there.
+#ifndef PARTICLE_GROUP
 #define PARTICLE_GROUP 64
+#endif
+// The smallest that a profile may have. The pool's group counts are state and so count these; larger groups leave some idle.
+#define POOL_GROUP 64
 // One invocation per wave cell.
+#ifndef WAVE_GROUP_X
 #define WAVE_GROUP_X 64
 #define WAVE_GROUP_Y 1
+#endif
 // One invocation per cell of a small square of the wave; z is the boat in it.
 #define PATCH_GROUP 8
 // One invocation per cell of a tile that splashes reach.
@@ -16,10 +22,14 @@
 // The scan: SCAN_GROUP invocations, SCAN_ITEMS cells each. 16 instead of 4 halved the grid's time on llvmpipe, where
 // barriers are expensive.
 #define SCAN_GROUP 256
+#ifndef SCAN_ITEMS
 #define SCAN_ITEMS 16
+#endif
 #define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
+// The largest that a profile may have, for the pool's group counts.
+#define POOL_SCAN_BLOCK (SCAN_GROUP * 16)
 // An invocation of the dispersion's passes owns so many columns, and rows of them; both even. A CPU wants long strips, because
-// neighbours of a strip are computed twice; a GPU wants many invocations with few registers (server/gpu, tuning.h).
+// neighbours of a strip are computed twice; a GPU wants many invocations with few registers (gpu::TuningProfile).
 #ifndef DISPERSION_COLUMNS
 #define DISPERSION_COLUMNS 4
 #define DISPERSION_STRIP 32

@@ -18,6 +18,7 @@
 #include <spindrift/bench/soak.h>
 #include <spindrift/bench/steps.h>
 #include <spindrift/bench/thesis.h>
+#include <spindrift/bench/tune.h>
 #include <spindrift/codec/stream.h>
 #include <spindrift/core/files.h>
 #include <spindrift/gpu/context.h>
@@ -34,7 +35,7 @@ namespace {
 constexpr double kFloaterSizesApart = 2.2;
 
 struct BenchOptions {
-  std::string suite = "all";  ///< step, codec, baseline, fanout, load, query, rooms, soak; all: step and codec
+  std::string suite = "all";  ///< step, codec, baseline, fanout, load, query, rooms, soak, tune; all: step and codec
   std::string scene;          ///< empty: pool for baseline, otherwise harbor
   std::string fidelity;       ///< as in ServeOptions
   std::string device = "auto";
@@ -47,14 +48,21 @@ struct BenchOptions {
   std::uint32_t floater_count = 0;  ///< in place of those of the scene; 0: its own
 };
 
-/// Runs apart from the other suites, because the server that it measures has its own GL context.
+/// Where tables go: not where the JSON goes.
+std::FILE* tableOf(const BenchOptions& options) {
+  return options.json_file == "-" ? stderr : stdout;
+}
+
+template <typename Json>
+int written(const BenchOptions& options, const core::Result<Json>& result) {
+  if (!result) return fail(result.error());
+  const auto done = writeJson(options.json_file, *result);
+  return done ? 0 : fail(done.error());
+}
+
 int benchFanout(const BenchOptions& options, const v1::Scene& scene) {
   const auto tls = options.tls.certificate_file.empty() ? std::nullopt : std::optional(options.tls);
-  auto result =
-      bench::measureFanout(scene, options.device, options.seconds, tls, options.json_file == "-" ? stderr : stdout);
-  if (!result) return fail(result.error());
-  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
-  return 0;
+  return written(options, bench::measureFanout(scene, options.device, options.seconds, tls, tableOf(options)));
 }
 
 /// Of servers that run already.
@@ -64,10 +72,7 @@ int benchLoad(const BenchOptions& options) {
   for (const core::Level level : core::kLevels) {
     if (codec::nameOf(level) == options.level) load.level = level;
   }
-  auto result = bench::measureLoad(load, options.json_file == "-" ? stderr : stdout);
-  if (!result) return fail(result.error());
-  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
-  return 0;
+  return written(options, bench::measureLoad(load, tableOf(options)));
 }
 
 int benchSoak(const BenchOptions& options) {
@@ -75,26 +80,7 @@ int benchSoak(const BenchOptions& options) {
   soak.urls = options.load.urls;
   soak.client_count = options.load.client_count;
   soak.seconds = options.seconds;
-  auto result = bench::measureSoak(soak, options.json_file == "-" ? stderr : stdout);
-  if (!result) return fail(result.error());
-  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
-  return 0;
-}
-
-/// Apart from the other suites, for the same reason.
-int benchQueries(const BenchOptions& options, const gpu::DeviceChoice& device, const v1::Scene& scene) {
-  auto result = bench::measureQueries(scene, device, options.seconds, options.json_file == "-" ? stderr : stdout);
-  if (!result) return fail(result.error());
-  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
-  return 0;
-}
-
-int benchRooms(const BenchOptions& options, const gpu::DeviceChoice& device) {
-  gpu::chooseRasterThreads(std::thread::hardware_concurrency());
-  auto result = bench::measureRooms(device, options.seconds, options.json_file == "-" ? stderr : stdout);
-  if (!result) return fail(result.error());
-  if (auto written = writeJson(options.json_file, *result); !written) return fail(written.error());
-  return 0;
+  return written(options, bench::measureSoak(soak, tableOf(options)));
 }
 
 int bench(const BenchOptions& options) {
@@ -102,21 +88,26 @@ int bench(const BenchOptions& options) {
   if (options.suite == "soak") return benchSoak(options);
   auto device = gpu::parseDeviceChoice(options.device);
   if (!device) return fail(device.error());
-  if (options.suite == "rooms") return benchRooms(options, *device);
+  if (options.suite == "rooms" || options.suite == "tune") {
+    gpu::chooseRasterThreads(std::thread::hardware_concurrency());
+    if (options.suite == "tune") return written(options, bench::measureTuning(*device, tableOf(options)));
+    return written(options, bench::measureRooms(*device, options.seconds, tableOf(options)));
+  }
   const std::string usual = options.suite == "baseline" ? "pool" : "harbor";
   auto file = core::findScene(options.scene.empty() ? usual : options.scene);
   if (!file) return fail(file.error());
   auto loaded = scene::loadSceneFile(*file, scene::parseFidelity(options.fidelity));
   if (!loaded) return fail(loaded.error());
   if (options.suite == "fanout") return benchFanout(options, *loaded);
-  if (options.suite == "query") return benchQueries(options, *device, *loaded);
+  if (options.suite == "query")
+    return written(options, bench::measureQueries(*loaded, *device, options.seconds, tableOf(options)));
   auto ctx = gpu::Context::create(*device);
   if (!ctx) return fail(ctx.error());
   core::Scene scene = scene::toCore(*loaded);
   if (options.floater_count > 0)
     scene = bench::withFloaters(std::move(scene), options.floater_count, kFloaterSizesApart);
 
-  std::FILE* out = options.json_file == "-" ? stderr : stdout;
+  std::FILE* const out = tableOf(options);
   char host[256] = "";
   gethostname(host, sizeof host - 1);
   fmt::print(out, "machine {}, {} hardware threads; device {}, {}; scene {}\n", host,
@@ -129,8 +120,7 @@ int bench(const BenchOptions& options) {
     auto result = bench::measureThesis(**ctx, scene, options.seconds, out);
     if (!result) return fail(result.error());
     json["baseline"] = *std::move(result);
-    if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
-    return 0;
+    return written(options, core::Result<boost::json::object>(std::move(json)));
   }
   if (options.suite != "codec") {
     auto result = bench::measureSteps(**ctx, scene, options.seconds, out);
@@ -142,14 +132,13 @@ int bench(const BenchOptions& options) {
     if (!result) return fail(result.error());
     json["codec"] = *std::move(result);
   }
-  if (auto written = writeJson(options.json_file, json); !written) return fail(written.error());
-  return 0;
+  return written(options, core::Result<boost::json::object>(std::move(json)));
 }
 
 std::vector<ProgramCommand> addOptions(CLI::App& program) {
   const auto options = std::make_shared<BenchOptions>();
   program.add_option("--suite", options->suite, "What to time")
-      ->check(CLI::IsMember({"all", "step", "codec", "baseline", "fanout", "load", "query", "rooms", "soak"}))
+      ->check(CLI::IsMember({"all", "step", "codec", "baseline", "fanout", "load", "query", "rooms", "soak", "tune"}))
       ->capture_default_str();
   program
       .add_option("--scene", options->scene,

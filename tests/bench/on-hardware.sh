@@ -1,14 +1,15 @@
 #!/usr/bin/env bash
 # Everything worth knowing about Spindrift on a machine with a GPU, in under ten minutes: the devices, the tests of the device, what a
-# step and the codecs cost, whether the water agrees with theory, and how many rooms hold real time.
-# BUNDLE is a folder made by `./dev bundle --with-tests`; nothing else is needed but bash, coreutils and python3.
+# step and the codecs cost, whether the water agrees with theory, how many rooms hold real time, which tuning profile is the fastest, and
+# what the page draws. BUNDLE is a folder made by `./dev bundle --with-tests`; nothing else is needed but bash, coreutils and python3, and
+# for the page node, Chromium and the packages of tests/browser.
 set -euo pipefail
 
 usage() {
   cat <<'TEXT'
 usage: tests/bench/on-hardware.sh BUNDLE [--parts PART[,PART…]] [--device NAME] [--output DIR]
 
-  --parts    of info, tests, hash, step, codec, rooms, study (default: all of them, in this order)
+  --parts    of info, tests, hash, step, codec, rooms, study, tune, page (default: all of them, in this order)
   --device   as of `spindrift serve` (default: auto)
   --output   where <date>-<device>.json and .md go (default: tests/bench/results); logs go to its folder logs/
 TEXT
@@ -19,7 +20,7 @@ fail() {
   exit 2
 }
 
-bundle="" device=auto output="" parts=info,tests,hash,step,codec,rooms,study
+bundle="" device=auto output="" parts=info,tests,hash,step,codec,rooms,study,tune,page
 while (($# > 0)); do
   case "$1" in
     --help) usage && exit ;;
@@ -39,11 +40,14 @@ output="$(realpath -- "${output:-$(dirname -- "${BASH_SOURCE[0]}")/results}")"
 logs="$output/logs"
 rm -rf "$logs"
 mkdir -p "$logs"
-export bundle logs SPINDRIFT_TEST_DEVICE="$device"
+checkout="$(realpath -- "$(dirname -- "${BASH_SOURCE[0]}")/../..")"
+# What is measured has the profile of the device's class, whatever an earlier `tune` wrote.
+printf '{}\n' >"$logs/no-tuning"
+export bundle logs checkout SPINDRIFT_TEST_DEVICE="$device" SPINDRIFT_TUNING="$logs/no-tuning"
 
 # These tests read the source tree, so they run only where the checkout is the one that built them.
 export without_checkout='ShaderFolderTest.*:LiveShader.*:SharedBlocks.*:*StateBuffersOf*:SavedState*'
-readonly part_limit_s=150
+readonly part_limit_s=185 all_limit_s=590
 
 # run_suite PROGRAM SUITE: one suite in a process of its own, with a line of its result.
 run_suite() {
@@ -123,31 +127,53 @@ part_rooms() {
 
 part_study() { "$bundle/spindrift-study" --quick --device "$device" --json "$logs/study.json" 2>&1; }
 
+part_tune() { "$bundle/spindrift-bench" --suite tune --device "$device" --json "$logs/tune.json" 2>&1; }
+
+# With software WebGL, from the page of the bundle.
+part_page() {
+  local need
+  for need in "$(command -v node || printf 'node')" "${CHROMIUM:-/usr/bin/chromium}" "$checkout/tests/browser/node_modules/playwright-core"; do
+    [[ -e "$need" ]] || { printf 'skipped: %s is missing\n' "$need" && return; }
+  done
+  SPINDRIFT_BINARY="$bundle/spindrift" SPINDRIFT_WEB_ROOT="$bundle/share/spindrift/web" \
+    node "$checkout/tests/browser/bench_page.mjs" --scenes harbor --seconds 5 2>&1
+}
+
 for part in ${parts//,/ }; do
   declare -F "part_$part" >/dev/null || fail "there is no part '$part'; see --help"
 done
 failed=()
+begin_s=$SECONDS
 for part in ${parts//,/ }; do
   printf '\n== %s\n' "$part"
-  SECONDS=0
+  part_begin_s=$SECONDS
+  limit_s=$((all_limit_s - SECONDS + begin_s))
+  ((limit_s > 0)) || { printf 'skipped: the ten minutes are over\n' | tee "$logs/$part.log" && continue; }
   export -f "part_$part" fail
-  timeout "$part_limit_s" bash -c "set -euo pipefail; device='$device'; part_$part" 2>&1 | tee "$logs/$part.log" || failed+=("$part")
-  printf '== %s took %d s\n' "$part" "$SECONDS"
+  timeout $((limit_s < part_limit_s ? limit_s : part_limit_s)) bash -c "set -euo pipefail; device='$device'; part_$part" 2>&1 | tee "$logs/$part.log" || failed+=("$part")
+  printf '== %s took %d s\n' "$part" $((SECONDS - part_begin_s))
 done
 
 python3 - "$logs" "$output" "${failed[*]}" <<'PYTHON'
 """Joins what the parts wrote into one JSON file and one table."""
-import datetime, json, pathlib, platform, re, sys
+import datetime, json, os, pathlib, platform, re, sys
 
 logs, output, failed = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3].split()
 parts = {file.stem: json.loads(file.read_text()) for file in sorted(logs.glob("*.json"))}
 steps = {name[5:]: value["step"] for name, value in parts.items() if name.startswith("step-")}
-device = next((value["device"] for value in parts.values() if isinstance(value.get("device"), str)), "unknown device")
+chosen = parts.get("info", {}).get("chosen", {})
+found = {"device": chosen.get("name", "unknown device"), "gl_version": chosen.get("gl_version", "unknown")}
+for value in parts.values():
+    found.update((key, value[key]) for key in found if isinstance(value.get(key), str))
+device, driver = found["device"], found["gl_version"]
 tests = (logs / "tests.txt").read_text().splitlines() if (logs / "tests.txt").exists() else []
 day = datetime.date.today().isoformat()
 name = f"{day}-{re.sub('[^a-z0-9]+', '-', device.lower()).strip('-')[:40]}"
 
-rows = [f"# {device}, {day}", "", f"{platform.machine()}, Linux {platform.release()}; failed parts: {', '.join(failed) or 'none'}", ""]
+info = (logs / "info.log").read_text() if (logs / "info.log").exists() else ""
+processor = "".join(re.findall(r"^model name\s*: (.*)$", info, re.M)[:1]) or platform.machine()
+rows = [f"# {device}, {day}", "", f"Driver {driver}; {os.cpu_count()} threads of {processor}, Linux {platform.release()}; "
+        f"failed parts: {', '.join(failed) or 'none'}", ""]
 if tests:
     count = lambda what: sum(int(n) for line in tests for n in re.findall(rf"(\d+) {what}", line))
     rows += [f"Tests of the device: {count('passed')} passed, {count('failed')} failed, {count('skipped')} skipped.", ""]
@@ -159,11 +185,12 @@ for scene, cases in steps.items():
         passes = " ".join(f"{k} {v:.3f}" for k, v in case["tick_ms_by_pass"].items())
         rows.append(f"| {scene} | {case['name']} | {case['particle_count']} | {case['substeps_count']} | {case['tick_ms']:.3f} "
                     f"| {case['real_time_factor']:.2f} | {passes} |")
-for part, pattern in (("hash", r"\S+ [0-9a-f]{16} .*|  tick .*"), ("rooms", r"delay_p99_ms.*|answer_p99_ms.*|.*real-time factor.*"), ("study", r"\d+ within bounds.*")):
+for part, pattern in (("hash", r"\S+ [0-9a-f]{16} .*|  tick .*"), ("rooms", r"delay_p99_ms.*|answer_p99_ms.*|.*real-time factor.*"), ("study", r"\d+ within bounds.*"),
+                      ("tune", r"\w+ +\d+ +\d+ .*|\{.*|the three minutes.*"), ("page", r".* pictures/s .*|  processor time.*|skipped.*")):
     log = logs / f"{part}.log"
     found = [line for line in (log.read_text().splitlines() if log.exists() else []) if re.fullmatch(pattern, line)]
     rows += ["", f"{part}:", ""] + [f"    {line}" for line in found] if found else []
-(output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "failed": failed, "tests": tests, "parts": parts}, indent=1))
+(output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "driver": driver, "processor": processor, "failed": failed, "tests": tests, "parts": parts}, indent=1))
 (output / f"{name}.md").write_text("\n".join(rows) + "\n")
 print(f"\n{output / name}.json and .md")
 PYTHON

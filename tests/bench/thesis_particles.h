@@ -16,7 +16,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/buffer.h>
 #include <spindrift/gpu/context.h>
-#include <spindrift/gpu/tuning.h>
+#include <spindrift/gpu/tuning_profile.h>
 
 namespace spindrift::bench {
 

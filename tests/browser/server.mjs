@@ -23,7 +23,7 @@ const STOP_LIMIT_MS = 30_000;
 export function startServer(port = 0, scenes = kTestScenes, command = "serve") {
   const child = spawn(
     binary,
-    [command, "--port", String(port), "--web-root", `${repository}/web-client/dist`, ...scenes],
+    [command, "--port", String(port), "--web-root", process.env.SPINDRIFT_WEB_ROOT ?? `${repository}/web-client/dist`, ...scenes],
     { stdio: ["ignore", "pipe", "pipe"] },
   );
   let words = "";

@@ -6,42 +6,23 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "log_capture.h"
 #include "temporary_folder.h"
 
 namespace spindrift::gpu {
 namespace {
 
+using test::LogCapture;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-/// Takes the log while it exists.
-class LogCapture {
- public:
-  LogCapture() {
-    spdlog::set_default_logger(
-        std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(words_)));
-  }
-  ~LogCapture() { spdlog::set_default_logger(before_); }
-  LogCapture(const LogCapture&) = delete;
-  LogCapture& operator=(const LogCapture&) = delete;
-  [[nodiscard]] std::string text() const { return words_.str(); }
-
- private:
-  std::shared_ptr<spdlog::logger> before_ = spdlog::default_logger();
-  std::ostringstream words_;
-};
 
 ProgramStore::Binary binaryOf(char value, std::size_t size_bytes) {
   return {.format = 7, .bytes = std::vector<std::byte>(size_bytes, static_cast<std::byte>(value))};
@@ -160,16 +141,16 @@ TEST_F(ProgramStoreTest, AFolderThatCannotBeWrittenIsSaidOnce) {
 TEST(ProgramStore, IsInTheUsersCacheFolderOrNowhere) {
   ::setenv("HOME", "/home/somebody", 1);
   ::setenv("XDG_CACHE_HOME", "/var/cache/own", 1);
-  EXPECT_EQ(ProgramStore::userFolder(), "/var/cache/own/spindrift/programs");
+  EXPECT_EQ(ProgramStore::userFolder("programs"), "/var/cache/own/spindrift/programs");
   ::setenv("XDG_CACHE_HOME", "relative", 1);
-  EXPECT_EQ(ProgramStore::userFolder(), "/home/somebody/.cache/spindrift/programs");
+  EXPECT_EQ(ProgramStore::userFolder("programs"), "/home/somebody/.cache/spindrift/programs");
   ::unsetenv("XDG_CACHE_HOME");
   ::unsetenv("HOME");
   const LogCapture log;
-  EXPECT_TRUE(ProgramStore::userFolder().empty());
-  EXPECT_TRUE(ProgramStore::userFolder().empty());
+  EXPECT_TRUE(ProgramStore::userFolder("programs").empty());
+  EXPECT_TRUE(ProgramStore::userFolder("programs").empty());
   EXPECT_THAT(log.text(), HasSubstr("neither XDG_CACHE_HOME nor HOME"));
-  EXPECT_FALSE(ProgramStore(ProgramStore::userFolder()).load("key"));
+  EXPECT_FALSE(ProgramStore(ProgramStore::userFolder("programs")).load("key"));
 }
 
 }  // namespace

@@ -1,16 +1,14 @@
 // Poisoned scratch buffers, another order of work groups, programs that are shared.
 #include <numeric>
 #include <optional>
-#include <sstream>
 #include <vector>
 
 #include <gmock/gmock.h>
-#include <spdlog/sinks/ostream_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <spindrift/gpu/program.h>
 
 #include "gpu_fixture.h"
+#include "log_capture.h"
 
 namespace spindrift::gpu {
 namespace {
@@ -122,13 +120,9 @@ TEST_F(TestModes, TimesOfProgramsAreLoggedAtTheEnd) {
       ctx->barrier(Barrier::kStorage);
     }
   }
-  std::ostringstream log;
-  const auto before = spdlog::default_logger();
-  spdlog::set_default_logger(
-      std::make_shared<spdlog::logger>("test", std::make_shared<spdlog::sinks::ostream_sink_mt>(log)));
+  const test::LogCapture log;
   ctx.reset();
-  spdlog::set_default_logger(before);
-  EXPECT_THAT(log.str(), HasSubstr("100.0 % tests/group_order.comp: 3 dispatches of "));
+  EXPECT_THAT(log.text(), HasSubstr("100.0 % tests/group_order.comp: 3 dispatches of "));
 }
 
 TEST_F(TestModes, CompileErrorsOfShuffledShadersNameTheirLines) {

@@ -15,7 +15,7 @@
 #include <spindrift/core/result.h>
 #include <spindrift/gpu/checks.h>
 #include <spindrift/gpu/device.h>
-#include <spindrift/gpu/tuning.h>
+#include <spindrift/gpu/tuning_profile.h>
 
 namespace spindrift::gpu {
 
@@ -89,7 +89,8 @@ class FenceDelay {
 class Context {
  public:
   /// Makes a context on the chosen device and makes it current on the calling thread. Errors: kNoDevice, listing the
-  /// devices tried and what to install, when none works; kInvalidInput when SPINDRIFT_GPU_CHECKS cannot be parsed.
+  /// devices tried and what to install, when none works; kInvalidInput when SPINDRIFT_GPU_CHECKS or the file of
+  /// SPINDRIFT_TUNING cannot be parsed.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice);
   /// Creates the same with the given test modes in place of those of the environment.
   static core::Result<std::unique_ptr<Context>> create(const DeviceChoice& choice, const Checks& checks);
@@ -109,7 +110,7 @@ class Context {
 
   [[nodiscard]] const DeviceInfo& device() const { return device_; }
   [[nodiscard]] const DeviceLimits& limits() const { return device_.limits; }
-  [[nodiscard]] Tuning tuning() const { return device_.is_software ? Tuning{} : kHardwareTuning; }
+  [[nodiscard]] const TuningProfile& tuning() const { return tuning_; }
   /// Returns one line: which device was chosen and why.
   [[nodiscard]] const std::string& why() const { return device_.why; }
 
@@ -186,12 +187,13 @@ class Context {
     std::function<bool()> in_use;
   };
 
-  Context(egl::Attempt chosen, const Checks& checks, const std::string& shader_folder);
+  Context(egl::Attempt chosen, const Checks& checks, const TuningProfile& tuning, const std::string& shader_folder);
   void issue(Barrier readers);
 
   std::unique_ptr<egl::Handles> egl_;
   DeviceInfo device_;
   Checks checks_;
+  TuningProfile tuning_;
   std::atomic<bool> is_lost_{false};
   std::atomic<std::uint64_t> debug_error_count_{0};
   Ledger ledger_;

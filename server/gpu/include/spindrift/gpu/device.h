@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <spindrift/core/result.h>
+#include <spindrift/gpu/tuning_profile.h>
 
 namespace spindrift::gpu {
 
@@ -26,6 +27,8 @@ struct DeviceChoice {
   /// For shader development: the folder from which shaders are read; empty: the embedded shaders. See
   /// Context::reloadChangedShaders().
   std::string shader_folder{};
+  /// For tests and measurements: the tuning profile; nothing: chosenTuning().
+  std::optional<TuningProfile> tuning{};
 };
 
 /// Reads "auto", "software", a device index (0…1023), a DRM file (/dev/dri/renderD128, or a link to it), or a UUID with

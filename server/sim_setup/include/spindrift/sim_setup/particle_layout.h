@@ -12,8 +12,8 @@ namespace spindrift::sim {
 /// Largest number of grid cells, 8 bytes each. A pool of a million particles at the default headroom has about 7
 /// million.
 inline constexpr std::uint32_t kMaxCellCount = 1u << 26;
-/// Largest number of particles, 4,194,240: those of one dispatch.
-inline constexpr std::uint32_t kMaxParticleCount = MAX_GROUPS * PARTICLE_GROUP;
+/// Largest number of particles, 4,194,240: those of one dispatch of the smallest groups that a tuning profile may have.
+inline constexpr std::uint32_t kMaxParticleCount = MAX_GROUPS * POOL_GROUP;
 
 /// Lays out the particles. `volume_m3`: volume of the water, if given; otherwise it follows from the scene's layers.
 /// Errors as derive().
