@@ -41,11 +41,12 @@ core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core:
 
 // Creation
 
-core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene) {
+core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene,
+                                                         BasinStore* basins) {
   auto derived = derive(scene);
   if (!derived) return derived.error();
   auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
-  if (auto built = sim->build(); !built) return built.error();
+  if (auto built = sim->build(basins); !built) return built.error();
   if (scene.particles && scene.particles->settle_s > 0 && !isTwoWay(scene)) {
     auto settled = settledPositions(ctx, scene);
     if (!settled) return settled.error();
@@ -208,19 +209,6 @@ void WaterSim::uploadBasin() {
   if (parts_->basin_inputs == inputs) return;
   parts_->wave->uploadBasin(scene_, *derived_.wave);
   parts_->basin_inputs = inputs;
-}
-
-BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
-    : wave(*scene.wave),
-      speed_mps(layout.speed_mps),
-      obstacles(scene.obstacles),
-      beaches(scene.beaches),
-      bed(scene.bed) {
-  // Parameters that may change while running and that no table contains.
-  wave.damping_per_s = 0.0;
-  wave.steepening_ratio = 0.0;
-  wave.manning_spm13 = 0.0;
-  wave.fixed_substeps_count = 0;
 }
 
 }  // namespace spindrift::sim
