@@ -77,20 +77,19 @@ void addBlocks(GLuint program, bool is_storage, bool has_offsets, std::map<std::
   }
 }
 
-/// Returns the texture unit of each used samplerBuffer, usamplerBuffer and isamplerBuffer, by name.
-std::map<std::string, std::uint32_t> texelUnitsOf(std::uint32_t program_id) {
+/// Returns the texture unit of each used samplerBuffer, usamplerBuffer and isamplerBuffer, by name. The names are those
+/// of the text: where a program lists its uniforms, drivers search all of its members for each.
+std::map<std::string, std::uint32_t> texelUnitsOf(GLuint program, std::string_view text) {
+  constexpr std::string_view kType = "samplerBuffer ";
   std::map<std::string, std::uint32_t> out;
-  GLint count = 0;
-  glGetProgramInterfaceiv(program_id, GL_UNIFORM, GL_ACTIVE_RESOURCES, &count);
-  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
-    constexpr GLenum kProperties[] = {GL_TYPE, GL_LOCATION};
-    GLint values[2] = {0, -1};
-    glGetProgramResourceiv(program_id, GL_UNIFORM, i, 2, kProperties, 2, nullptr, values);
-    const auto type = static_cast<GLenum>(values[0]);
-    if (type != GL_SAMPLER_BUFFER && type != GL_INT_SAMPLER_BUFFER && type != GL_UNSIGNED_INT_SAMPLER_BUFFER) continue;
+  for (std::size_t at = text.find(kType); at != std::string_view::npos; at = text.find(kType, at + 1)) {
+    const std::string_view rest = text.substr(at + kType.size());
+    const std::string name(rest.substr(0, rest.find(';')));
+    const GLint location = glGetUniformLocation(program, name.c_str());
+    if (location < 0) continue;  // not used
     GLint unit = 0;
-    glGetUniformiv(program_id, values[1], &unit);
-    out.emplace(resourceName(program_id, GL_UNIFORM, i), static_cast<std::uint32_t>(unit));
+    glGetUniformiv(program, location, &unit);
+    out.emplace(name, static_cast<std::uint32_t>(unit));
   }
   return out;
 }
@@ -124,7 +123,8 @@ ProgramUses usesOf(GLuint program, const EmbeddedShader& shader) {
     if (layout.is_storage) readQualifiers(shader.text, block);
     (layout.is_storage ? uses.storage : uses.uniforms).push_back(std::move(block));
   }
-  for (const auto& [name, unit] : texelUnitsOf(program)) uses.texels.push_back({.name = name, .binding = unit});
+  for (const auto& [name, unit] : texelUnitsOf(program, shader.text))
+    uses.texels.push_back({.name = name, .binding = unit});
   return uses;
 }
 

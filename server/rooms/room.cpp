@@ -17,6 +17,11 @@ constexpr auto kWaitingCommandInterval = 10ms;
 /// A room that stands still looks after its state on disk, its people and its metrics.
 constexpr auto kStandingInterval = 1s;
 constexpr auto kVitalsInterval = 250ms;
+/// Time from the last command or request until a room without clients may sleep: who splashes and asks for the surface
+/// now and then sees time advance.
+constexpr auto kUsePatience = 10s;
+/// So long a room runs at first although nobody watches: the sea of open_water has 95 % of its height after 10 s.
+constexpr auto kSettling = 20s;
 constexpr std::size_t kHashAskedMaxCount = 16;
 
 }  // namespace
@@ -34,6 +39,8 @@ Room::Room(std::string name, const RoomRules& rules, water::WaterBuilder& builde
             .water = std::move(room_water),
             .diary = std::move(diary),
             .roster = Roster(rules.grace, [this] { wake(); })} {
+  if (data_.water->scene().unwatched() != v1::UNWATCHED_SLEEP)
+    used_until_ = std::chrono::steady_clock::now() + kSettling;
   data_.tick_cost.restart(data_.water->warmTick_ms(), data_.water->work());
   publishVitals({});
 }
@@ -81,8 +88,13 @@ void Room::releaseDevice() {
 
 std::optional<wire::CommandRejection> Room::admit(Command command) {
   auto refused = desk_.admit(std::move(command), *reports_.snapshot());
-  if (!refused) wake();
+  if (!refused) use();
   return refused;
+}
+
+void Room::use() {
+  used_until_ = std::max(used_until_.load(), std::chrono::steady_clock::now() + kUsePatience);
+  wake();
 }
 
 void Room::askStateHash(HashDone done) {
@@ -143,8 +155,7 @@ void Room::run(TimePoint now) {
   if (change_.watchDevice(now)) return standStill();
   data_.time.beginRound(now);
   handOver();
-  const bool may_sleep = data_.water->scene().unwatched() == v1::UNWATCHED_SLEEP && !data_.clock.isHeld();
-  if (data_.time.watchOver(!may_sleep || data_.demand->sessionCount() > 0, now)) publishVitals(now);
+  if (data_.time.watchOver(isNeeded(now), now)) publishVitals(now);
   settlePeople(now);
   actions_.reviewClock(now,
                        [this](const core::Sender& sender) { return change_.stopsTime() || desk_.isBusyWith(sender); });
@@ -168,6 +179,11 @@ void Room::run(TimePoint now) {
   if (!change_.stopsTime()) keeping_.keep(now);
   handOver();
   if (now >= next_vitals_) publishVitals(now);
+}
+
+bool Room::isNeeded(TimePoint now) const {
+  return data_.water->scene().unwatched() == v1::UNWATCHED_GO_ON || data_.clock.isHeld() ||
+         data_.demand->sessionCount() > 0 || now < used_until_.load();
 }
 
 void Room::handOver() {

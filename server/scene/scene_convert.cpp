@@ -75,7 +75,9 @@ void fillDefaults(v1::Scene& scene) {
   }
   const v1::Setting named = scene.setting();
   const v1::WaterType named_type = scene.water_type();
+  const v1::Unwatched unwatched = scene.unwatched();  // unspecified is a choice of its own
   fillMessageDefaults(scene);
+  scene.set_unwatched(unwatched);
   scene.set_setting(named != v1::SETTING_UNSPECIFIED ? named : scene.has_wave() ? ofWave(scene.wave()) : ofBox(scene));
   scene.set_water_type(named_type != v1::WATER_TYPE_UNSPECIFIED ? named_type : waterTypeOf(scene));
 }

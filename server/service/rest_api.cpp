@@ -146,6 +146,7 @@ void RestApi::room(const Call& call, net::HttpResponder respond) {
     fillRoomInfo(*room, out);
     return respond(json(200, out));
   }
+  room->use();
   if (call.path[2] == "surface" && call.path.size() == 3) return surface(call, room, std::move(respond));
   if (call.path[2] == "state_hash" && call.path.size() == 3) return stateHash(call, *room, respond);
   if (call.path[2] == "gauges") return gauges(call, *room, respond);

@@ -58,9 +58,9 @@ constexpr BottomTable kBottomTables[] = {
 
 }  // namespace
 
-DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const Basin& basin, bool keeps_last_step)
+DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const Dispersion& dispersion,
+                               bool keeps_last_step)
     : tuning_(create.context().tuning()), keeps_last_step_(keeps_last_step) {
-  const Dispersion dispersion = layOutDispersion(layout, basin);
   // One work group takes fewer dispatches for the bottom, but has only one core.
   const std::size_t bottom = bottomOf(dispersionGrids(layout));
   bool is_narrow[2] = {false, false};
@@ -119,10 +119,6 @@ void DispersedSlope::declareState(StateBuffers& out) {
   if (keeps_last_step_) out.push_back({.buffer = &dispersed_, .checkpoint = true});
   for (Grid& grid : grids_)
     if (grid.right) out.push_back({.buffer = &grid.right, .lasts = false});  // overwritten, except cells that stay 0
-}
-
-void DispersedSlope::upload(const WaveLayout& layout, const Basin& basin) {
-  upload(layOutDispersion(layout, basin));
 }
 
 void DispersedSlope::upload(const Dispersion& dispersion) {

@@ -14,9 +14,9 @@ namespace spindrift::sim {
 class DispersedSlope {
  public:
   /// `keeps_last_step`: with a nonlinear bulk, which needs it.
-  DispersedSlope(Creation& create, const WaveLayout& layout, const Basin& basin, bool keeps_last_step);
+  DispersedSlope(Creation& create, const WaveLayout& layout, const Dispersion& dispersion, bool keeps_last_step);
   /// Uploads the tables for a changed depth.
-  void upload(const WaveLayout& layout, const Basin& basin);
+  void upload(const Dispersion& dispersion);
 
   /// Computes texels() from the slopes of the surface, which the caller has bound for lookups: ELEVATION and, if the
   /// scene has one, PRESSURE_HEAD, nx x nz [units]; with a nonlinear bulk SURFACE_RISE, nx x nz x 2 [units per cell].
@@ -34,7 +34,6 @@ class DispersedSlope {
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };
 
-  void upload(const Dispersion& dispersion);
   void bindTables(std::size_t level);
   void descend(std::size_t level);
   void solveBottom();

@@ -189,7 +189,7 @@ WaterSim::WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived)
 
 WaterSim::~WaterSim() = default;
 
-core::Result<void> WaterSim::build() {
+core::Result<void> WaterSim::build(BasinStore* basins) {
   if (auto fits = fitsDevice(ctx_, scene_, derived_); !fits) return fits;
   Creation create(ctx_, shaderDefines(scene_));
   const auto make = [&]<typename Part>(std::unique_ptr<Part>& part, const auto&... arguments) {
@@ -197,7 +197,7 @@ core::Result<void> WaterSim::build() {
   };
   Parts& p = *parts_;
   p.uniforms = create.uniforms<shared::SimUniforms>("sim uniforms");
-  if (derived_.wave) make(p.wave, scene_, *derived_.wave, isSampled(scene_));
+  if (derived_.wave) make(p.wave, scene_, *derived_.wave, isSampled(scene_), basins);
   if (derived_.particles) {
     p.particles.emplace(create, derived_.particles->count, storesFoamSource(scene_), hasTension(scene_));
     make(p.grid, *derived_.particles);

@@ -9,7 +9,7 @@
 
 #include <spindrift/effects/effects.h>
 #include <spindrift/sim/water_sim.h>
-#include <spindrift/sim_setup/basin.h>
+#include <spindrift/sim_setup/basin_store.h>
 
 #include "boats.h"
 #include "breakers.h"
@@ -31,18 +31,6 @@
 #include "wind_sea.h"
 
 namespace spindrift::sim {
-
-/// The scene values from which the tables of a basin (basin.h) are computed.
-struct BasinInputs {
-  BasinInputs(const core::Scene& scene, const WaveLayout& layout);
-  bool operator==(const BasinInputs&) const = default;
-
-  core::WaveScene wave;
-  double speed_mps;
-  std::vector<core::Obstacle> obstacles;
-  std::vector<core::Beach> beaches;
-  std::optional<core::Bed> bed;
-};
 
 /// The uniforms that states contain, whatever the scene: those of surface tension are behind them and follow from it.
 inline constexpr std::size_t kUniformWordsBeforeTension =

@@ -42,7 +42,8 @@ core::Result<std::vector<float>> settledPositions(gpu::Context& ctx, const core:
 
 // Creation
 
-core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene) {
+core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, const core::Scene& scene,
+                                                         BasinStore* basins) {
   auto derived = derive(scene);
   if (!derived) return derived.error();
   // Water settles before this one has its buffers, so that the device never holds both.
@@ -53,7 +54,7 @@ core::Result<std::unique_ptr<WaterSim>> WaterSim::create(gpu::Context& ctx, cons
     settled_positions = *std::move(settled);
   }
   auto sim = std::unique_ptr<WaterSim>(new WaterSim(ctx, scene, *std::move(derived)));
-  if (auto built = sim->build(); !built) return built.error();
+  if (auto built = sim->build(basins); !built) return built.error();
   sim->parts_->settled_positions = std::move(settled_positions);
   sim->reset();
   return sim;
@@ -213,19 +214,6 @@ void WaterSim::uploadBasin() {
   if (parts_->basin_inputs == inputs) return;
   parts_->wave->uploadBasin(scene_, *derived_.wave);
   parts_->basin_inputs = inputs;
-}
-
-BasinInputs::BasinInputs(const core::Scene& scene, const WaveLayout& layout)
-    : wave(*scene.wave),
-      speed_mps(layout.speed_mps),
-      obstacles(scene.obstacles),
-      beaches(scene.beaches),
-      bed(scene.bed) {
-  // Parameters that may change while running and that no table contains.
-  wave.damping_per_s = 0.0;
-  wave.steepening_ratio = 0.0;
-  wave.manning_spm13 = 0.0;
-  wave.fixed_substeps_count = 0;
 }
 
 }  // namespace spindrift::sim

@@ -14,7 +14,7 @@
 
 namespace spindrift::sim {
 
-Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled)
+Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled, BasinStore* basins)
     : count_(layout.counts()), is_nonlinear_(isNonlinear(scene)), splash_tiles_(layout) {
   using enum gpu::TexelFormat;
   const std::size_t cells = count_.total();
@@ -63,12 +63,18 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
   }
   if (hasMakers(scene)) makers_ = std::make_unique<WaveMakers>(create, scene, layout);
   if (create.error()) return;
-  const Basin basin = basin_ || disperses(scene) ? layOutBasin(scene, layout) : Basin{};
-  if (disperses(scene)) dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, basin, is_nonlinear_);
+  std::shared_ptr<const BasinTables> tables;
+  if (basin_ || disperses(scene)) {
+    const bool with_terrain = static_cast<bool>(terrain_);
+    tables = basins ? basins->of(scene, layout, with_terrain)
+                    : std::make_shared<const BasinTables>(layOutTables(scene, layout, with_terrain));
+  }
+  if (disperses(scene))
+    dispersed_slope_ = std::make_unique<DispersedSlope>(create, layout, tables->dispersion, is_nonlinear_);
   if (create.error()) return;
   // Rows are one group high. Momentum sets the first word if transfers have to be limited; continuity clears it.
   limit_args_.upload(std::array<std::uint32_t, 3>{0, layout.count_z, 1});
-  upload(scene, layout, basin);
+  if (basin_) upload(*tables);
 }
 
 void Wave::clear() {
@@ -109,23 +115,21 @@ void Wave::clearPressure() {
 
 void Wave::uploadBasin(const core::Scene& scene, const WaveLayout& layout) {
   if (!basin_ && !dispersed_slope_) return;
-  const Basin basin = layOutBasin(scene, layout);
-  if (dispersed_slope_) dispersed_slope_->upload(layout, basin);
-  upload(scene, layout, basin);
+  const BasinTables tables = layOutTables(scene, layout, static_cast<bool>(terrain_));
+  if (dispersed_slope_) dispersed_slope_->upload(tables.dispersion);
+  if (basin_) upload(tables);
 }
 
-void Wave::upload(const core::Scene& scene, const WaveLayout& layout, const Basin& basin) {
-  if (!basin_) return;
-  basin_.upload(basin.conductance_m);
-  bed_.upload(basin.bed);
+void Wave::upload(const BasinTables& tables) {
+  basin_.upload(tables.basin.conductance_m);
+  bed_.upload(tables.basin.bed);
   if (is_nonlinear_) {
-    resting_elevation_ = restingElevation(basin);
+    resting_elevation_ = restingElevation(tables.basin);
     resting_units_ = std::accumulate(resting_elevation_.begin(), resting_elevation_.end(), std::int64_t{0});
   }
   if (!terrain_) return;
-  const Terrain terrain = layOutTerrain(scene, layout, basin);
-  terrain_.upload(terrain.ground);
-  landing_.upload(terrain.landing);
+  terrain_.upload(tables.terrain.ground);
+  landing_.upload(tables.terrain.landing);
 }
 
 void Wave::scaleFlow(double ratio) {

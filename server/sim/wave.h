@@ -13,7 +13,7 @@
 #include <spindrift/core/scene.h>
 #include <spindrift/effects/splash_tiles.h>
 #include <spindrift/sim/state_buffer.h>
-#include <spindrift/sim_setup/derive.h>
+#include <spindrift/sim_setup/basin_store.h>
 
 #include "creation.h"
 #include "dispersed_slope.h"
@@ -24,8 +24,8 @@ namespace spindrift::sim {
 class Wave {
  public:
   /// `sampled`: particles or boats read the surface; creates the buffers for them, too. The basin has tables only if it
-  /// is varied, and outflow is counted only if water can leave or enter.
-  Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled);
+  /// is varied, and outflow is counted only if water can leave or enter. `basins`: that of WaterSim::create().
+  Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout, bool sampled, BasinStore* basins);
 
   /// Sets a level surface at rest, with dry ground above it in a nonlinear bulk, and the outflow to zero.
   void clear();
@@ -83,7 +83,7 @@ class Wave {
  private:
   void accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* incident_sea);
   void displace(const shared::EventUniforms& events);
-  void upload(const core::Scene& scene, const WaveLayout& layout, const Basin& basin);
+  void upload(const BasinTables& tables);
   void uploadOutflow(std::int64_t units);
   void limit();
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <chrono>
-#include <limits>
 #include <thread>
 #include <utility>
 
@@ -22,18 +21,19 @@ constexpr double kWarmUpEffect_s = 0.01;
 /// The encoder holds a frame for milliseconds; a frame held longer than this is lost.
 constexpr auto kFramePatience = 5s;
 
-/// Returns the duration of the fastest tick [ms].
-double warmUp(gpu::Context& context, sim::WaterSim& sim) {
+WarmUp runWarm(gpu::Context& context, sim::WaterSim& sim) {
   // A scene without waves has no program to compile for an effect, and refuses it.
   (void)sim.start(core::Splash{.depth_m = 0.01, .duration_s = kWarmUpEffect_s});
   (void)sim.start(core::BreakingWave{.side = core::Side::kPlusX, .amplitude_m = 0.01, .duration_s = kWarmUpEffect_s});
-  double tick_ms = std::numeric_limits<double>::infinity();
+  WarmUp out;
   for (int i = 0; i < kWarmUpTickCount; ++i) {
     const auto begin = std::chrono::steady_clock::now();
     sim.step();
     context.finish();
-    tick_ms =
-        std::min(tick_ms, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    const auto duration = std::chrono::steady_clock::now() - begin;
+    const double tick_ms = std::chrono::duration<double, std::milli>(duration).count();
+    if (i == 0) out = {tick_ms, tick_ms};
+    out.least_tick_ms = std::min(out.least_tick_ms, tick_ms);
   }
   sim::FrameRequest request{.bodies = true};
   request.levels.fill({.surface = true, .particles = true, .foam = true});
@@ -42,29 +42,31 @@ double warmUp(gpu::Context& context, sim::WaterSim& sim) {
   (void)sim.takeFrames();
   (void)sim.takePassCosts();
   sim.reset();
-  return tick_ms;
+  return out;
 }
 
 }  // namespace
 
-core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene) {
+core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& device, v1::Scene scene,
+                                                   const KnownScene& known) {
   auto context = gpu::Context::create(device);
   if (!context) return context.error();
-  auto sim = sim::WaterSim::create(**context, scene::toCore(scene));
+  auto sim = sim::WaterSim::create(**context, scene::toCore(scene), known.basins);
   if (!sim) return sim.error();
-  const double tick_ms = warmUp(**context, **sim);
-  spdlog::info("scene {}: {:.1f} MB on the device", scene.name(),
+  const bool is_warm = known.warm_up && known.warm_up->wasQuick();
+  const WarmUp warm_up = is_warm ? *known.warm_up : runWarm(**context, **sim);
+  spdlog::debug("scene {}: {:.1f} MB on the device", scene.name(),
                static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
-  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), tick_ms));
+  return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), warm_up));
 }
 
 Water::Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
-             double warm_tick_ms)
+             const WarmUp& warm_up)
     : context_(std::move(context)),
       sim_(std::move(sim)),
       scene_(std::move(scene)),
       start_scene_(scene_),
-      warm_tick_ms_(warm_tick_ms) {}
+      warm_up_(warm_up) {}
 
 Water::~Water() {
   bind();

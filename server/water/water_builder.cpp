@@ -7,6 +7,8 @@ namespace {
 
 /// Lower priority than the ticks of running rooms.
 constexpr int kBuildNiceness = 10;
+/// Scenes, parameters included, whose warm-up is remembered.
+constexpr std::size_t kWarmUpMaxCount = 64;
 
 core::Error shutDown() {
   return core::unavailable("the server shuts down");
@@ -17,13 +19,19 @@ core::Error shutDown() {
 WaterBuilder::WaterBuilder(gpu::DeviceChoice device, SceneCatalog scenes, const std::function<void()>& done)
     : device_(std::move(device)), scenes_(std::move(scenes)), builds_(0, done), changes_(0, done) {}
 
-std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene) {
+std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene, bool may_be_cold) {
   auto promise = std::make_shared<std::promise<Built>>();
   auto future = promise->get_future();
-  builds_.push([this, promise, scene = std::move(scene)](bool runs) mutable {
+  builds_.push([this, promise, may_be_cold, scene = std::move(scene)](bool runs) mutable {
     if (!runs) return promise->set_value(shutDown());
-    Built built = Water::create(device_, std::move(scene));
+    const std::string kind = scene.SerializeAsString();
+    KnownScene known{.basins = &basins_};
+    const auto before = warm_ups_.find(kind);
+    if (may_be_cold && before != warm_ups_.end()) known.warm_up = before->second;
+    Built built = Water::create(device_, std::move(scene), known);
     if (built) {
+      if (warm_ups_.size() >= kWarmUpMaxCount) warm_ups_.clear();
+      warm_ups_.insert_or_assign(kind, (*built)->warmUp());
       (*built)->release();
       (*built)->setLevelCosts(LevelCosts(scenes_, (*built)->scene()));
     } else {

@@ -1,4 +1,4 @@
-// Rooms in which nothing happens: how often the simulation thread runs them, and what wakes them.
+// Rooms in which nothing happens: how often their threads run them, when they fall asleep, and what wakes them.
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -10,11 +10,13 @@
 
 #include <gtest/gtest.h>
 
+#include <spindrift/codec/stream.h>
 #include <spindrift/rooms/room_host.h>
 #include <spindrift/scene/scene_loader.h>
 #include <spindrift/wire/client_message.h>
 
 #include "commands.h"
+#include "open_room.h"
 #include "silent_outlets.h"
 
 namespace spindrift::test {
@@ -144,6 +146,108 @@ TEST_F(IdleRooms, TellAtOnceWhoCame) {
     ASSERT_TRUE(eventually([&] { return runCount() > before; }));
   }
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 4s);
+}
+
+/// A room that is run ahead of the clock, as fast as the machine can.
+class UnwatchedRoom : public testing::Test {
+ protected:
+  using Clock = std::chrono::steady_clock;
+
+  void TearDown() override {
+    if (room_) room_->releaseDevice();
+  }
+  void open(const std::string& scene_text) {
+    gpu::DeviceChoice device;
+    device.kind = gpu::DeviceChoice::Kind::kSoftware;
+    auto scene = scene::parseSceneText("wave { resolution_count: 8 side_m: 8 depth_m: 1 } " + scene_text, "pool");
+    ASSERT_TRUE(scene) << scene.error().message;
+    auto water = water::Water::create(device, *std::move(scene));
+    if (!water && water.error().code == core::ErrorCode::kNoDevice) GTEST_SKIP() << water.error().message;
+    ASSERT_TRUE(water) << water.error().message;
+    builder_ = std::make_unique<water::WaterBuilder>(device, rules_.scenes);
+    auto room = openRoom("pool", *std::move(water), rules_, *builder_, outlets_, {});
+    ASSERT_TRUE(room) << room.error().message;
+    room_ = *std::move(room);
+    now_ = Clock::now();
+    room_->start(now_);
+  }
+  void runFor(double seconds) {
+    const auto end = now_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
+    while (room_->due() < end) {
+      now_ = std::max(now_, room_->due());
+      room_->run(now_);
+    }
+    now_ = end;
+  }
+  bool isAsleep() const { return room_->vitals()->asleep; }
+  /// Of the clock, which may be ahead of now_; and two more of patience.
+  void expectTenSeconds() {
+    runFor(9);
+    EXPECT_FALSE(isAsleep());
+    runFor(8);
+    EXPECT_TRUE(isAsleep());
+  }
+
+  struct FrameCount final : SilentOutlets {
+    std::size_t frame_count = 0;
+    void frameReady(const rooms::Room&, core::FrameView) override { ++frame_count; }
+  };
+  rooms::RoomRules rules_;
+  FrameCount outlets_;
+  std::unique_ptr<water::WaterBuilder> builder_;
+  std::shared_ptr<rooms::Room> room_;
+  Clock::time_point now_{};
+};
+
+TEST_F(UnwatchedRoom, SleepsByDefaultAfterItsFirstTwentySeconds) {
+  ASSERT_NO_FATAL_FAILURE(open("tick_rate_hz: 10"));
+  runFor(19);
+  EXPECT_FALSE(isAsleep());
+  runFor(5);
+  EXPECT_TRUE(isAsleep());
+  const std::uint64_t tick = room_->tick();
+  EXPECT_GE(tick, 190U);
+  EXPECT_LE(tick, 225U);
+  runFor(60);
+  EXPECT_EQ(room_->tick(), tick);
+}
+
+TEST_F(UnwatchedRoom, RunsForeverIfItsSceneSaysSo) {
+  ASSERT_NO_FATAL_FAILURE(open("tick_rate_hz: 10 unwatched: UNWATCHED_GO_ON"));
+  runFor(40);
+  EXPECT_FALSE(isAsleep());
+  EXPECT_NEAR(static_cast<double>(room_->tick()), 400.0, 3.0);
+}
+
+TEST_F(UnwatchedRoom, RunsForTenSecondsAfterARequest) {
+  ASSERT_NO_FATAL_FAILURE(open("tick_rate_hz: 10 unwatched: UNWATCHED_SLEEP"));
+  room_->use();
+  expectTenSeconds();
+}
+
+TEST_F(UnwatchedRoom, RunsForTenSecondsAfterACommandWithoutASession) {
+  ASSERT_NO_FATAL_FAILURE(open("tick_rate_hz: 10 unwatched: UNWATCHED_SLEEP"));
+  v1::Command command = splash();
+  command.set_command_id(1);
+  auto checked = wire::checkCommand(std::move(command));
+  ASSERT_FALSE(
+      room_->admit({.sender = {.role = core::Role::kOperator}, .message = std::get<v1::Command>(std::move(checked))}));
+  expectTenSeconds();
+}
+
+TEST_F(UnwatchedRoom, MakesAFrameAtTheFirstTickForWhoWakesIt) {
+  ASSERT_NO_FATAL_FAILURE(open("tick_rate_hz: 10 unwatched: UNWATCHED_SLEEP"));
+  runFor(4);
+  ASSERT_TRUE(isAsleep());
+  const std::uint64_t tick = room_->tick();
+  room_->demand()->addSessions(1);
+  room_->demand()->set(codec::indexOf(codec::streamOf(v1::LAYER_SURFACE, v1::PACKING_PLAIN)), this,
+                       core::DemandTable::Need{});
+  room_->wake();
+  EXPECT_LE(room_->due(), now_);
+  room_->run(now_);
+  EXPECT_EQ(room_->tick(), tick + 1);
+  EXPECT_EQ(outlets_.frame_count + room_->water().framesInFlight(), 1U);
 }
 
 }  // namespace

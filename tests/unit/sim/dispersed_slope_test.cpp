@@ -34,9 +34,9 @@ class DispersedSlopeOnDevice : public OnDevice {
       if (name == "HEAD") value = has_head ? "1" : "0";
     }
     Creation create(*ctx_, defines);
-    DispersedSlope slope(create, first_layout, layOutBasin(first, first_layout), false);
+    DispersedSlope slope(create, first_layout, layOutDispersion(first_layout, layOutBasin(first, first_layout)), false);
     EXPECT_FALSE(create.error()) << create.error()->message;
-    if (first_depth_m) slope.upload(layout, basin);
+    if (first_depth_m) slope.upload(layOutDispersion(layout, basin));
     auto uniforms = gpu::Buffer::create(*ctx_, "uniforms", sizeof(shared::SimUniforms), gpu::BufferUse::kUpdatable);
     uniforms->uploadValue(derive(scene)->uniforms);
     uniforms->bindUniform(SIM_UNIFORMS);

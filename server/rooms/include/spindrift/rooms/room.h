@@ -68,6 +68,8 @@ class Room {
   bool askForSnapshot();
   /// nullopt if the room is not kept on disk.
   [[nodiscard]] std::optional<history::StateKeeper::Status> keptStatus() const;
+  /// Somebody without a session asks something of the room: keeps it awake for 10 s. Accepted commands do so, too.
+  void use();
   /// Makes a room that stands still run soon: its sessions, or what they watch, have changed. Commands and people wake
   /// it by themselves.
   void wake();
@@ -117,6 +119,8 @@ class Room {
   Room(std::string name, const RoomRules& rules, water::WaterBuilder& builder, RoomOutlets& outlets,
        std::unique_ptr<water::RoomWater> room_water, history::Diary diary, v1::RoomAccess access);
 
+  /// Returns whether time has to advance: a room that nobody needs sleeps.
+  [[nodiscard]] bool isNeeded(TimePoint now) const;
   /// Passes on what the device has finished.
   void handOver();
   void step(TimePoint now);
@@ -156,6 +160,7 @@ class Room {
   TimePoint ran_{};                    ///< begin of the last run()
   std::atomic<bool> is_woken_{false};  ///< since the last run()
   std::atomic<std::uint64_t> round_count_{0};
+  std::atomic<TimePoint> used_until_{};
   std::function<void()> on_wake_;
   mutable std::mutex hash_mutex_;
   std::vector<HashDone> hash_asked_;  ///< guarded by hash_mutex_

@@ -80,13 +80,17 @@ struct FloaterHold {
   bool ends = false;
 };
 
+class BasinStore;
+
 /// Call all functions on the thread that owns the context; ownership may move between two calls (Context::release() and
 /// makeCurrent()). Functions that wait for the device say so.
 class WaterSim {
  public:
-  /// Makes the buffers, programs and starting state for the parts of the scene, and nothing else. Errors: those of
-  /// derive(), and kInternal when the device fails.
-  static core::Result<std::unique_ptr<WaterSim>> create(gpu::Context& ctx, const core::Scene& scene);
+  /// Makes the buffers, programs and starting state for the parts of the scene, and nothing else. `basins`: used during
+  /// the call, for the tables of the wave; null: they are computed. Errors: those of derive(), and kInternal when the
+  /// device fails.
+  static core::Result<std::unique_ptr<WaterSim>> create(gpu::Context& ctx, const core::Scene& scene,
+                                                        BasinStore* basins = nullptr);
   ~WaterSim();
   WaterSim(const WaterSim&) = delete;
   WaterSim& operator=(const WaterSim&) = delete;
@@ -238,7 +242,7 @@ class WaterSim {
   struct Parts;
   WaterSim(gpu::Context& ctx, core::Scene scene, Derived derived);
 
-  core::Result<void> build();
+  core::Result<void> build(BasinStore* basins);
   bool waitForDevice();
   void uploadStartingState();
   std::vector<double> copyElevation();

@@ -15,14 +15,30 @@
 
 namespace spindrift::water {
 
+/// The ticks that compile every shader of new water. [ms]
+struct WarmUp {
+  double first_tick_ms = 0.0;
+  double least_tick_ms = 0.0;
+
+  /// Returns whether the driver had the shaders compiled: then the next water of the same scene needs no such ticks.
+  [[nodiscard]] bool wasQuick() const { return first_tick_ms < 10 * least_tick_ms; }
+};
+
+/// Tables and times that other water has left.
+struct KnownScene {
+  sim::BasinStore* basins = nullptr;  ///< that of WaterSim::create()
+  std::optional<WarmUp> warm_up{};    ///< of water of the same scene
+};
+
 /// Owned by one thread at a time: release() on the old thread, then bind() on the new one. The destructor waits until
 /// all frames of this water are dropped, because they are read from device memory, then frees the device's objects.
 class Water {
  public:
   /// Builds the scene and runs some ticks, so that every shader is compiled, then resets it to its start; the tick
-  /// count does not start at 0. The calling thread owns it. Errors: those of the device and of WaterSim::create();
-  /// kUnavailable when the device has no memory for the scene.
-  static core::Result<std::unique_ptr<Water>> create(const gpu::DeviceChoice& device, v1::Scene scene);
+  /// count does not start at 0. Without these ticks if such water has made them quickly. The calling thread owns it.
+  /// Errors: those of the device and of WaterSim::create(); kUnavailable when the device has no memory for the scene.
+  static core::Result<std::unique_ptr<Water>> create(const gpu::DeviceChoice& device, v1::Scene scene,
+                                                     const KnownScene& known = {});
   ~Water();
   Water(const Water&) = delete;
   Water& operator=(const Water&) = delete;
@@ -35,8 +51,9 @@ class Water {
   /// Returns the reason why this water cannot continue: the device was lost or does not answer. Asks the driver; call
   /// it on the owning thread, once per tick is enough.
   [[nodiscard]] std::optional<std::string> failure();
-  /// Duration of a tick while it was built, with other work running [ms].
-  [[nodiscard]] double warmTick_ms() const { return warm_tick_ms_; }
+  /// Returns the ticks while it was built, or those of the water before, with other work running.
+  [[nodiscard]] const WarmUp& warmUp() const { return warm_up_; }
+  [[nodiscard]] double warmTick_ms() const { return warm_up_.least_tick_ms; }
 
   [[nodiscard]] gpu::Context& context() { return *context_; }
   [[nodiscard]] const gpu::Context& context() const { return *context_; }
@@ -52,13 +69,13 @@ class Water {
 
  private:
   Water(std::unique_ptr<gpu::Context> context, std::unique_ptr<sim::WaterSim> sim, v1::Scene scene,
-        double warm_tick_ms);
+        const WarmUp& warm_up);
 
   std::unique_ptr<gpu::Context> context_;
   std::unique_ptr<sim::WaterSim> sim_;
   v1::Scene scene_;
   const v1::Scene start_scene_;
-  double warm_tick_ms_ = 0.0;
+  WarmUp warm_up_;
   LevelCosts level_costs_;
 };
 

@@ -6,13 +6,16 @@
 #include <cstdint>
 #include <functional>
 #include <future>
+#include <map>
 #include <memory>
+#include <string>
 
 #include <spindrift/core/result.h>
 #include <spindrift/core/scene.h>
 #include <spindrift/core/worker.h>
 #include <spindrift/gpu/device.h>
 #include <spindrift/sim/prepared_scene.h>
+#include <spindrift/sim_setup/basin_store.h>
 #include <spindrift/v1/scene.pb.h>
 #include <spindrift/water/water.h>
 
@@ -32,9 +35,11 @@ class WaterBuilder {
   WaterBuilder(const WaterBuilder&) = delete;
   WaterBuilder& operator=(const WaterBuilder&) = delete;
 
-  /// Any thread. The water is returned released: the caller binds it.
+  /// Any thread. The water is returned released: the caller binds it. The second of a scene is ready sooner: the tables
+  /// of the basin are kept. `may_be_cold`: nobody waits for its first tick, and warmUp() need not be of now; then it
+  /// makes no ticks that compile shaders if the driver keeps them.
   /// Errors: those of Water::create(); kUnavailable when the builder ends.
-  std::future<Built> build(v1::Scene scene);
+  std::future<Built> build(v1::Scene scene, bool may_be_cold = false);
   /// Any thread. From now on builds at a lower priority than the simulation. To be called when a room runs, and not
   /// before its water is built: that starts the threads of a software rasteriser, which compute the ticks of all rooms.
   void yieldToRooms();
@@ -60,6 +65,9 @@ class WaterBuilder {
  private:
   const gpu::DeviceChoice device_;
   const SceneCatalog scenes_;
+  // What builds leave for the next ones of the same scene; on the thread of builds_ only.
+  sim::BasinStore basins_;
+  std::map<std::string, WarmUp> warm_ups_;  ///< by the bytes of the scene
   std::array<std::atomic<std::uint64_t>, static_cast<std::size_t>(core::ErrorCode::kInternal) + 1> failure_counts_{};
   core::Worker builds_;
   core::Worker changes_;
