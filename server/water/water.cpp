@@ -56,7 +56,7 @@ core::Result<std::unique_ptr<Water>> Water::create(const gpu::DeviceChoice& devi
   const bool is_warm = known.warm_up && known.warm_up->wasQuick();
   const WarmUp warm_up = is_warm ? *known.warm_up : runWarm(**context, **sim);
   spdlog::debug("scene {}: {:.1f} MB on the device", scene.name(),
-               static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
+                static_cast<double>((*context)->ledger().buffer_bytes) / 1e6);
   return std::unique_ptr<Water>(new Water(*std::move(context), *std::move(sim), std::move(scene), warm_up));
 }
 
