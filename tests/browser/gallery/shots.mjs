@@ -18,7 +18,7 @@ const kShots = {
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 156 },
-  breaking_wave_particles: { tick: 96 },
+  breaking_wave_particles: { tick: 90 },
   breaking_wave_wave: { tick: 150 },
   dam_break: { tick: 90 },
   flume: { tick: 912 },

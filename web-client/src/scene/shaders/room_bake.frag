@@ -1,11 +1,11 @@
-// Bakes a photographer's studio into one face of the cube: a backdrop without seams that is bright low behind the water and deep blue above and at the
-// sides, and a soft box overhead. Water and glass are seen by what they mirror and bend: bright areas beside dark ones.
+// Bakes a photographer's studio into one face of the cube: a backdrop without seams that is white low behind the water and blue-grey above and at the
+// sides, and a soft box overhead. Against white one sees what water absorbs, and mirrored white beside grey gives its surface a shape.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;  // relative to noon
 layout(location = 0) out vec4 color;
 
-const vec3 kDeep = vec3(0.002, 0.010, 0.036), kBlue = vec3(0.005, 0.065, 0.19), kPale = vec3(0.10, 0.60, 1.0);
+const vec3 kDark = vec3(0.02, 0.06, 0.11), kGrey = vec3(0.16, 0.30, 0.40), kWhite = vec3(0.95, 1.0, 1.0);
 
 void main() {
   vec3 to = normalize(v_direction);
@@ -13,8 +13,8 @@ void main() {
   // The pool of light on the backdrop; it spreads over the floor toward the eye.
   float high = to.y < 0.0 ? -0.55 * to.y : to.y;
   float lit = exp(-20.0 * high * high) * (0.15 + 0.85 * behind * behind * behind * behind);
-  vec3 light = mix(kDeep, kBlue, smoothstep(0.0, 0.5, lit));
-  light = mix(light, kPale, smoothstep(0.35, 1.0, lit));
+  vec3 light = mix(kDark, kGrey, smoothstep(0.0, 0.5, lit));
+  light = mix(light, kWhite, smoothstep(0.35, 1.0, lit));
   // Overhead, and toward the back.
   vec2 over = (to.xz + vec2(0.0, 0.25)) / max(to.y, 0.2);
   light += vec3(2.0, 2.5, 2.9) * smoothstep(0.75, 0.45, abs(over.x)) * smoothstep(0.55, 0.3, abs(over.y)) * smoothstep(0.45, 0.6, to.y);
