@@ -21,7 +21,7 @@ struct RecordingOutlets final : SilentOutlets {
   int recovered_count = 0;
   int frame_count = 0;
   std::vector<core::LevelSet> ready_levels;  ///< of each frame
-  bool keeps_frames = false;                 ///< as an encoder that does not come to them
+  bool keeps_frames = false;                 ///< those on the device, as an encoder that does not come to them
   std::vector<core::FrameView> kept_frames;
   std::vector<std::uint64_t> applied;
   std::vector<v1::QueryAnswer> query_answers;
@@ -47,7 +47,7 @@ struct RecordingOutlets final : SilentOutlets {
   void frameReady(const rooms::Room&, core::FrameView frame) override {
     ++frame_count;
     ready_levels.push_back(frame.due);
-    if (keeps_frames) kept_frames.push_back(std::move(frame));
+    if (keeps_frames && frame.lease) kept_frames.push_back(std::move(frame));
   }
 };
 
