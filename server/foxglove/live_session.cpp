@@ -16,7 +16,7 @@ std::string lineOf(const v1::Reject& reject) {
 
 std::vector<Outgoing> LiveSession::send(core::ByteView message) {
   std::vector<Outgoing> out;
-  if (message.size() >= 2 && message.front() == kOwnMessage) {
+  if (message.size() > 2 && message.front() == kOwnMessage) {
     out.push_back({core::share(core::Bytes(message.begin() + 2, message.end())), message[1] != 0});
     return out;
   }

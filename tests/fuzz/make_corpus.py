@@ -434,7 +434,7 @@ FOXGLOVE = {
     "splash": (b'b\2\1\0\0\0\7\0\0\0\4\0\0\0json{"x_m":1.5,"radius_m":2}', "ack"),
     "reset": (b"b\2\2\0\0\0\7\0\0\0\4\0\0\0json", "reject"),
     "greeted_again": (b't{"op":"subscribe","subscriptions":[{"id":1,"channelId":2}]}', "greeting"),
-    "garbage": (b"t{", b"t[]", b"b", b"b\1\0\0\0\0", b't{"op":"advertise","channels":[]}', b"b\2\1\0\0\0\1\0\0\0\xff\xff\xff\xff"),
+    "garbage": (b"t{", b"t[]", b"b", b"b\1\0\0\0\0", b't{"op":"advertise","channels":[]}', b"b\2\1\0\0\0\1\0\0\0\xff\xff\xff\xff", b"s\0\0"),
 }
 
 
