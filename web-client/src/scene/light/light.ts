@@ -70,7 +70,7 @@ const kFairStorm = 0.3;
 
 /** Direct light in a room at noon: white, so that white water is. */
 const kStudioKey: Rgb = [0.92, 0.94, 0.97];
-/** Light of lamps in a room, which adds to the daylight that windows let in. */
+/** Light of lamps in a room, which adds to the daylight. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
 const kLampAmbientDown: Rgb = [0.085, 0.075, 0.06];
@@ -150,7 +150,7 @@ export function lightAt(hour: number, storm: number): Light {
   };
 }
 
-/** Returns the light in a room: windows let in the light of the hour from one side, and lamps are on when it is dim. */
+/** Returns the light in a room: as bright as the hour, from one side, and lamps are on when it is dim. */
 export function indoors(light: Light): Light {
   const daylight = Math.min(luminance(light.ambientUp) / luminance(kNoonSky.ambientUp), 1);
   const lamps = smoothstep(0.9, 0.2, daylight);

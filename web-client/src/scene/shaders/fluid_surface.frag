@@ -51,7 +51,7 @@ const float kMist = 0.25;
 const float kAiry = 0.12, kTorn = 0.22;
 const float kLaceRadii = 22.0;
 const float kWhiteness = 0.4;
-const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, as what is around it
+const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before the white backdrop
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
 
