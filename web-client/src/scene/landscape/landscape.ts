@@ -12,8 +12,8 @@ import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./te
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
 /** A bed in a tank is painted as its base is (solids/glass_tank.ts); its sides are seen through the glass. */
-const kFill: Paint = [0.03, 0.17, 0.29, 0.3];
-const kFillCut: Paint = [0.03, 0.09, 0.15, 0.3];
+const kFill: Paint = [0.42, 0.72, 0.80, 0.1];
+const kFillCut: Paint = [0.62, 0.72, 0.76, 0.1];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 

@@ -39,8 +39,9 @@ void main() {
   vec3 direction = normalize(v_direction);
   color = vec4(0.0, 0.0, 0.0, 1.0);
   if (direction.y < u_lowest) return;
-  float sun = u_has_disc ? 12.0 * u_sun_sharp : 0.0;
-  sun *= smoothstep(0.99988, 0.99994, dot(direction, u_sun_direction));
+  // The disc, and around it the light that air and lens spread.
+  float toward_sun = max(dot(direction, u_sun_direction), 0.0);
+  float sun = u_has_disc ? u_sun_sharp * (12.0 * smoothstep(0.99986, 0.99996, toward_sun) + 1.6 * pow(toward_sun, 3000.0) + 0.35 * pow(toward_sun, 250.0)) : 0.0;
   vec4 sky = texture(u_sky, direction);
   sky.rgb += u_sun_light * sun;
   if (u_stars > 0.0) sky.rgb += u_stars * sky.a * starLight(direction, 0.6 * length(fwidth(direction)));

@@ -125,6 +125,11 @@ void main() {
   edge = smoothstep(0.0, 0.05 * u_depth_m, deep_m);
 #endif
 
+#if defined(SKIRT) && (defined(BEACH) || defined(SHORE))
+  // The water's side ends at the ground.
+  if (v_world.y < v_top_m - deep_m) discard;
+#endif
+
   vec3 from_eye = v_world - u_camera_m;
   float distance_m = length(from_eye);
   vec3 ray = from_eye / distance_m;

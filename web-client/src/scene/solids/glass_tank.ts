@@ -16,8 +16,8 @@ const kFreeboardSides = 0.06;
 const kSizeWidths = 6;
 
 // Grain, as for other solids: 0 is paint, more is rough.
-/** What the water shows where one looks down. */
-const kBase: Paint = [0.02, 0.14, 0.28, 0];
+/** What clear water shows where one looks down. */
+const kBase: Paint = [0.30, 0.62, 0.72, 0];
 const kBaseEdge: Paint = [0.10, 0.16, 0.22, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
