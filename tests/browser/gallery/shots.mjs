@@ -37,7 +37,7 @@ const kShots = {
   splash_particles: { tick: 84 },
   splash_wave: { tick: 120 },
   still_pool: { tick: 60 },
-  thesis: { tick: 114 },
+  thesis: { tick: 420 },
   wave_only: { tick: 180 },
 };
 

@@ -40,6 +40,8 @@ export class FluidSurfacePass implements Pass {
     this.solids = solids;
     this.scale = scale;
     const { color, depth } = solids.textures;
+    const { edge } = solids.surroundings;
+    const ripples = edge.kind === "sea" ? edge.sea : edge.kind === "walls" ? edge.ripples : undefined;
     this.material = makeMaterial(
       "fluidSurface",
       {
@@ -48,6 +50,7 @@ export class FluidSurfacePass implements Pass {
         ...particleUniforms,
         ...volume.uniforms,
         ...floorUniforms,
+        ...ripples,
         u_behind: { value: color },
         u_behind_depth: { value: depth },
         u_ray: { value: new Vector4() },
@@ -59,7 +62,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: floorUniforms ? {} : { WAVE: 1 }, transparent: true },
+      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

@@ -3,10 +3,13 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass.
+// volume is a tank with walls of glass. RIPPLES: the wave's water has ripples, and so has the liquid.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
+#ifdef RIPPLES
+#include <ripples>
+#endif
 
 in vec2 v_uv;
 uniform sampler2D u_behind;
@@ -196,6 +199,10 @@ void main() {
   float raised = smoothstep(1.0, 2.4, overWave(surface));
   if (raised <= 0.0) discard;
   vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
+#ifdef RIPPLES
+  normal.xz -= rippleSlopes(surface.xz) * max(normal.y, 0.0) * (1.0 - liquid.y);
+  normal = normalize(normal);
+#endif
   if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
