@@ -53,7 +53,7 @@ readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=z
 # Runs the gpu and sim tests, and the stability tests that compare no times, some of them shorter than in `native`. Left out
 # are suites that only compare waves with theory for minutes: nothing in them depends on when the device answers, and the
 # other suites compile the same shaders.
-readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinutePositionBased)$)'
+readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillPositionBased)$)'
 
 readonly zink_leaves_out='^gpu/(Waves/)?(WindSeaOnDevice|MatchedLayerOnDevice|WaveMakersOnDevice|ExtremeMakers|DispersedSlopeOnDevice|BoatMotion)'
 
