@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <fstream>
 #include <map>
 #include <string>
 #include <vector>
@@ -95,6 +96,47 @@ void expectTheWorkOfAFreshOne(gpu::Context& ctx, sim::WaterSim& water, const cor
   }
   std::printf("afterwards %.2f ms per tick, a fresh room %.2f ms\n", used_s / 30 * 1e3, fresh_s / 30 * 1e3);
   EXPECT_LT(used_s / fresh_s, 1.5);
+}
+
+/// Resident memory of this process. [bytes]
+std::size_t residentBytes() {
+  std::ifstream statm("/proc/self/statm");
+  std::size_t total = 0;
+  std::size_t resident = 0;
+  statm >> total >> resident;
+  return resident * 4096;
+}
+
+/// As fast as the machine can: 40 simulated seconds, or SPINDRIFT_SOAK_S (600 for the ten minutes of
+/// docs/operations/watch.md).
+TEST_F(Endurance, DefaultSceneKeepsEnergyAndMemory) {
+  const v1::Scene scene = shipped("pool", levelFor("SPINDRIFT_SOAK_S"));
+  sim::WaterSim& water = make(scene::toCore(scene));
+  const int ticks = std::max(40, wanted("SPINDRIFT_SOAK_S", 40)) * static_cast<int>(scene.tick_rate_hz());
+  const int settled = 12 * static_cast<int>(scene.tick_rate_hz());  // the scene's own events repeat every 12 s
+  std::vector<double> energy_j;
+  std::size_t memory_at_start = 0;
+  std::size_t frame_count = 0;
+  for (int tick = 0; tick < ticks; ++tick) {
+    water.step();
+    if (tick % 2 == 0) (void)water.requestFrame(sim::FrameRequest::full({.surface = true, .particles = true}));
+    frame_count += water.takeFrames().size();
+    if (tick == settled) memory_at_start = residentBytes();
+    if (tick > settled) energy_j.push_back(water.health().kinetic_energy_j + water.health().wave_energy_j);
+    ASSERT_EQ(water.nonfiniteCount(), 0u) << "at " << water.time_s() << " s";
+    ASSERT_EQ(water.escapedCount(), 0u) << "at " << water.time_s() << " s";
+  }
+  EXPECT_EQ(water.recoveredCount(), 0u);
+  EXPECT_GT(frame_count, static_cast<std::size_t>(ticks / 4));
+  const auto middle = energy_j.begin() + static_cast<std::ptrdiff_t>(energy_j.size() / 2);
+  const double early_j = *std::max_element(energy_j.begin(), middle);
+  const double late_j = *std::max_element(middle, energy_j.end());
+  const double grown_mb = (static_cast<double>(residentBytes()) - static_cast<double>(memory_at_start)) / 1e6;
+  std::printf(
+      "%.0f s simulated; largest energy %.0f J in the first half, %.0f J in the second; memory grew by %.2f MB\n",
+      water.time_s(), early_j, late_j, grown_mb);
+  EXPECT_LE(late_j, 1.25 * early_j) << "the same events give the same energy again";
+  EXPECT_LE(grown_mb, 4.0);
 }
 
 TEST_F(Endurance, ThousandsOfRandomCommandsLeaveAHealthyHarbor) {
