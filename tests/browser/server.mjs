@@ -14,7 +14,7 @@ const kTestScenes = [...kGrace, "--scene", `${repository}/tests/browser/scene.te
 const START_LIMIT_MS = 120_000;
 const STOP_LIMIT_MS = 30_000;
 /** Limit of one wait: far above what software WebGL on two cores takes. */
-export const WAIT_MS = 100_000;
+export const WAIT_MS = 120_000;
 
 /**
  * Starts `spindrift serve`, or another command that serves, with the built page.
