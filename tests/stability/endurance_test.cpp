@@ -107,8 +107,7 @@ std::size_t residentBytes() {
   return resident * 4096;
 }
 
-/// As fast as the machine can: 40 simulated seconds, or SPINDRIFT_SOAK_S (600 for the ten minutes of
-/// docs/operations/watch.md).
+/// As fast as the machine can: 40 simulated seconds, or SPINDRIFT_SOAK_S.
 TEST_F(Endurance, DefaultSceneKeepsEnergyAndMemory) {
   const v1::Scene scene = shipped("pool", levelFor("SPINDRIFT_SOAK_S"));
   sim::WaterSim& water = make(scene::toCore(scene));
