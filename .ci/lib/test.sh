@@ -20,8 +20,11 @@ run_part() {
   # pipe open.
   timeout 10 tail --pid="$shown" --follow /dev/null || true
   ((code != 124)) || say "$name took longer than $limit_s s and was ended"
-  reports+=("$name:$code:$root/build/reports/$name.xml")
+  add_report "$name" "$code"
 }
+
+# add_report NAME CODE: remembers a part for the total. Parts run in subshells as well, so in a file.
+add_report() { printf '%s\n' "$1:$2:$root/build/reports/$1.xml" >>build/reports/parts; }
 
 # CTest runs tests side by side as far as their weights (PROCESSORS in tests/CMakeLists.txt) fit into three per core. The
 # rasteriser computes on the thread that asks: threads of its own would only take turns with those of the other tests.
@@ -50,7 +53,7 @@ readonly zink_environment=(LIBGL_ALWAYS_SOFTWARE=1 MESA_LOADER_DRIVER_OVERRIDE=z
 # Runs the gpu and sim tests, and the stability tests that compare no times, some of them shorter than in `native`. Left out
 # are suites that only compare waves with theory for minutes: nothing in them depends on when the device answers, and the
 # other suites compile the same shaders.
-readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillForAMinutePositionBased)$)'
+readonly zink_tests='^gpu/|^stability/(.*Determinism.*/(pool|splash|harbor)( |$)|Endurance\.(TheLedgerOfSurfaceAndParticlesIsExact|NoParticleStaysBelowTheSurfaceOrInARock|StillPoolStaysStillPositionBased)$)'
 
 readonly zink_leaves_out='^gpu/(Waves/)?(WindSeaOnDevice|MatchedLayerOnDevice|WaveMakersOnDevice|ExtremeMakers|DispersedSlopeOnDevice|BoatMotion)'
 
@@ -66,7 +69,7 @@ test_zink() {
   problem="$(zink_problem)"
   if [[ -n "$problem" ]]; then
     write_skipped "$root/build/reports/zink.xml" "every test on zink" "$problem"
-    reports+=("zink:0:$root/build/reports/zink.xml")
+    add_report zink 0
     return
   fi
   run_part zink "$ctest_limit_s" env "${rasteriser_environment[@]}" "${zink_environment[@]}" \
@@ -121,11 +124,14 @@ test_tidy() {
   run_part tidy "$tidy_limit_s" python3 tests/tools/tidy.py build/tidy "$root/build/reports/tidy.xml" "${files[@]}"
 }
 
-# node_tests NAME SECONDS FILE…
+# Files of browser tests at the same time: a browser waits for its server and its pages for a third of the time.
+readonly browsers=2
+
+# node_tests NAME SECONDS FILES_AT_ONCE FILE…
 node_tests() {
-  local name="$1" limit_s="$2"
-  shift 2
-  run_part "$name" "$limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node --test --test-concurrency=1 \
+  local name="$1" limit_s="$2" at_once="$3"
+  shift 3
+  run_part "$name" "$limit_s" env "SPINDRIFT_BINARY=$(binary_of "$preset")" node --test --test-concurrency="$at_once" \
     --test-reporter=spec --test-reporter-destination=stdout \
     --test-reporter=junit "--test-reporter-destination=$root/build/reports/$name.xml" "$@"
 }
@@ -135,11 +141,13 @@ node_tests() {
 test_containers() {
   if ! "$containers_when_named"; then
     write_skipped "$root/build/reports/containers.xml" "the image builds and runs" "the image takes about ten minutes: ./dev test containers"
-    reports+=("containers:0:$root/build/reports/containers.xml")
+    add_report containers 0
     return
   fi
-  node_tests containers "$containers_limit_s" tests/containers/image.test.mjs
+  node_tests containers "$containers_limit_s" 1 tests/containers/image.test.mjs
 }
+
+beside=""  # process of the parts that run beside the others
 
 command_test() {
   if wants_help "$@"; then
@@ -161,7 +169,7 @@ build/logs.
 TEXT
     return
   fi
-  local preset rest part parts=() reports=() test_regex=""
+  local preset rest part parts=() test_regex=""
   take_preset "$@"
   while ((${#rest[@]} > 0)); do
     case "${rest[0]}" in
@@ -187,9 +195,36 @@ TEXT
   done
 
   # If anything stops the script from here on, the last line is a total with a failure.
-  trap 'echo "0 passed, 1 failed, 0 skipped"' EXIT
+  trap '[[ -z "$beside" ]] || kill "$beside" 2>/dev/null; echo "0 passed, 1 failed, 0 skipped"' EXIT
   prepare_tests "${parts[@]}"
+  : >build/reports/parts
+  # Parts that mostly wait run one after the other beside the first of the others, which computes; their output is shown after its own.
+  local waiting=() computing=()
   for part in "${parts[@]}"; do
+    if [[ "$part" == @(web|wire|python|tools) ]]; then waiting+=("$part"); else computing+=("$part"); fi
+  done
+  if ((${#computing[@]} == 0)); then
+    run_parts "${waiting[@]}"
+  else
+    run_parts "${waiting[@]}" 2>build/logs/beside.log &
+    beside=$!
+    run_parts "${computing[0]}"
+    local code=0
+    wait "$beside" || code=$?
+    beside=""
+    cat build/logs/beside.log >&2
+    ((code == 0)) || fail 1 "one of the parts ${waiting[*]} could not run"
+    run_parts "${computing[@]:1}"
+  fi
+  trap - EXIT
+  mapfile -t parts <build/reports/parts
+  python3 tests/tools/summarise.py "${parts[@]}"
+}
+
+# run_parts PART…: runs them one after the other.
+run_parts() {
+  local part
+  for part in "$@"; do
     case "$part" in
       native) test_native native "$preset" ;;
       zink) test_zink ;;
@@ -200,14 +235,12 @@ TEXT
       web) test_web ;;
       wire) test_wire ;;
       python) test_python ;;
-      browser) node_tests browser "$browser_limit_s" tests/browser/*.test.mjs ;;
-      tools) node_tests tools "$tools_limit_s" tests/tools/*.test.mjs tests/containers/deployment.test.mjs ;;
+      browser) node_tests browser "$browser_limit_s" "$browsers" tests/browser/*.test.mjs ;;
+      tools) node_tests tools "$tools_limit_s" 1 tests/tools/*.test.mjs tests/containers/deployment.test.mjs ;;
       containers) test_containers ;;
       *) test_native "$part" "$preset" "$part" ;;
     esac
   done
-  trap - EXIT
-  python3 tests/tools/summarise.py "${reports[@]}"
 }
 
 build_memory_tests() {

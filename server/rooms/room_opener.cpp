@@ -50,7 +50,7 @@ core::Result<void> RoomOpener::choose(Opening& opening, std::uint64_t before) {
   } else if (setup.scene.name().empty()) {
     return core::invalid("room " + setup.name + ": nothing of it on disk can be used");
   }
-  opening.water = builder_.build(std::move(start), true);
+  opening.water = builder_.build(std::move(start), water::WaterBuilder::FirstTick::kMayBeCold);
   return {};
 }
 

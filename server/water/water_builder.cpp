@@ -19,15 +19,15 @@ core::Error shutDown() {
 WaterBuilder::WaterBuilder(gpu::DeviceChoice device, SceneCatalog scenes, const std::function<void()>& done)
     : device_(std::move(device)), scenes_(std::move(scenes)), builds_(0, done), changes_(0, done) {}
 
-std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene, bool may_be_cold) {
+std::future<WaterBuilder::Built> WaterBuilder::build(v1::Scene scene, FirstTick first_tick) {
   auto promise = std::make_shared<std::promise<Built>>();
   auto future = promise->get_future();
-  builds_.push([this, promise, may_be_cold, scene = std::move(scene)](bool runs) mutable {
+  builds_.push([this, promise, first_tick, scene = std::move(scene)](bool runs) mutable {
     if (!runs) return promise->set_value(shutDown());
     const std::string kind = scene.SerializeAsString();
     KnownScene known{.basins = &basins_};
     const auto before = warm_ups_.find(kind);
-    if (may_be_cold && before != warm_ups_.end()) known.warm_up = before->second;
+    if (first_tick == FirstTick::kMayBeCold && before != warm_ups_.end()) known.warm_up = before->second;
     Built built = Water::create(device_, std::move(scene), known);
     if (built) {
       if (warm_ups_.size() >= kWarmUpMaxCount) warm_ups_.clear();

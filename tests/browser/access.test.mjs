@@ -3,12 +3,9 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { layoutFaults } from "./layout_faults.mjs";
 import { startClass } from "./server.mjs";
-import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
 const kAxe = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 const kDesk = { viewport: { width: 1280, height: 720 } };
@@ -54,7 +51,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
 
   before(async () => {
     ({ server, token } = await startClass());
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   });
   after(async () => {
     await browser?.close();
@@ -63,6 +60,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
 
   async function open(path, options) {
     const page = await (await browser.newContext(options)).newPage();
+    page.setDefaultTimeout(WAIT_MS);
     page.on("pageerror", (error) => assert.fail(error));
     await page.goto(new URL(path, `http://127.0.0.1:${server.port}/`).href, { timeout: WAIT_MS });
     await waitFor(page, "water", ({ simTime, role }) => simTime > 0 && role !== "viewer");

@@ -1,19 +1,16 @@
 // The page at other addresses than the root: under a path behind a proxy, and what its address holds. A room that does not exist: front.test.mjs.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { startPathProxy } from "./path_proxy.mjs";
 import { repository, startServer } from "./server.mjs";
+import { panelsShown } from "./two_people.mjs";
 
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { timeout: 4 * WAIT_MS };
 
 describe("the page's address", { skip, concurrency: 1 }, () => {
@@ -29,7 +26,7 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     writeFileSync(join(folder, "mound.textproto"), "wave { resolution_count: 64 side_m: 8 depth_m: 1 }\nbed { shapes { cone { toe_radius_m: 3 crest_radius_m: 1 height_m: 1.2 } } }\n");
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--room", `mound=${join(folder, "mound.textproto")}`]);
     proxy = await startPathProxy(server.port, "/water/");
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   }, slow);
   after(async () => {
     await browser?.close();
@@ -40,26 +37,18 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
 
   async function open(address) {
     page = await browser.newPage();
+    page.setDefaultTimeout(WAIT_MS);
     complaints = [];
     page.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
     page.on("pageerror", (error) => complaints.push(error.message));
     await page.goto(address, { timeout: WAIT_MS });
   }
 
-  async function waitFor(what, accept) {
-    let stats;
-    for (const begin = Date.now(); Date.now() - begin < WAIT_MS; await sleep(100)) {
-      stats = await page.evaluate(() => window.spindrift?.stats());
-      if (stats && accept(stats)) return;
-    }
-    assert.fail(`waited ${WAIT_MS / 1000} s for ${what}: ${JSON.stringify(stats)}`);
-  }
-
   it("under a path asks for nothing outside it, and shows water and ground of a room", slow, async () => {
     await open("about:blank");
     const ground = page.waitForResponse((answer) => answer.url().endsWith("/ground"), { timeout: WAIT_MS });
     await page.goto(`${proxy.url}?quality=minimal&room=mound`, { timeout: WAIT_MS });
-    await waitFor("frames", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2);
+    await waitFor(page, "frames", (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2);
     assert.equal((await ground).status(), 200);
     assert.deepEqual(proxy.outside, []);
     assert.deepEqual(complaints, []);
@@ -70,7 +59,7 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     const pixels = () => page.evaluate(() => [[0, 0], [1, 0], [0, 1]].map(([xM, zM]) => window.spindrift.pixelOf(xM, zM)));
     const isLive = (stats) => stats.connectionState === "live" && stats.framesReceived.surface > 2;
     await open(`${server.url}?quality=minimal&room=main`);
-    await waitFor("frames", isLive);
+    await waitFor(page, "frames", isLive);
     await sleep(1500);
     assert.equal(new URL(page.url()).search, "?quality=minimal&room=main", "nothing was chosen yet");
     await page.getByTestId("view-overview").click();
@@ -87,8 +76,8 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await page.close();
 
     await open(address);
-    await waitFor("frames", isLive);
-    await waitFor("the camera of the address", (stats) => stats.view === null);
+    await waitFor(page, "frames", isLive);
+    await waitFor(page, "the camera of the address", (stats) => stats.view === null);
     await sleep(1000);
     const again = await pixels();
     shown.flat().forEach((px, k) => assert.ok(Math.abs(px - again.flat()[k]) < 2, `${JSON.stringify(shown)}, then ${JSON.stringify(again)}`));
@@ -117,8 +106,9 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
       assert.equal(await buttons.count(), 0);
       assert.ok(!(await page.getByTestId("state").isVisible()));
       release();
-      await waitFor("a picture of the water", (stats) => stats.shownTimeS !== null);
+      await waitFor(page, "a picture of the water", (stats) => stats.shownTimeS !== null);
       await poster.waitFor({ state: "detached", timeout: WAIT_MS });
+      await panelsShown(page);
       assert.ok((await buttons.count()) > 5);
       for (const button of await buttons.all()) assert.ok(await button.evaluate((each) => each.textContent.trim() || each.title || each.getAttribute("aria-label")), await button.evaluate((each) => each.outerHTML));
       assert.equal(await page.getByTestId("light").inputValue(), "automatic");

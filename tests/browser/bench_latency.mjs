@@ -8,7 +8,7 @@ import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
-import { pixelOf, waitFor } from "./two_people.mjs";
+import { pixelOf } from "./two_people.mjs";
 
 const { values } = parseArgs({ options: { rounds: { type: "string", default: "15" }, size: { type: "string", default: "480x300" } } });
 const rounds = Number(values.rounds);

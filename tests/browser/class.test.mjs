@@ -3,12 +3,9 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 
 import jsQR from "jsqr";
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { startClass } from "./server.mjs";
-import { skip, waitFor, WAIT_MS } from "./two_people.mjs";
 
 describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   let server;
@@ -18,6 +15,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
 
   const open = async (options, path) => {
     const page = await (await browser.newContext(options)).newPage();
+    page.setDefaultTimeout(WAIT_MS);
     page.on("pageerror", (error) => assert.fail(error));
     await page.goto(new URL(path, `http://127.0.0.1:${server.port}/`).href, { timeout: WAIT_MS });
     await waitFor(page, "the page to be live", ({ connectionState, role }) => connectionState === "live" && role !== "viewer");
@@ -29,7 +27,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   before(async () => {
     let token;
     ({ server, token } = await startClass());
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     projector = await open({ viewport: { width: 1280, height: 720 } }, `?class&quality=minimal#token=${token}`);
   });
   after(async () => {

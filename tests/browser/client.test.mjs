@@ -1,19 +1,14 @@
 // The package spindrift-client in a worker of a browser, bundled by Vite as a project of others would, in a page of another origin.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
 import { build } from "../../web-client/node_modules/vite/dist/node/index.js";
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
-
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 
 /** What the worker does: the first heights, a command, a refusal, five frames of a loop. */
 const kWorker = (url) => `
@@ -47,7 +42,7 @@ describe("the package in a worker", { skip }, () => {
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--origin", `http://127.0.0.1:${http.address().port}`]);
     writeFileSync(join(folder, "worker.js"), kWorker(server.url));
     await build({ configFile: false, root: folder, logLevel: "error", build: { target: "es2022", lib: { entry: "worker.js", formats: ["es"], fileName: () => "worker.js" } } });
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   }, { timeout: 4 * WAIT_MS });
   after(async () => {
     await browser?.close();

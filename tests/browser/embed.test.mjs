@@ -1,20 +1,16 @@
 // Rooms in the page of another origin by <spindrift-water>: what that page may do, and what no other page may.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
 import { measure } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { timeout: 4 * WAIT_MS };
 const kTokens = { viewer: "a-viewer-of-the-test", player: "a-player-of-the-test" };
 const kScene = `${repository}/tests/browser/scene.textproto`;
@@ -35,15 +31,6 @@ async function startPages() {
   return { url: `http://127.0.0.1:${http.address().port}`, pages, close };
 }
 
-async function until(what, ask, accept) {
-  let last;
-  for (const begin = Date.now(); Date.now() - begin < WAIT_MS; await sleep(100)) {
-    last = await ask();
-    if (accept(last)) return last;
-  }
-  assert.fail(`waited ${WAIT_MS / 1000} s for ${what}: ${JSON.stringify(last)}`);
-}
-
 describe("a page of another origin", { skip, concurrency: 1 }, () => {
   const folder = mkdtempSync(join(tmpdir(), "spindrift-embed-"));
   let listed;
@@ -59,7 +46,7 @@ describe("a page of another origin", { skip, concurrency: 1 }, () => {
     writeFileSync(join(folder, "tokens"), Object.entries(kTokens).map(([role, token]) => `${role} ${token}\n`).join(""));
     server = await startServer(0, ["--scene", kScene, "--room", `second=${kScene}`, "--embed", listed.url, "--tokens-file", join(folder, "tokens"), "--guests", "operator"]);
     listed.pages.set("/element", withElement('room="main"'));
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   }, slow);
   after(async () => {
     await browser?.close();
@@ -71,6 +58,7 @@ describe("a page of another origin", { skip, concurrency: 1 }, () => {
   async function open(address, options = {}) {
     await page?.close();
     page = await browser.newPage({ viewport: { width: 1280, height: 720 }, ...options });
+    page.setDefaultTimeout(WAIT_MS);
     said = [];
     page.on("console", (message) => said.push(`${message.type()}: ${message.text()}`));
     page.on("pageerror", (error) => said.push(`uncaught: ${error.message}`));

@@ -2,8 +2,9 @@
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { repository } from "./server.mjs";
-import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
+import { pixelOf, twoPeople } from "./two_people.mjs";
 
 const ofKind = ({ floaters }, kind) => floaters.find((each) => each.kind === kind);
 const distanceM = (floater, xM, zM) => Math.hypot(floater.xM - xM, floater.zM - zM);

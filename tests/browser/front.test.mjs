@@ -1,16 +1,10 @@
 // The front page of a server with several rooms.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
-import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 120_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { timeout: 8 * WAIT_MS };
 const kScenes = `${repository}/tests/browser`;
 const kDesk = { viewport: { width: 1280, height: 720 } };
@@ -23,7 +17,7 @@ describe("the front page", { skip, concurrency: 1 }, () => {
 
   before(async () => {
     server = await startServer(0, ["--scene", `${kScenes}/scene.textproto`, "--room", `marina=${kScenes}/marina.textproto`, "--room", `sea=${kScenes}/sea.textproto`]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   }, slow);
   after(async () => {
     await browser?.close();
@@ -32,6 +26,7 @@ describe("the front page", { skip, concurrency: 1 }, () => {
 
   async function open(query = "", options = kDesk, first = () => {}) {
     const page = await browser.newPage(options);
+    page.setDefaultTimeout(WAIT_MS);
     page.on("pageerror", (error) => complaints.push(error.message));
     await page.addInitScript(first);
     await page.goto(`${server.url}${query}`, { timeout: WAIT_MS });
@@ -44,15 +39,6 @@ describe("the front page", { skip, concurrency: 1 }, () => {
     const body = JSON.stringify({ splash: { x_m: 1, z_m: 0.5, radius_m: 1, depth_m: 0.3 } });
     assert.equal((await ask(`rooms/${room}/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body })).status, 200);
   };
-
-  async function until(what, read, accept) {
-    let value;
-    for (const begin = Date.now(); Date.now() - begin < WAIT_MS; await sleep(100)) {
-      value = await read();
-      if (accept(value)) return value;
-    }
-    assert.fail(`waited ${WAIT_MS / 1000} s for ${what}: ${JSON.stringify(value)}`);
-  }
 
   const sessions = (what, wanted) => until(what, () => Promise.all(Object.keys(wanted).map(sessionsIn)), (counts) => Object.values(wanted).every((count, k) => counts[k] === count));
   /** A busy server answers 504 and opens the room a little later. */

@@ -1,20 +1,17 @@
 // Pictures of the page at low quality against the kept ones: every shipped scene as it is seen first, the harbor in every light. `./dev
 // gallery` makes them at high quality, too, and keeps new ones (docs/contributing.md).
 import assert from "node:assert/strict";
-import { existsSync, readdirSync, readFileSync } from "node:fs";
+import { readdirSync, readFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip } from "./chromium.mjs";
 import { compare, described } from "./gallery/compare.mjs";
 import { DrivenPage } from "./gallery/driven_page.mjs";
 import { check, differencePath, kFile, keptPath, kKept, kPosters, madePath, makePictures, nameOf } from "./gallery/pictures.mjs";
 import { lightsOf, kSize, sceneOf, setUp, shippedScenes, shotOf } from "./gallery/shots.mjs";
 
 const kWaitMs = 600_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 
 /** Returns a picture with its red, green and blue multiplied. */
 function tinted(page, file, factors) {
@@ -43,7 +40,7 @@ describe("pictures of the shipped scenes", { concurrency: 1, skip }, () => {
   let scratch;
 
   before(async () => {
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     context = await browser.newContext();
     scratch = await context.newPage();
   });

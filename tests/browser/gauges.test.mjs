@@ -3,18 +3,15 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS, waitFor as waitForNumbers } from "./chromium.mjs";
 import { startServer } from "./server.mjs";
-import { skip, waitFor as waitForStats, WAIT_MS } from "./two_people.mjs";
 
 const kGauges = ["maker", "toe", "slope", "breakers", "shore"];
 const kFingerPx = 44;
 /** A picture, and all that a page on a busy machine has to do before it. */
 const kPatienceMs = 4 * WAIT_MS;
 const slow = { timeout: 6 * kPatienceMs };
-const waitFor = (page, what, accept) => waitForStats(page, what, accept, kPatienceMs);
+const waitFor = (page, what, accept) => waitForNumbers(page, what, accept, kPatienceMs);
 
 describe("the gauges", { skip, concurrency: 1 }, () => {
   let server;
@@ -24,7 +21,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
 
   before(async () => {
     server = await startServer(0, ["--scene", "flume"]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     desk = await open({ viewport: { width: 1280, height: 720 } });
   }, slow);
   after(async () => {
@@ -180,7 +177,7 @@ describe("gauges of one's own", { skip, concurrency: 1 }, () => {
 
   before(async () => {
     server = await startServer(0, ["--scene", "pool", "--guests", "player", "--grace-s", "1"]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     desk = await open({ viewport: { width: 1280, height: 720 } });
     phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
   }, slow);

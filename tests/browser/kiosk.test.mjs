@@ -1,19 +1,14 @@
 // The page as an exhibit: attract view, visits, time-outs, limits, the watchdog, and a day of visitors in simulated time.
-// KIOSK_HOURS=N (default 2): length of that day in hours.
+// KIOSK_HOURS=N (default 1): length of that day in hours.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 120_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { timeout: 8 * WAIT_MS };
-const kHours = Number(process.env.KIOSK_HOURS ?? 2);
+const kHours = Number(process.env.KIOSK_HOURS ?? 1);
 /** A round is a simulated minute. */
 const kRoundsCount = Math.round(60 * kHours);
 const kHeapGrowthMaxBytes = 8e6;
@@ -34,8 +29,9 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     // Guests on this machine are operators: what the page forbids, it forbids to them, too.
     server = await start();
     address = `${server.url}?quality=minimal&kiosk=${kIdleS}`;
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     page = await (await browser.newContext({ viewport: { width: 800, height: 600 }, hasTouch: true })).newPage();
+    page.setDefaultTimeout(WAIT_MS);
     page.on("pageerror", (error) => complaints.push(error.stack ?? error.message));
     page.on("console", (message) => lines.push(message.text()));
     await page.goto(address, { timeout: WAIT_MS });
@@ -47,17 +43,10 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     await server?.stop("SIGTERM");
   });
 
-  async function until(what, read, accept) {
-    let value;
-    for (const begin = Date.now(); Date.now() - begin < WAIT_MS; await sleep(100)) {
-      value = await read().catch((error) => error.message);
-      if (accept(value)) return value;
-    }
-    assert.fail(`waited ${WAIT_MS / 1000} s for ${what}: ${JSON.stringify(value)}`);
-  }
-
+  /** While a page loads, what is read of it fails. */
+  const whenThere = (what, read, accept) => until(what, () => read().catch((error) => error.message), accept);
   const stats = () => page.evaluate(() => ({ ...window.spindrift.stats(), ...window.spindriftKiosk.stats() }));
-  const untilStats = (what, accept) => until(what, stats, (now) => typeof now === "object" && accept(now));
+  const untilStats = (what, accept) => whenThere(what, stats, (now) => typeof now === "object" && accept(now));
   const shown = () => untilStats("pictures of the water", ({ connectionState, shownTimeS }) => connectionState === "live" && shownTimeS !== null);
   const skipVisit = (s) => page.evaluate((seconds) => window.spindriftKiosk.skipVisit(seconds), s);
   const pixel = () => page.evaluate(() => window.spindrift.pixelOf(3, 2));
@@ -75,7 +64,7 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     assert.ok(await page.getByTestId("kiosk-invite").isVisible());
     assert.deepEqual(await visibleControls(), ["view"]);
     const first = await pixel();
-    await until("the camera to move", pixel, ([x, y]) => Math.hypot(x - first[0], y - first[1]) > 5);
+    await whenThere("the camera to move", pixel, ([x, y]) => Math.hypot(x - first[0], y - first[1]) > 5);
     await page.emulateMedia({ reducedMotion: "reduce" });
     await sleep(500);
     const still = await pixel();
@@ -138,9 +127,9 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
   });
 
   it("loads again when pictures stop, each time later, and not while the server is away", slow, async () => {
-    const reloaded = (reloads) => until(`reload ${reloads}`, () => page.evaluate(() => [window.mark ?? 0, window.spindriftKiosk.stats().reloads]), (now) => now[0] === 0 && now[1] === reloads);
+    const reloaded = (reloads) => whenThere(`reload ${reloads}`, () => page.evaluate(() => [window.mark ?? 0, window.spindriftKiosk.stats().reloads]), (now) => now[0] === 0 && now[1] === reloads);
     const skipWatchdog = (s) => page.evaluate((seconds) => window.spindriftKiosk.skipWatchdog(seconds), s);
-    const watchdogSaid = (text) => until(text, async () => lines.filter((line) => line.includes("kiosk:")), (said) => said.some((line) => line.includes(text)));
+    const watchdogSaid = (text) => whenThere(text, async () => lines.filter((line) => line.includes("kiosk:")), (said) => said.some((line) => line.includes(text)));
     await page.evaluate(() => void (window.requestAnimationFrame = () => 0));
     await skipWatchdog(31);
     await reloaded(1);

@@ -1,7 +1,7 @@
 // The page in Chromium with the real server, in one long file because its tests share a browser and a server and run in order:
 // picture, controls, acknowledgements. Every wait is for an event, with a limit for software WebGL on two cores.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, describe, it } from "node:test";
@@ -9,14 +9,12 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import { chromium } from "playwright-core";
 
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { executable, kChromiumArgs, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { focusLight } from "./caustics.mjs";
 import { unfolded } from "./panel.mjs";
 import { brightnessAt, colourAt, measure, measureBody, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const slow = { skip, timeout: 4 * WAIT_MS };
 
 let server;
@@ -31,6 +29,7 @@ let is_server_down = false;
 /** Waits until frames of `layer` arrive. */
 async function openPage(room = "main", layer = "surface") {
   const opened = await context.newPage();
+  opened.setDefaultTimeout(WAIT_MS);
   opened.on("pageerror", (error) => complaints.push(`uncaught: ${error.stack ?? error.message}`));
   opened.on("console", (message) => {
     // The browser reports a draw call that it refuses as a warning.
@@ -44,17 +43,6 @@ async function openPage(room = "main", layer = "surface") {
 }
 
 const statsOf = (target) => target.evaluate(() => window.spindrift?.stats());
-
-/** Waits until `accept(stats)` is true; the failure message has the last stats. */
-async function waitFor(target, what, accept) {
-  const deadline_ms = Date.now() + WAIT_MS;
-  for (;;) {
-    const stats = await statsOf(target);
-    if (stats !== undefined && accept(stats)) return stats;
-    assert.ok(Date.now() < deadline_ms, `waited ${WAIT_MS / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
-    await sleep(100);
-  }
-}
 
 /** Returns the number that an element of the panel shows. */
 async function shown(target, test_id) {

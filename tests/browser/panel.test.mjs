@@ -3,9 +3,10 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, describe, it } from "node:test";
 
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
-import { skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
+import { twoPeople } from "./two_people.mjs";
 
 const kFingerPx = 44;
 

@@ -1,7 +1,9 @@
 // The real server as a child process: waits for its ready line, stops it by signal.
+import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
 import { createServer } from "node:net";
 import { createInterface } from "node:readline";
+import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
 
 export const repository = fileURLToPath(new URL("../..", import.meta.url));
@@ -11,6 +13,8 @@ const kGrace = ["--grace", "300"];
 const kTestScenes = [...kGrace, "--scene", `${repository}/tests/browser/scene.textproto`, "--room", `marina=${repository}/tests/browser/marina.textproto`, "--room", `sea=${repository}/tests/browser/sea.textproto`, "--room", `tank=${repository}/tests/browser/tank.textproto`];
 const START_LIMIT_MS = 120_000;
 const STOP_LIMIT_MS = 30_000;
+/** Limit of one wait: far above what software WebGL on two cores takes. */
+export const WAIT_MS = 120_000;
 
 /**
  * Starts `spindrift serve`, or another command that serves, with the built page.
@@ -81,6 +85,16 @@ async function stop(child, ended, signal) {
   const { code, signal: last_signal } = await ended;
   clearTimeout(timer);
   return { code, signal: last_signal };
+}
+
+/** Reads until `accept` takes the value, and returns it; the failure has the last one. */
+export async function until(what, read, accept = Boolean, patienceMs = WAIT_MS) {
+  let value;
+  for (const begin = Date.now(); Date.now() - begin < patienceMs; await sleep(50)) {
+    value = await read();
+    if (accept(value)) return value;
+  }
+  assert.fail(`waited ${patienceMs / 1000} s for ${what}: ${JSON.stringify(value)}`);
 }
 
 /** A port of the loopback that nobody listens on now. */

@@ -1,18 +1,14 @@
 // Links: the Share card, and what a link shows elsewhere.
 import assert from "node:assert/strict";
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip, WAIT_MS } from "./chromium.mjs";
 import { measure, shootWater } from "./pixels.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 60_000;
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 /** A room is opened within seconds, or minutes on a machine that builds at the same time. */
 const slow = { timeout: 8 * WAIT_MS };
 const kNetworkUrl = "http://192.168.1.20:8080/water";
@@ -24,7 +20,7 @@ describe("a shared link", { skip, concurrency: 1 }, () => {
 
   before(async () => {
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--public-url", kNetworkUrl]);
-    for (let k = 0; k < 2; ++k) browsers.push(await chromium.launch({ executablePath: executable, args: kChromiumArgs }));
+    for (let k = 0; k < 2; ++k) browsers.push(await launch());
   }, slow);
   after(async () => {
     for (const browser of browsers) await browser.close();
@@ -40,6 +36,7 @@ describe("a shared link", { skip, concurrency: 1 }, () => {
 
   async function open(browser, address, options = { viewport: { width: 800, height: 500 } }) {
     const page = await browser.newPage(options);
+    page.setDefaultTimeout(WAIT_MS);
     await page.goto(address, { timeout: WAIT_MS });
     await waitFor(page, "frames", () => window.spindrift?.stats().framesReceived.surface > 2);
     return page;
@@ -133,7 +130,7 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
     folder = mkdtempSync(join(tmpdir(), "spindrift-links-"));
     writeFileSync(join(folder, "tokens"), `operator ${kOperator}\n`);
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--tokens-file", join(folder, "tokens"), "--max-rooms", "3"]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   }, slow);
   after(async () => {
     await browser?.close();
@@ -146,6 +143,7 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
   const roomsNow = async () => (await ask("rooms")).rooms.map(({ name }) => name);
   async function open(address) {
     const page = await browser.newPage({ viewport: { width: 800, height: 500 } });
+    page.setDefaultTimeout(WAIT_MS);
     await page.goto(address, { timeout: WAIT_MS });
     return page;
   }

@@ -1,18 +1,14 @@
 // Wet ground in the page: sand that a wave has left is darker than dry sand. The water is advanced tick by tick, so that nothing depends on
 // the speed of the machine.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, skip } from "./chromium.mjs";
 import { DrivenPage } from "./gallery/driven_page.mjs";
 import { brightnessAt } from "./pixels.mjs";
 import { repository } from "./server.mjs";
 
-const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 const kWaitMs = 600_000;
 const kStride = 12;
 /** The wave of the scene has not come up the beach at this tick, and has long withdrawn at the last one. */
@@ -40,7 +36,7 @@ async function pairsOn(page) {
 describe("wet sand", { concurrency: 1, skip }, () => {
   let browser;
   before(async () => {
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
   });
   after(() => browser?.close());
 

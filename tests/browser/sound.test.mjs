@@ -3,9 +3,10 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { repository } from "./server.mjs";
-import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
+import { pixelOf, twoPeople } from "./two_people.mjs";
 
 /** RMS of the output that counts as silence, and as a splash. */
 const kSilentRms = 0.0005;

@@ -4,10 +4,11 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
-import { pixelOf, skip, twoPeople, waitFor, WAIT_MS } from "./two_people.mjs";
+import { pixelOf, twoPeople } from "./two_people.mjs";
 
 describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, () => {
   let desk;

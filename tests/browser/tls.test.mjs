@@ -7,12 +7,9 @@ import { join } from "node:path";
 import { after, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { executable, launch, WAIT_MS } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
 
-const WAIT_MS = 60_000;
 const missing = [
   [!existsSync(executable), `Chromium is missing (${executable}); set CHROMIUM or install it`],
   [spawnSync("openssl", ["version"]).error !== undefined, "openssl is missing"],
@@ -33,7 +30,7 @@ describe("the page over https", { skip }, () => {
     const [cert, key] = [join(folder, "cert.pem"), join(folder, "key.pem")];
     execFileSync("openssl", ["req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2", "-subj", "/CN=localhost", "-addext", "subjectAltName=DNS:localhost,IP:127.0.0.1", "-keyout", key, "-out", cert], { stdio: "ignore" });
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--tls-cert", cert, "--tls-key", key]);
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     const context = await browser.newContext({ ignoreHTTPSErrors: true });
     const page = await context.newPage();
     const sockets = [];

@@ -1,27 +1,8 @@
 // Two people, each in a browser window of their own; the second has a phone.
 import assert from "node:assert/strict";
-import { existsSync } from "node:fs";
-import { setTimeout as sleep } from "node:timers/promises";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, WAIT_MS, waitFor } from "./chromium.mjs";
 import { startServer } from "./server.mjs";
-
-export const WAIT_MS = 60_000;
-/** False, or why these tests cannot run here. */
-export const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
-
-/** Waits until the page's numbers are as wanted, and returns them. */
-export async function waitFor(page, what, accept, patience_ms = WAIT_MS) {
-  const deadline_ms = Date.now() + patience_ms;
-  for (;;) {
-    const stats = await page.evaluate(() => window.spindrift?.stats());
-    if (stats !== undefined && accept(stats)) return stats;
-    assert.ok(Date.now() < deadline_ms, `waited ${patience_ms / 1000} s for ${what}; stats: ${JSON.stringify(stats)}`);
-    await sleep(50);
-  }
-}
 
 /** Waits for the panels, which the page paints after its first picture. */
 export const panelsShown = (page) => page.waitForFunction(() => !document.body.classList.contains("starting"), undefined, { timeout: WAIT_MS });
@@ -39,6 +20,7 @@ export async function twoPeople(scene, first = () => {}) {
   };
   const open = async (options) => {
     const page = await (await browser.newContext(options)).newPage();
+    page.setDefaultTimeout(WAIT_MS);
     await page.addInitScript(first);
     await page.goto(`${server.url}?quality=minimal`, { timeout: WAIT_MS });
     await waitFor(page, "the page to be live", ({ connectionState, framesReceived, role }) => connectionState === "live" && framesReceived.surface > 3 && role !== "viewer");
@@ -46,7 +28,7 @@ export async function twoPeople(scene, first = () => {}) {
     return page;
   };
   try {
-    browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+    browser = await launch();
     const desk = await open({ viewport: { width: 900, height: 600 } });
     const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
     /** Begins the scene again, and waits until both pages show the still water. */

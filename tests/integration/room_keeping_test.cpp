@@ -3,6 +3,7 @@
 #include <spindrift/history/state_store.h>
 
 #include "full_disk.h"
+#include "harbor_scene.h"
 #include "open_room.h"
 #include "room_fixture.h"
 #include "silent_outlets.h"
@@ -15,18 +16,6 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
-
-/// Waves that break, spray, boats, foam and weather: every part that has a state.
-constexpr const char* kHarbor = R"(
-  wave { resolution_count: 48 side_m: 12 depth_m: 1 bulk: BULK_NONLINEAR dispersion: DISPERSION_AIRY
-         boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT
-         boundary_minus_z: WAVE_BOUNDARY_REFLECT boundary_plus_z: WAVE_BOUNDARY_REFLECT }
-  particles { count: 1000 headroom_m: 3 }
-  coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.15 }
-  foam { surface: true }
-  boats { capacity_count: 4 boats { x_m: 2 throttle_ratio: 0.5 } }
-  storm { level_ratio: 0.6 wind_direction_deg: 10 }
-)";
 
 class KeptRoomTest : public RoomTest {
  protected:

@@ -24,10 +24,9 @@ inline std::vector<std::string> sceneNames(Which which) {
     if (which == Which::kAll || !scene || scene->has_wave()) names.insert(entry.path().stem().string());
   }
   // "splash_wave" is "splash" without the particles, so the wave alone would be tested twice.
-  if (which == Which::kWithWave)
-    std::erase_if(names, [&](const std::string& name) {
-      return name.ends_with("_wave") && names.contains(name.substr(0, name.size() - 5));
-    });
+  std::erase_if(names, [&](const std::string& name) {
+    return name.ends_with("_wave") && names.contains(name.substr(0, name.size() - 5));
+  });
   return {names.begin(), names.end()};
 }
 

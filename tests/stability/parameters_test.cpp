@@ -1,9 +1,9 @@
 // Sweeps every live parameter of every shipped scene over its whole range, with every kind of side: the water stays
 // finite and above its bed, the ledger is exact, and the watchdog never acts. Parameters come from their descriptions
 // and scenes from the folder, so new ones are included. The default form is short: both ends of each range, depths at
-// which absorbing sides used to be unstable, few ticks. Longer: SPINDRIFT_SWEEP_VALUES values between the ends,
-// SPINDRIFT_SWEEP_TICKS ticks each, SPINDRIFT_SWEEP_SIDES=1 for every kind of side in every scene, SPINDRIFT_COUNT_MAX
-// particles.
+// which absorbing sides used to be unstable, few ticks, and DRAFT for other sides than the scene's. Longer:
+// SPINDRIFT_SWEEP_VALUES values between the ends, SPINDRIFT_SWEEP_TICKS ticks each, SPINDRIFT_SWEEP_SIDES=1 for every
+// kind of side in every scene, SPINDRIFT_COUNT_MAX particles.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -173,7 +173,7 @@ v1::Scene withSides(v1::Scene scene, v1::WaveBoundary side) {
 }
 
 TEST_P(WaveParameters, KeepTheWaveHealthyWithEveryKindOfSide) {
-  v1::Scene scene = shipped(GetParam());
+  v1::Scene scene = shipped(GetParam(), levelFor("SPINDRIFT_SWEEP_SIDES"));
   scene.clear_particles();
   scene.clear_coupling();
   scene.clear_course();  // needs sides that boats cannot cross

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -26,8 +27,9 @@ inline double basinRatio(double length_m) {
 class Endurance : public ::testing::Test {
  public:
   static std::filesystem::path sceneFolder() { return std::filesystem::path(SPINDRIFT_SOURCE_DIR) / "server/scenes"; }
-  static v1::Scene shipped(const std::string& name) {
-    auto scene = scene::loadSceneFile(sceneFolder() / (name + ".textproto"));
+  /// `level`: that of the file by default.
+  static v1::Scene shipped(const std::string& name, std::optional<v1::Fidelity> level = {}) {
+    auto scene = scene::loadSceneFile(sceneFolder() / (name + ".textproto"), level);
     if (!scene) throw std::runtime_error(scene.error().message);
     return *scene;
   }
@@ -50,6 +52,12 @@ class Endurance : public ::testing::Test {
     if (!made) throw std::runtime_error(made.error().message);
     water_ = *std::move(made);
     return *water_;
+  }
+
+  /// Returns the level of a test that this variable of the environment makes long: that of the file; else DRAFT, with a
+  /// quarter of the cells.
+  static std::optional<v1::Fidelity> levelFor(const char* variable) {
+    return std::getenv(variable) ? std::nullopt : std::optional(v1::FIDELITY_DRAFT);
   }
 
   /// Reads a number from the environment, for runs longer than the default.

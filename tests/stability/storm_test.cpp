@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <filesystem>
 #include <limits>
 #include <string>
 #include <vector>
@@ -16,6 +15,7 @@
 #include <spindrift/sim_setup/fill_up.h>
 #include <spindrift/sim_setup/scene_parts.h>
 
+#include "parameter_sweep.h"
 #include "random_crowd.h"
 #include "stability_scene.h"
 
@@ -136,15 +136,15 @@ class Storm : public Endurance {
     return out;
   }
 
-  static v1::Scene stormyHarbor() {
-    v1::Scene scene = shipped("harbor");
+  static v1::Scene stormyHarbor(std::optional<v1::Fidelity> level = {}) {
+    v1::Scene scene = shipped("harbor", level);
     scene.mutable_storm()->set_level_ratio(1.0);
     return scene;
   }
 };
 
 TEST_F(Storm, SplashesNeverEmptyTheHarborBelowItsBed) {
-  const int ticks = wanted("SPINDRIFT_STORM_TICKS", 400);
+  const int ticks = wanted("SPINDRIFT_STORM_TICKS", 250);
   const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks);
   EXPECT_GE(extremes.thinnest_units, 0);
   EXPECT_LE(extremes.highest_m, kHighestOfCrowd_m);
@@ -153,7 +153,8 @@ TEST_F(Storm, SplashesNeverEmptyTheHarborBelowItsBed) {
 
 TEST_F(Storm, WeatherAndBoatsAloneStayLow) {
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 600);
-  const Extremes extremes = run(stormyHarbor(), Crowd::Sends::kEffectsAndBoats, ticks, 0.0);
+  const v1::Scene scene = stormyHarbor(levelFor("SPINDRIFT_STORM_TICKS"));
+  const Extremes extremes = run(scene, Crowd::Sends::kEffectsAndBoats, ticks, 0.0);
   EXPECT_GE(extremes.thinnest_units, 0);
   EXPECT_LE(extremes.highest_m, kHighestOfWeather_m);
   EXPECT_GT(extremes.highest_m, 0.1) << "no weather";
@@ -180,22 +181,12 @@ TEST_F(Storm, BreakersOnASlopeLeaveTheWaterBeforeItCalm) {
   EXPECT_EQ(water.recoveredCount(), 0u);
 }
 
-std::vector<std::string> scenesWithWaves() {
-  std::vector<std::string> out;
-  for (const auto& file : std::filesystem::directory_iterator(Endurance::sceneFolder())) {
-    if (file.path().extension() != ".textproto") continue;
-    if (Endurance::shipped(file.path().stem()).has_wave()) out.push_back(file.path().stem());
-  }
-  std::sort(out.begin(), out.end());
-  return out;
-}
-
 class StormInScene : public Storm, public ::testing::WithParamInterface<std::string> {};
 
 /// Where the waves disperse, all live parameters move over their whole ranges as well; parameters_test moves those of
 /// the other scenes. Many values make a tick slow, so the longest runs may do without: SPINDRIFT_STORM_PARAMETERS=0.
 TEST_P(StormInScene, KeepsTheVolumeAndStaysBounded) {
-  v1::Scene scene = shipped(GetParam());
+  v1::Scene scene = shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS"));
   if (scene.has_storm()) scene.mutable_storm()->set_level_ratio(1.0);
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 90);
   const double commands_per_tick = 0.01 * wanted("SPINDRIFT_STORM_COMMANDS_PER_100_TICKS", 280);
@@ -212,7 +203,7 @@ TEST_P(StormInScene, KeepsTheVolumeAndStaysBounded) {
 /// After the last command, water can only lose energy. With dispersion the diagnostics' energy leaves out a part that
 /// swings to and fro with the waves, so stretches of time are compared instead of ticks.
 TEST_P(StormInScene, CalmAfterwardsGainsNoEnergy) {
-  v1::Scene scene = shipped(GetParam());
+  v1::Scene scene = shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS"));
   scene.clear_events();
   scene.clear_storm();
   if (scene.has_boats()) scene.mutable_boats()->clear_boats();
@@ -231,7 +222,7 @@ TEST_P(StormInScene, CalmAfterwardsGainsNoEnergy) {
   EXPECT_EQ(water_->recoveredCount(), 0u);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, StormInScene, ::testing::ValuesIn(scenesWithWaves()),
+INSTANTIATE_TEST_SUITE_P(Scenes, StormInScene, ::testing::ValuesIn(sceneNames(Which::kWithWave)),
                          [](const auto& scene) { return scene.param; });
 
 }  // namespace

@@ -160,7 +160,7 @@ Outcome boatResistance(gpu::Context& ctx, bool quick) {
   std::vector<Row> rows;
   std::vector<SteadyRun> runs;
   if (quick) {
-    if (auto done = addResistance(ctx, 2.4, Dispersion::kAiry, {0.4, 0.55}, rows, runs); !done) return done.error();
+    if (auto done = addResistance(ctx, 2.4, Dispersion::kAiry, {0.55}, rows, runs); !done) return done.error();
     if (auto done = addResistance(ctx, 0.5, Dispersion::kAiry, {0.7}, rows, runs); !done) return done.error();
     return CaseResult{std::move(rows), {}};
   }

@@ -180,7 +180,7 @@ Outcome hullHeave(gpu::Context& ctx, bool quick) {
     const double width_m = 4 * kCell_m;
     const double c_mps = std::sqrt(9.81 * kDepth_m);
     const HullPressure hull = hullPressure(box, kCell_m);
-    for (const double frequency_hz : {0.3, 0.5}) {
+    for (const double frequency_hz : quick ? std::vector{0.5} : std::vector{0.3, 0.5}) {
       const double omega = 2 * pi * frequency_hz, k = omega / c_mps;
       auto made = sim::WaterSim::create(ctx, scene);
       if (!made) return made.error();

@@ -27,12 +27,13 @@ constexpr double kSponge_m = 4.0;
 struct Incidence {
   double angle_deg;
   double wavelength_m;
+  double width_m;  ///< of the water, along z
 
   /// The water is periodic in z, so a whole number of waves fits across it. The wave number follows from that number:
   /// the angle is exact, and the wavelength close to the requested one.
   [[nodiscard]] double kz_radpm() const {
-    const double waves = std::round(kCrossed_m / wavelength_m * std::sin(angle_deg * pi / 180));
-    return 2 * pi * waves / kCrossed_m;
+    const double waves = std::round(width_m / wavelength_m * std::sin(angle_deg * pi / 180));
+    return 2 * pi * waves / width_m;
   }
   [[nodiscard]] double k_radpm() const {
     return angle_deg == 0 ? 2 * pi / wavelength_m : kz_radpm() / std::sin(angle_deg * pi / 180);
@@ -40,11 +41,17 @@ struct Incidence {
   [[nodiscard]] double kx_radpm() const { return k_radpm() * std::cos(angle_deg * pi / 180); }
 };
 
+/// Width of the water: a quarter of its length in the quick form.
+double widthOf_m(bool quick) {
+  return quick ? kCrossed_m / 4 : kCrossed_m;
+}
+
 /// Water of 1.5 m with absorbing sides of 4 m at +-x.
-core::Scene openScene() {
+core::Scene openScene(const Incidence& incidence) {
   core::Scene scene = waveScene(384, kCrossed_m, 1.5, 0.69, Stencil::kFivePoint, WaveBoundary::kPeriodic);
   scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = WaveBoundary::kAbsorb;
   scene.wave->sponge_width_m = kSponge_m;
+  scene.wave->width_m = incidence.width_m;
   return scene;
 }
 
@@ -60,7 +67,7 @@ void startPacket(sim::WaterSim& water, const Incidence& incidence) {
 /// Amplitude of a packet that absorbing sides of 4 m at +-x reflect, over its first amplitude. The packet starts in the
 /// middle without flow and splits into halves; each meets one side once and is back in the middle at the end.
 core::Result<double> sentBack(gpu::Context& ctx, const Incidence& incidence) {
-  core::Scene scene = openScene();
+  core::Scene scene = openScene(incidence);
   scene.wave->absorption = core::Absorption::kSponge;
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();
@@ -98,22 +105,22 @@ PlaneWave planeWave(const core::Scene& scene, double k_radpm) {
 /// they would count in its energy, and some of them meet the side late.
 core::Result<double> reflectedByMatchedLayer(gpu::Context& ctx, const Incidence& incidence,
                                              core::Dispersion dispersion) {
-  core::Scene scene = openScene();
+  core::Scene scene = openScene(incidence);
   scene.wave->absorption = core::Absorption::kPml;
   scene.wave->dispersion = dispersion;
   auto water = sim::WaterSim::create(ctx, scene);
   if (!water) return water.error();
   startPacket(**water, incidence);
   const PlaneWave wave = planeWave(scene, incidence.k_radpm());
-  const std::size_t n = scene.wave->resolution_count;
+  const core::WaveCells cells = core::waveCellsOf(*scene.wave);
   const double cell_m = (*water)->derived().wave->cell_m;
   double largest = 0.0;
   const auto measure = [&] {
     const std::vector<double> eta_m = (*water)->copyState().elevation_m;
     double sum = 0.0;
-    for (std::size_t z = 0; z < n; ++z) {
-      for (std::size_t x = 0; x < n; ++x) {
-        sum += eta_m[x + n * z] *
+    for (std::size_t z = 0; z < cells.count.z; ++z) {
+      for (std::size_t x = 0; x < cells.count.x; ++x) {
+        sum += eta_m[x + cells.count.x * z] *
                std::cos(incidence.kx_radpm() * ((static_cast<double>(x) + 0.5) * cell_m - kCrossed_m / 2)) *
                std::cos(incidence.kz_radpm() * (static_cast<double>(z) + 0.5) * cell_m);
       }
@@ -163,7 +170,7 @@ Outcome reflection(gpu::Context& ctx, bool quick) {
     for (const double angle_deg : {0.0, 30.0, 45.0, 60.0, 75.0}) {
       // The quick table leaves out the longest runs: waves that hardly move toward the side.
       if (quick && (wavelength_m > 3 || angle_deg > 70 || angle_deg == 30)) continue;
-      const Incidence incidence{angle_deg, wavelength_m};
+      const Incidence incidence{angle_deg, wavelength_m, widthOf_m(quick)};
       auto share = sentBack(ctx, incidence);
       if (!share) return share.error();
       rows.push_back(
@@ -178,7 +185,7 @@ Outcome reflection(gpu::Context& ctx, bool quick) {
       for (const double angle_deg : {0.0, 30.0, 45.0, 60.0, 75.0}) {
         // The quick table has the angle at which a sponge begins to fail, once with dispersion and once without.
         if (quick && (angle_deg != 45 || disperses != (wavelength_m > 3))) continue;
-        const Incidence incidence{angle_deg, wavelength_m};
+        const Incidence incidence{angle_deg, wavelength_m, widthOf_m(quick)};
         auto share = reflectedByMatchedLayer(ctx, incidence, dispersion);
         if (!share) return share.error();
         rows.push_back({fmt::format("amplitude sent back at {} degrees, waves of {} m{}, matched layer of 4 m",
@@ -195,6 +202,8 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   const std::uint32_t n = quick ? 512 : 768;
   core::Scene scene = waveScene(n, 96.0, 2.0, 0.5, Stencil::kFivePoint, WaveBoundary::kPeriodic);
   scene.wave->boundary_minus_x = scene.wave->boundary_plus_x = WaveBoundary::kReflect;
+  constexpr std::uint32_t kRows = 16;  // the wave is the same in each
+  scene.wave->width_m = kRows * 96.0 / n;
   scene.beaches = {core::Beach{core::Side::kPlusX, 70.0, 0.25}};
   auto made = sim::WaterSim::create(ctx, scene);
   if (!made) return made.error();
@@ -204,7 +213,7 @@ Outcome greensLaw(gpu::Context& ctx, bool quick) {
   const double cell_m = 96.0 / n;
   const auto crest = [&] {
     const auto eta_m = water.copyState().elevation_m;
-    const auto begin = eta_m.begin() + static_cast<std::ptrdiff_t>(n) * (n / 2);
+    const auto begin = eta_m.begin() + static_cast<std::ptrdiff_t>(n) * (kRows / 2);
     const auto at = std::max_element(begin + n / 4, begin + n - 1);
     const double a = *(at - 1);
     const double b = *at;

@@ -41,5 +41,5 @@ describe("test_targets.py", () => {
     assert.match(wrong.complaint, /no regular expression/);
   });
 
-  it("reads this repository", () => assert.deepEqual(targets("unit/Outbox\\.").names, ["net_test"]));
+  it("reads this repository", () => assert.deepEqual(targets("unit/OutboxTest\\.").names, ["net_test"]));
 });

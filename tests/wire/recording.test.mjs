@@ -13,10 +13,9 @@ import { fromBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
 import { FrameUnpacker } from "../../web-client/client/codec/frame_unpacker";
 import { parse } from "../../web-client/client/codec/parse";
 import { Layer, Packing, ServerMessageSchema } from "../../web-client/client/gen/spindrift/v1/wire_pb";
-import { binary, repository, startServer } from "../browser/server.mjs";
+import { binary, repository, startServer, until } from "../browser/server.mjs";
 import { Client } from "./client.mjs";
 
-const kPatienceMs = 60_000;
 const kMiB = 1 << 20;
 const kScene = ["--scene", `${repository}/tests/browser/scene.textproto`];
 /** A scene with every layer. */
@@ -33,14 +32,6 @@ const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8A
 
 const folder = mkdtempSync(join(tmpdir(), "spindrift-recording-"));
 afterAll(() => rmSync(folder, { recursive: true }));
-
-async function until(what, holds) {
-  for (const begin = Date.now(); Date.now() - begin < kPatienceMs; await new Promise((resolve) => setTimeout(resolve, 50))) {
-    const found = await holds();
-    if (found) return found;
-  }
-  throw new Error(`${what} did not happen`);
-}
 
 /** Asks for the recordings of a room; returns status and answer. */
 async function ask(port, method, body, room = "main") {

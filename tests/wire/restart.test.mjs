@@ -6,20 +6,11 @@ import { join } from "node:path";
 import WebSocket from "ws";
 
 import { PageConnection } from "../../web-client/src/net/page_connection";
-import { binary, freePort, repository, startServer } from "../browser/server.mjs";
+import { binary, freePort, repository, startServer, until } from "../browser/server.mjs";
 
 /** From the signal to the exit of a server whose clients take part. */
 // The server's own bounds after SIGTERM: 1 s of --drain-s, 3 s for sessions, 5 s for the disk, 2 s for water that is being built.
 const kEndLimitMs = 11000;
-const kPatienceMs = 60_000;
-
-async function until(what, holds) {
-  for (const begin = Date.now(); Date.now() - begin < kPatienceMs; await new Promise((resolve) => setTimeout(resolve, 20))) {
-    const found = await holds();
-    if (found) return found;
-  }
-  throw new Error(`${what} did not happen`);
-}
 
 /** The page's connection on the sockets of npm ws, with real time. */
 class Page {

@@ -1,30 +1,13 @@
-// What an outbox sends, replaces and drops: one rule per test, in one long file because the two planes share their
-// rules.
-#include "outbox.h"
-
-#include <gtest/gtest.h>
-
-#include "test_application.h"
+// What an outbox sends of answers and states, and when it wakes and closes: one rule per test. Frames:
+// outbox_frames_test.cpp.
+#include "outbox_fixture.h"
 
 namespace spindrift::net {
 namespace {
 
 using test::shared;
 
-constexpr double kAnyRate_hz = 1e9;
-
-/// Returns a time one second after the last call, so that no rate limit applies.
-Clock::time_point later() {
-  static Clock::time_point now{};
-  return now += std::chrono::seconds(1);
-}
-
-Outbox::Kind kind(Outbox& outbox) {
-  return outbox.next().kind;
-}
-
-TEST(Outbox, SendsAnswersInOrder) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, SendsAnswersInOrder) {
   const auto first = shared("1");
   const auto second = shared("2");
   outbox.pushAnswer(first);
@@ -34,22 +17,15 @@ TEST(Outbox, SendsAnswersInOrder) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
-TEST(Outbox, SendsControlBeforeData) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+TEST_F(OutboxTest, SendsControlBeforeData) {
+  watch(1);
   outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushAnswer(shared("control"));
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
 }
 
-std::string sentText(Outbox& outbox) {
-  const core::SharedBytes message = outbox.next().message;
-  return message ? std::string(message->begin(), message->end()) : std::string("(nothing)");
-}
-
-TEST(Outbox, TheNewestStateReplacesTheOlderOne) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, TheNewestStateReplacesTheOlderOne) {
   outbox.pushState({.name = "people"}, shared("people 1"));
   outbox.pushAnswer(shared("answer"));
   outbox.pushState({.name = "boats"}, shared("boats"));
@@ -60,8 +36,7 @@ TEST(Outbox, TheNewestStateReplacesTheOlderOne) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
-TEST(Outbox, HoldsOneMessagePerTopicAndNeverCloses) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, HoldsOneMessagePerTopicAndNeverCloses) {
   for (int k = 0; k < 10'000; ++k) {
     EXPECT_FALSE(outbox.pushState({.name = "topic " + std::to_string(k % 3)}, shared("state")).overflow);
   }
@@ -69,9 +44,8 @@ TEST(Outbox, HoldsOneMessagePerTopicAndNeverCloses) {
   EXPECT_FALSE(outbox.closing());
 }
 
-TEST(Outbox, AWholeStateReplacesItsPartsAndIsNotReplacedByThem) {
+TEST_F(OutboxTest, AWholeStateReplacesItsPartsAndIsNotReplacedByThem) {
   using Scope = StateTopic::Scope;
-  Outbox outbox(8);
   const StateTopic part{.name = "speed", .scope = Scope::kPart};
   const StateTopic whole{.name = "greeting", .scope = Scope::kWhole};
   outbox.pushState(part, shared("speed 1"));
@@ -88,278 +62,30 @@ TEST(Outbox, AWholeStateReplacesItsPartsAndIsNotReplacedByThem) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
 }
 
-TEST(Outbox, AFrameWaitsForABoundedNumberOfControlMessages) {
-  Outbox outbox(1000);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  for (int k = 0; k < 100; ++k) outbox.pushAnswer(shared("answer"));
-  outbox.offerFrame(1, {shared("frame"), {}}, later());
+TEST_F(OutboxTest, AFrameWaitsForABoundedNumberOfControlMessages) {
+  Outbox wide(1000);
+  wide.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  for (int k = 0; k < 100; ++k) wide.pushAnswer(shared("answer"));
+  wide.offerFrame(1, {shared("frame"), {}}, later());
   std::size_t control_count = 0;
-  while (kind(outbox) == Outbox::Kind::kControl) ++control_count;
+  while (kind(wide) == Outbox::Kind::kControl) ++control_count;
   EXPECT_EQ(control_count, Outbox::kControlRunMaxCount);
 }
 
-TEST(Outbox, AFrameNeverOvertakesAWholeState) {
-  Outbox outbox(1000);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  for (int k = 0; k < 100; ++k) outbox.pushAnswer(shared("answer"));
-  outbox.pushState({.name = "greeting", .scope = StateTopic::Scope::kWhole}, shared("greeting"));
-  outbox.offerFrame(1, {shared("frame of the new scene"), {}}, later());
-  for (int k = 0; k < 100; ++k) ASSERT_EQ(sentText(outbox), "answer");
-  EXPECT_EQ(sentText(outbox), "greeting");
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
+TEST_F(OutboxTest, AFrameNeverOvertakesAWholeState) {
+  Outbox wide(1000);
+  wide.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  for (int k = 0; k < 100; ++k) wide.pushAnswer(shared("answer"));
+  wide.pushState({.name = "greeting", .scope = StateTopic::Scope::kWhole}, shared("greeting"));
+  wide.offerFrame(1, {shared("frame of the new scene"), {}}, later());
+  for (int k = 0; k < 100; ++k) ASSERT_EQ(sentText(wide), "answer");
+  EXPECT_EQ(sentText(wide), "greeting");
+  EXPECT_EQ(kind(wide), Outbox::Kind::kFrame);
 }
 
-TEST(Outbox, DropsTheOlderFrameOfALayer) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  const auto newest = shared("new");
-  EXPECT_FALSE(outbox.offerFrame(1, {shared("old"), {}}, later()).dropped);
-  EXPECT_TRUE(outbox.offerFrame(1, {newest, {}}, later()).dropped);
-  EXPECT_EQ(outbox.next().message, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-}
-
-TEST(Outbox, HoldsOneFramePerLayer) {
-  Outbox outbox(8);
-  std::vector<std::weak_ptr<const core::Bytes>> frames;
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.setWatch(2, Watch{.max_rate_hz = kAnyRate_hz});
-  for (int k = 0; k < 1000; ++k) {
-    const auto frame = shared("frame");
-    frames.push_back(frame);
-    outbox.offerFrame(1 + k % 2, {frame, {}}, later());
-  }
-  EXPECT_EQ(std::ranges::count_if(frames, [](const auto& frame) { return !frame.expired(); }), 2);
-}
-
-/// Returns whether the session can take a frame of stream 1 at this time as a keyframe only.
-bool wantsKeyframe(const Outbox& outbox, Clock::time_point now) {
-  const auto need = outbox.need(1);
-  return need && need->keyframe_from && *need->keyframe_from <= now;
-}
-
-TEST(Outbox, SendsADeltaIfTheClientHasTheFrameBefore) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(wantsKeyframe(outbox, later())) << "it has nothing yet";
-  outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "nothing that it could not read";
-  const auto whole = shared("3");
-  outbox.offerFrame(1, {whole, shared("3 on 2")}, later());
-  EXPECT_FALSE(wantsKeyframe(outbox, later()));
-  EXPECT_EQ(outbox.next().message, whole);
-  const auto continuing = shared("4 on 3");
-  outbox.offerFrame(1, {shared("4"), continuing}, later());
-  EXPECT_EQ(outbox.next().message, continuing);
-  EXPECT_FALSE(wantsKeyframe(outbox, later()));
-}
-
-TEST(Outbox, ContinuesWithAKeyframeAfterALoss) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.offerFrame(1, {shared("1"), {}}, later());
-  EXPECT_TRUE(outbox.offerFrame(1, {{}, shared("2 on 1")}, later()).dropped) << "1 was not sent: 2 has no ground";
-  EXPECT_FALSE(wantsKeyframe(outbox, later())) << "the client does not read";
-  outbox.offerFrame(1, {{}, shared("3 on 2")}, later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  EXPECT_TRUE(wantsKeyframe(outbox, later())) << "the writer is free again";
-  const auto whole = shared("4");
-  outbox.offerFrame(1, {whole, shared("4 on 3")}, later());
-  EXPECT_EQ(outbox.next().message, whole);
-}
-
-TEST(Outbox, ReplacesAnUnsentFrameByAKeyframeNeverByADelta) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.offerFrame(1, {shared("1"), {}}, later());
-  const auto whole = shared("2");
-  EXPECT_TRUE(outbox.offerFrame(1, {whole, shared("2 on 1")}, later()).dropped);
-  EXPECT_EQ(outbox.next().message, whole);
-}
-
-TEST(Outbox, ASlowerWatchTakesKeyframesOnly) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = 10.0});
-  Clock::time_point now = later();
-  std::vector<std::string> taken;
-  int asked_count = 0;
-  for (int k = 0; k < 30; ++k) {  // 30 frames per second, every third is taken
-    now += std::chrono::microseconds(33'333);
-    const bool wants_keyframe = wantsKeyframe(outbox, now);
-    asked_count += wants_keyframe ? 1 : 0;
-    outbox.offerFrame(1, {wants_keyframe ? shared("w") : core::SharedBytes(), shared("c")}, now);
-    if (const auto sent = outbox.next().message) taken.emplace_back(sent->begin(), sent->end());
-  }
-  EXPECT_GE(taken.size(), 9u);
-  EXPECT_LE(taken.size(), 12u);
-  EXPECT_EQ(static_cast<std::size_t>(asked_count), taken.size());
-  for (const std::string& frame : taken) EXPECT_EQ(frame, "w");
-}
-
-FrameBytes levelFrame(core::Level level, std::uint32_t reduced_count, bool is_whole = true) {
-  return {.keyframe = is_whole ? shared("whole") : nullptr,
-          .delta = shared("continuing"),
-          .levels = {.level = level, .reduced_count = reduced_count}};
-}
-
-std::string textOf(const core::SharedBytes& bytes) {
-  return bytes ? std::string(bytes->begin(), bytes->end()) : "nothing";
-}
-
-TEST(Outbox, TakesFramesOfItsOwnLevelOnly) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
-  outbox.offerFrame(1, levelFrame(core::Level::kFull, 3), later());
-  outbox.offerFrame(1, levelFrame(core::Level::kCoarse, 3), later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
-  // In a scene that is smaller than the level, the level equals full.
-  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kFrame);
-}
-
-TEST(Outbox, NeverSendsADeltaAcrossLevels) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium});
-  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
-  EXPECT_EQ(textOf(outbox.next().message), "whole");
-  outbox.offerFrame(1, levelFrame(core::Level::kMedium, 3), later());
-  EXPECT_EQ(textOf(outbox.next().message), "continuing");
-  // In another scene the level equals full.
-  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1, false), later());
-  EXPECT_EQ(textOf(outbox.next().message), "nothing");
-  EXPECT_TRUE(wantsKeyframe(outbox, later()));
-  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
-  EXPECT_EQ(textOf(outbox.next().message), "whole");
-  outbox.offerFrame(1, levelFrame(core::Level::kFull, 1), later());
-  EXPECT_EQ(textOf(outbox.next().message), "continuing");
-}
-
-TEST(Outbox, AReducedLevelThatEqualsFullTakesTheFramesThatAreDueForIt) {
-  Outbox coarse(8), full(8);
-  coarse.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kCoarse});
-  full.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  std::string taken;
-  for (int k = 0; k < 9; ++k) {
-    FrameBytes frame = levelFrame(core::Level::kFull, 0);
-    if (k % 3 != 0) frame.levels.due.erase(core::Level::kCoarse);
-    EXPECT_FALSE(coarse.offerFrame(1, frame, later()).dropped);
-    full.offerFrame(1, frame, later());
-    if (const auto message = coarse.next().message) taken.append(std::to_string(k)).append(textOf(message)).append(" ");
-    EXPECT_EQ(textOf(full.next().message), k == 0 ? "whole" : "continuing");
-  }
-  EXPECT_EQ(taken, "0whole 3whole 6whole ") << "a delta needs the frame before";
-}
-
-TEST(Outbox, FramesThatAreNotDueDoNotLowerTheLevel) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kMedium, .adapts = true});
-  Clock::time_point now = later();
-  for (int k = 0; k < 600; ++k) {
-    now += std::chrono::microseconds(16'667);
-    FrameBytes frame = levelFrame(core::Level::kFull, 1);
-    if (k % 2 != 0) frame.levels.due.erase(core::Level::kMedium);
-    outbox.offerFrame(1, frame, now);
-    if (k % 2 != 0) outbox.next();  // the writer is free again before the next frame that is due
-    EXPECT_EQ(outbox.reviewLevel(now), std::nullopt) << k;
-  }
-}
-
-/// Offers 30 frames per second of the outbox's present level; the writer takes one of `taken_of`.
-class LinkOf30Hz {
- public:
-  LinkOf30Hz(Outbox& outbox, std::uint32_t reduced_count) : outbox_(outbox), reduced_count_(reduced_count) {}
-
-  std::vector<core::Level> run(int duration_s, int taken_of) {
-    std::vector<core::Level> changes;
-    for (int k = 0; k < 30 * duration_s; ++k) {
-      now_ += std::chrono::microseconds(33'333);
-      const core::Level asked = outbox_.need(1)->level;
-      outbox_.offerFrame(1, levelFrame(core::effectiveLevel(asked, reduced_count_), reduced_count_), now_);
-      if (k % taken_of != 0) continue;
-      outbox_.next();
-      if (const auto level = outbox_.reviewLevel(now_)) changes.push_back(*level);
-    }
-    return changes;
-  }
-
- private:
-  Outbox& outbox_;
-  const std::uint32_t reduced_count_;
-  Clock::time_point now_ = later();
-};
-
-TEST(Outbox, LowersAnAdaptingSessionWhoseFramesWaitAndRaisesItAgain) {
-  using core::Level;
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .adapts = true});
-  LinkOf30Hz link(outbox, 2);
-  EXPECT_EQ(link.run(3, 1), std::vector<Level>{}) << "nothing waits";
-  EXPECT_EQ(link.run(4, 2), (std::vector{Level::kMedium, Level::kCoarse})) << "every other frame is lost";
-  EXPECT_EQ(link.run(4, 1), std::vector<Level>{}) << "patience";
-  EXPECT_EQ(link.run(10, 1), (std::vector{Level::kMedium, Level::kFull}));
-}
-
-TEST(Outbox, ASessionThatDoesNotAdaptKeepsItsLevel) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kFine});
-  LinkOf30Hz link(outbox, 3);
-  EXPECT_TRUE(link.run(10, 3).empty());
-  EXPECT_EQ(outbox.need(1)->level, core::Level::kFine);
-}
-
-TEST(Outbox, ANewSubscriptionStartsWithAKeyframe) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.offerFrame(1, {shared("1"), {}}, later());
-  outbox.next();
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_TRUE(wantsKeyframe(outbox, later()));
-}
-
-TEST(Outbox, TakesLayersInTurn) {
-  Outbox outbox(8);
-  std::vector<core::SharedBytes> last(4);
-  for (StreamIndex stream = 0; stream < 4; ++stream) outbox.setWatch(stream, Watch{.max_rate_hz = kAnyRate_hz});
-  std::vector<std::size_t> order;
-  // Every stream is refilled after every send: without taking turns, only the first stream would be sent.
-  for (int k = 0; k < 8; ++k) {
-    for (StreamIndex stream = 0; stream < 4; ++stream)
-      outbox.offerFrame(stream, {last[stream] = shared("f"), {}}, later());
-    const auto sent = outbox.next().message;
-    order.push_back(static_cast<std::size_t>(std::ranges::find(last, sent) - last.begin()));
-  }
-  EXPECT_EQ(order, (std::vector<std::size_t>{0, 1, 2, 3, 0, 1, 2, 3}));
-}
-
-TEST(Outbox, IgnoresFramesOfUnwatchedLayers) {
-  Outbox outbox(8);
-  outbox.offerFrame(3, {shared("frame"), {}}, later());
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-}
-
-TEST(Outbox, KeepsToTheRateOfEachWatch) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = 30.0});
-  outbox.setWatch(2, Watch{.max_rate_hz = 60.0});
-  const Clock::time_point start = later();
-  int sent[3] = {};
-  for (int k = 0; k < 60; ++k) {
-    const auto now = start + std::chrono::microseconds(k * 16'667);
-    for (StreamIndex stream = 1; stream <= 2; ++stream) {
-      outbox.offerFrame(stream, {shared("f"), {}}, now);
-      if (outbox.next().kind == Outbox::Kind::kFrame) ++sent[stream];
-    }
-  }
-  EXPECT_EQ(sent[1], 30);
-  EXPECT_EQ(sent[2], 60);
-}
-
-TEST(Outbox, TakesAlongWhatWouldBeNext) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.setWatch(2, Watch{.max_rate_hz = kAnyRate_hz});
+TEST_F(OutboxTest, TakesAlongWhatWouldBeNext) {
+  watch(1);
+  watch(2);
   outbox.pushAnswer(shared("answer 1"));
   outbox.pushAnswer(shared("answer 2"));
   outbox.offerFrame(1, {shared("frame 1"), {}}, later());
@@ -374,9 +100,8 @@ TEST(Outbox, TakesAlongWhatWouldBeNext) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
 }
 
-TEST(Outbox, TakesNothingAlongThatIsTooLarge) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+TEST_F(OutboxTest, TakesNothingAlongThatIsTooLarge) {
+  watch(1);
   outbox.pushAnswer(shared("12345"));
   outbox.offerFrame(1, {shared("1234567"), {}}, later());
   EXPECT_FALSE(outbox.nextAlong(4));
@@ -387,8 +112,7 @@ TEST(Outbox, TakesNothingAlongThatIsTooLarge) {
   EXPECT_FALSE(outbox.nextAlong(7));
 }
 
-TEST(Outbox, ClosesAfterWhatItTookAlong) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, ClosesAfterWhatItTookAlong) {
   outbox.pushAnswer(shared("1"));
   outbox.pushAnswer(shared("2"));
   EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "enough"));
@@ -400,16 +124,7 @@ TEST(Outbox, ClosesAfterWhatItTookAlong) {
   EXPECT_FALSE(outbox.nextAlong(100));
 }
 
-TEST(Outbox, ForgetsTheFrameOfALayerThatStops) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.offerFrame(1, {shared("frame"), {}}, later());
-  outbox.setWatch(1, std::nullopt);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-}
-
-TEST(Outbox, WakesASleepingWriterOnce) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, WakesASleepingWriterOnce) {
   EXPECT_FALSE(outbox.pushAnswer(shared("before the writer slept")).wake);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
@@ -417,9 +132,8 @@ TEST(Outbox, WakesASleepingWriterOnce) {
   EXPECT_FALSE(outbox.pushAnswer(shared("2")).wake);
 }
 
-TEST(Outbox, FramesWakeTheWriterWhenTheirMomentIsComplete) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+TEST_F(OutboxTest, FramesWakeTheWriterWhenTheirMomentIsComplete) {
+  watch(1);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
   EXPECT_FALSE(outbox.wakeForFrames()) << "none waits";
   EXPECT_FALSE(outbox.offerFrame(1, {shared("frame"), {}}, later()).wake);
@@ -432,70 +146,21 @@ TEST(Outbox, FramesWakeTheWriterWhenTheirMomentIsComplete) {
   EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
 }
 
-TEST(Outbox, ClosesWhenTooManyAnswersWait) {
-  Outbox outbox(2);
-  EXPECT_FALSE(outbox.pushAnswer(shared("1")).overflow);
-  EXPECT_FALSE(outbox.pushAnswer(shared("2")).overflow);
-  EXPECT_TRUE(outbox.pushAnswer(shared("3")).overflow);
-  EXPECT_FALSE(outbox.pushAnswer(shared("4")).overflow) << "the overflow is reported once";
-  ASSERT_TRUE(outbox.closeRequest());
-  EXPECT_EQ(outbox.closeRequest()->code, 1013);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kControl);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
+TEST_F(OutboxTest, ClosesWhenTooManyAnswersWait) {
+  Outbox narrow(2);
+  EXPECT_FALSE(narrow.pushAnswer(shared("1")).overflow);
+  EXPECT_FALSE(narrow.pushAnswer(shared("2")).overflow);
+  EXPECT_TRUE(narrow.pushAnswer(shared("3")).overflow);
+  EXPECT_FALSE(narrow.pushAnswer(shared("4")).overflow) << "the overflow is reported once";
+  ASSERT_TRUE(narrow.closeRequest());
+  EXPECT_EQ(narrow.closeRequest()->code, 1013);
+  EXPECT_EQ(kind(narrow), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(narrow), Outbox::Kind::kControl);
+  EXPECT_EQ(kind(narrow), Outbox::Kind::kClose);
 }
 
-TEST(Outbox, ANewcomerGetsTheNewestFrameOnceAndGoesOnWithTheNextDelta) {
-  Outbox outbox(8);
-  const FrameBytes newest{.keyframe = shared("newest"), .delta = nullptr};
-  const FrameBytes next{.keyframe = nullptr, .delta = shared("delta")};
-  const auto now = later();
-  outbox.offerNewest(1, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it does not watch the stream";
-  outbox.setWatch(1, Watch{.max_rate_hz = 10.0, .is_first = true});
-  EXPECT_TRUE(outbox.need(1)->is_newcomer);
-  EXPECT_TRUE(wantsKeyframe(outbox, now));
-  EXPECT_TRUE(outbox.offerNewest(1, newest).wake);
-  EXPECT_FALSE(outbox.need(1)->is_newcomer);
-  EXPECT_FALSE(wantsKeyframe(outbox, now));
-  outbox.offerNewest(1, {.keyframe = shared("again"), .delta = nullptr});
-  EXPECT_EQ(sentText(outbox), "newest");
-  outbox.offerFrame(1, next, now);
-  EXPECT_EQ(sentText(outbox), "delta") << "whatever the rate: the frame before did not count";
-  outbox.offerFrame(1, next, now);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "from here on the rate holds";
-  outbox.offerNewest(1, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it has had newer frames";
-}
-
-TEST(Outbox, OnlyTheFirstWatchOfALayerMakesANewcomer) {
-  Outbox outbox(8);
-  const FrameBytes newest{.keyframe = shared("newest"), .delta = nullptr};
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  EXPECT_FALSE(outbox.need(1)->is_newcomer);
-  outbox.offerNewest(1, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .level = core::Level::kCoarse, .is_first = true});
-  outbox.offerNewest(1, {.keyframe = shared("full"), .delta = nullptr, .levels = {.reduced_count = 1}});
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "a frame of another level";
-  outbox.offerNewest(
-      1,
-      {.keyframe = shared("coarse"), .delta = nullptr, .levels = {.level = core::Level::kCoarse, .reduced_count = 1}});
-  EXPECT_EQ(sentText(outbox), "coarse");
-  outbox.enterRoom(std::make_shared<core::DemandTable>());
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
-  outbox.enterRoom(nullptr);
-  outbox.offerNewest(1, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kIdle) << "it is in another room now";
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz, .is_first = true});
-  outbox.requestClose(CloseCode::kNormal, "end");
-  outbox.offerNewest(1, newest);
-  EXPECT_EQ(kind(outbox), Outbox::Kind::kClose);
-}
-
-TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
-  Outbox outbox(8);
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+TEST_F(OutboxTest, SendsControlButNoFramesBeforeClosing) {
+  watch(1);
   outbox.offerFrame(1, {shared("frame"), {}}, later());
   outbox.pushAnswer(shared("last words"));
   EXPECT_TRUE(outbox.requestClose(CloseCode::kNormal, "first"));
@@ -507,42 +172,15 @@ TEST(Outbox, SendsControlButNoFramesBeforeClosing) {
   EXPECT_EQ(outbox.closeRequest()->reason, "first");
 }
 
-TEST(Outbox, KeepsNothingOnceClosed) {
-  Outbox outbox(8);
+TEST_F(OutboxTest, KeepsNothingOnceClosed) {
   const auto message = shared("message");
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
+  watch(1);
   outbox.pushAnswer(message);
   outbox.offerFrame(1, {message, {}}, later());
   outbox.shut();
   outbox.pushAnswer(message);
   EXPECT_EQ(message.use_count(), 1);
   EXPECT_EQ(kind(outbox), Outbox::Kind::kShut);
-}
-
-TEST(Outbox, TheDemandOfItsRoomHasWhatItNeeds) {
-  Outbox outbox(8);
-  const auto room = std::make_shared<core::DemandTable>(), other = std::make_shared<core::DemandTable>();
-  const auto full = core::indexOf(core::Level::kFull);
-  const auto in = [&](const std::shared_ptr<core::DemandTable>& table) { return table->of(1, later())[full]; };
-  outbox.setWatch(1, Watch{.max_rate_hz = kAnyRate_hz});
-  outbox.enterRoom(room);
-  EXPECT_EQ(room->sessionCount(), 1U);
-  EXPECT_EQ(in(room).watcher_count, 1U);
-  EXPECT_TRUE(in(room).wants_keyframe);
-  outbox.offerFrame(1, {shared("1"), {}}, later());
-  EXPECT_FALSE(in(room).wants_keyframe);
-  outbox.offerFrame(1, {{}, shared("2 on 1")}, later());
-  EXPECT_FALSE(in(room).wants_keyframe) << "1 was lost, and the client does not read";
-  outbox.next();
-  EXPECT_TRUE(in(room).wants_keyframe) << "the writer is free again";
-  outbox.enterRoom(nullptr);
-  outbox.enterRoom(other);
-  EXPECT_EQ(in(room).watcher_count + room->sessionCount(), 0U);
-  EXPECT_TRUE(in(other).wants_keyframe);
-  outbox.requestClose(CloseCode::kNormal, "");
-  EXPECT_FALSE(in(other).wants_keyframe);
-  outbox.shut();
-  EXPECT_EQ(in(other).watcher_count, 0U);
 }
 
 }  // namespace

@@ -230,7 +230,7 @@ TEST_F(FloaterHits, RunsRepeatBitForBit) {
 
 TEST_F(FloaterHits, ACrateAmongParticlesCarriedByTheWaveFloatsAsDeepAndAsCalmAsWithout) {
   const auto rest = [&](bool with_particles) {
-    core::Scene scene = smallScene(6000);
+    core::Scene scene = smallScene(2000);
     scene.wave->depth_m = 2.0;
     scene.wave->damping_per_s = 0.5;
     if (!with_particles) {

@@ -198,7 +198,7 @@ core::Scene everything() {
 TEST_F(Rectangle, AnOddRectangleWithEverythingKeepsItsLedgerAndNeedsNoWatchdog) {
   WaterSim& sim = make(everything());
   const std::int64_t droplet_units = sim.derived().uniforms.droplet_units;
-  for (int tick = 0; tick < 1000; ++tick) {
+  for (int tick = 0; tick < 450; ++tick) {
     if (tick % 200 == 100) {
       ASSERT_TRUE(sim.start(core::BreakingWave{.side = core::Side::kMinusX, .amplitude_m = 0.5, .length_m = 2.0}));
     }

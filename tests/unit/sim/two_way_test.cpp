@@ -177,7 +177,7 @@ TEST_F(TwoWay, TheLedgerIsExactThroughStormsWavesBoatsRocksAndOpenSides) {
   scene.boats->boats = {
       core::Boat{.x_m = -2.0, .z_m = 2.0, .max_speed_mps = 5.0, .throttle_ratio = 1.0, .rudder_ratio = 0.4}};
   WaterSim& sim = make(scene);
-  for (int i = 0; i < 1200; ++i) {
+  for (int i = 0; i < 500; ++i) {
     if (i % 150 == 10) {
       ASSERT_TRUE(sim.start(core::Splash{0.5, 0.5, 1.5, 0.8, 0.15}));
     }

@@ -5,21 +5,10 @@
 #include <spindrift/sim_setup/basin_store.h>
 #include <spindrift/water/water.h>
 
+#include "harbor_scene.h"
+
 namespace spindrift::water {
 namespace {
-
-/// Every part that has a state.
-constexpr const char* kHarbor = R"(
-  wave { resolution_count: 48 side_m: 12 depth_m: 1 bulk: BULK_NONLINEAR dispersion: DISPERSION_AIRY
-         boundary_minus_x: WAVE_BOUNDARY_ABSORB boundary_plus_x: WAVE_BOUNDARY_REFLECT
-         boundary_minus_z: WAVE_BOUNDARY_REFLECT boundary_plus_z: WAVE_BOUNDARY_REFLECT }
-  particles { count: 1000 headroom_m: 3 }
-  coupling { mode: COUPLING_MODE_TWO_WAY droplet_spacing_m: 0.15 }
-  foam { surface: true }
-  boats { capacity_count: 4 boats { x_m: 2 throttle_ratio: 0.5 } }
-  floaters { floaters { x_m: 3 } }
-  storm { level_ratio: 0.6 wind_direction_deg: 10 }
-)";
 
 class KnownWater : public testing::Test {
  protected:

@@ -26,6 +26,9 @@ class WaterBuilder {
  public:
   using Built = core::Result<std::unique_ptr<Water>>;
   using Prepared = core::Result<sim::PreparedScene>;
+  /// kMayBeCold: nobody waits for the first tick, and warmUp() need not be of now; then the water makes no ticks that
+  /// compile shaders if the driver keeps them.
+  enum class FirstTick { kIsWarm, kMayBeCold };
 
   /// Water of the scenes listed in `scenes` gets its costs at every level. `done` is called after each piece of work,
   /// on a thread of the builder.
@@ -36,10 +39,9 @@ class WaterBuilder {
   WaterBuilder& operator=(const WaterBuilder&) = delete;
 
   /// Any thread. The water is returned released: the caller binds it. The second of a scene is ready sooner: the tables
-  /// of the basin are kept. `may_be_cold`: nobody waits for its first tick, and warmUp() need not be of now; then it
-  /// makes no ticks that compile shaders if the driver keeps them.
+  /// of the basin are kept.
   /// Errors: those of Water::create(); kUnavailable when the builder ends.
-  std::future<Built> build(v1::Scene scene, bool may_be_cold = false);
+  std::future<Built> build(v1::Scene scene, FirstTick first_tick = FirstTick::kIsWarm);
   /// Any thread. From now on builds at a lower priority than the simulation. To be called when a room runs, and not
   /// before its water is built: that starts the threads of a software rasteriser, which compute the ticks of all rooms.
   void yieldToRooms();
