@@ -110,7 +110,8 @@ void RemoteRoom::review(Clock::time_point now) {
       refused = loseLink();
     }
     if (!attached_ && now - tried_ > kAttachInterval) attach(now);
-    for (auto guest = guests_.begin(); guest != guests_.end();) {
+    const bool is_pulse_due = now - told_ >= kPulseInterval;
+    for (auto guest = guests_.begin(); is_pulse_due && guest != guests_.end();) {
       if (guest->second.arrived && now - guest->second.since > kArrivalPatience) {
         hopeless.push_back(std::move(guest->second.arrived));
         guest = guests_.erase(guest);
@@ -118,7 +119,7 @@ void RemoteRoom::review(Clock::time_point now) {
         ++guest;
       }
     }
-    if (attached_) reviewStreams(now, now - told_ >= kPulseInterval, dropped);
+    if (attached_) reviewStreams(now, is_pulse_due, dropped);
   }
   reject(refused, "the room's server is silent");
   for (const Arrived& arrived : hopeless) arrived(unreachable());

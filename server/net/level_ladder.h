@@ -23,6 +23,9 @@ class LevelLadder {
     lost_count_ += lost ? 1 : 0;
   }
 
+  /// Returns whether review() has something to do.
+  [[nodiscard]] bool isDue(Clock::time_point now) const { return !window_begin_ || now - *window_begin_ >= kWindow; }
+
   /// Evaluates the counts once per kWindow; returns the new level if it changed. `reduced_count`: number of levels that
   /// downsample the layer; with 0 there is no lower level.
   std::optional<core::Level> review(Clock::time_point now, std::uint32_t reduced_count) {
@@ -30,7 +33,7 @@ class LevelLadder {
       window_begin_ = clean_since_ = now;
       return std::nullopt;
     }
-    if (now - *window_begin_ < kWindow) return std::nullopt;
+    if (!isDue(now)) return std::nullopt;
     window_begin_ = now;
     const std::uint32_t due_count = std::exchange(due_count_, 0);
     const std::uint32_t lost_count = std::exchange(lost_count_, 0);

@@ -20,6 +20,8 @@ using boost::system::error_code;
 
 /// FIN and the opcode, payload length 2, code 1002.
 constexpr std::array<std::uint8_t, 4> kProtocolErrorClose{0x88, 0x02, 0x03, 0xea};
+/// Up to this size one copy more costs less than the kernel's walk through headers and messages.
+constexpr std::size_t kCopiedMaxBytes = 16 * 1024;
 
 core::ByteView bytesOf(const asio::const_buffer& buffer) {
   return {static_cast<const std::uint8_t*>(buffer.data()), buffer.size()};
@@ -109,9 +111,16 @@ BegunWrite MessageStream::beginMessages(std::span<const core::SharedBytes> messa
   BegunWrite out;
   if (isTls() || shared_->turn != Shared::Turn::kFree) return out;
   const Framed framed(messages, false);
-  out.bytes_count = socket().write_some(framed.parts, out.error);
+  const std::size_t size_bytes = asio::buffer_size(framed.parts);
+  if (size_bytes <= kCopiedMaxBytes) {
+    std::array<std::uint8_t, kCopiedMaxBytes> copy;
+    asio::buffer_copy(asio::buffer(copy), framed.parts);
+    out.bytes_count = socket().write_some(asio::buffer(copy, size_bytes), out.error);
+  } else {
+    out.bytes_count = socket().write_some(framed.parts, out.error);
+  }
   if (out.error == asio::error::would_block) out.error.clear();
-  out.is_all = out.bytes_count == asio::buffer_size(framed.parts);
+  out.is_all = out.bytes_count == size_bytes;
   if (out.bytes_count > 0 && !out.is_all) shared_->turn = Shared::Turn::kMessages;
   return out;
 }

@@ -1,6 +1,7 @@
 #include "outbox.h"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 namespace spindrift::net {
@@ -39,12 +40,13 @@ Outbox::Outcome Outbox::pushState(const StateTopic& topic, core::SharedBytes mes
 Outbox::Outcome Outbox::offerFrame(StreamIndex stream, const FrameBytes& frame, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_ || stream >= kMaxStreamCount || !slots_[stream].watch) return {};
-  const Outcome out = put(slots_[stream], frame, now);
+  const Outcome out = put(stream, frame, now);
   tellNeed(stream);
   return out;
 }
 
-Outbox::Outcome Outbox::put(Slot& slot, const FrameBytes& frame, Clock::time_point now) {
+Outbox::Outcome Outbox::put(StreamIndex stream, const FrameBytes& frame, Clock::time_point now) {
+  Slot& slot = slots_[stream];
   const core::Level wanted = levelOf(slot);
   const core::FrameLevels& levels = frame.levels;
   if (!levels.isOf(wanted)) return {};
@@ -59,6 +61,7 @@ Outbox::Outcome Outbox::put(Slot& slot, const FrameBytes& frame, Clock::time_poi
     if (!is_pending) return {};
     slot.frame.reset();
     slot.lost_turn = turn_count_;
+    has_lost_turns_ = true;
     return {.dropped = true};
   }
   if (!is_due) {
@@ -66,11 +69,8 @@ Outbox::Outcome Outbox::put(Slot& slot, const FrameBytes& frame, Clock::time_poi
     return {};
   }
   slot.gate.pass(now);
-  slot.frame = message;
-  slot.level = levels.level;
-  slot.follows = true;
-  slot.is_newcomer = false;
   slot.lost_turn.reset();
+  fill(stream, frame, message);
   return {.dropped = is_pending};
 }
 
@@ -82,19 +82,26 @@ bool Outbox::wakeForFrames() {
 Outbox::Outcome Outbox::offerNewest(StreamIndex stream, const FrameBytes& frame) {
   const std::lock_guard lock(mutex_);
   if (close_ || shut_ || stream >= kMaxStreamCount || !slots_[stream].watch) return {};
-  const Outcome out = putNewest(slots_[stream], frame);
+  const Outcome out = putNewest(stream, frame);
   tellNeed(stream);
   return out;
 }
 
-Outbox::Outcome Outbox::putNewest(Slot& slot, const FrameBytes& frame) {
+Outbox::Outcome Outbox::putNewest(StreamIndex stream, const FrameBytes& frame) {
+  Slot& slot = slots_[stream];
   if (!slot.is_newcomer || !frame.keyframe || !frame.levels.isOf(levelOf(slot))) return {};
   slot.reduced_count = frame.levels.reduced_count;
-  slot.frame = frame.keyframe;
+  fill(stream, frame, frame.keyframe);
+  return {.wake = takeWake()};
+}
+
+void Outbox::fill(StreamIndex stream, const FrameBytes& frame, const core::SharedBytes& message) {
+  Slot& slot = slots_[stream];
+  slot.frame = message;
   slot.level = frame.levels.level;
   slot.follows = true;
   slot.is_newcomer = false;
-  return {.wake = takeWake()};
+  filled_slots_ |= static_cast<StreamBits>(1U << stream);
 }
 
 // What the session needs
@@ -161,6 +168,7 @@ void Outbox::setWatch(StreamIndex stream, const std::optional<Watch>& watch) {
 
 std::optional<core::Level> Outbox::reviewLevel(Clock::time_point now) {
   const std::lock_guard lock(mutex_);
+  if (!ladder_.isDue(now)) return std::nullopt;
   std::uint32_t reduced_count = 0;
   for (const Slot& slot : slots_) {
     if (slot.watch && slot.watch->adapts) reduced_count = std::max(reduced_count, slot.reduced_count);
@@ -197,9 +205,7 @@ Outbox::Next Outbox::next() {
   const std::lock_guard lock(mutex_);
   writer_sleeps_ = false;
   ++turn_count_;
-  for (std::size_t stream = 0; stream < kMaxStreamCount; ++stream) {
-    if (slots_[stream].lost_turn) tellNeed(stream);
-  }
+  if (std::exchange(has_lost_turns_, false)) tellNeeds();
   if (shut_) return {Kind::kShut, nullptr};
   const auto stream = nextStream();
   if (stream && isFrameBeforeControl()) return takeFrame(*stream);
@@ -236,10 +242,12 @@ Outbox::Next Outbox::takeControl() {
   return {Kind::kControl, taken.message};
 }
 
-std::optional<std::size_t> Outbox::nextStream() const {
-  for (std::size_t k = 0; k < slots_.size(); ++k) {
-    const std::size_t stream = (turn_ + k) % slots_.size();
+std::optional<std::size_t> Outbox::nextStream() {
+  while (filled_slots_ != 0) {
+    const auto ahead = static_cast<std::size_t>(std::countr_zero(std::rotr(filled_slots_, static_cast<int>(turn_))));
+    const std::size_t stream = (turn_ + ahead) % slots_.size();
     if (slots_[stream].frame) return stream;
+    filled_slots_ &= static_cast<StreamBits>(~(1U << stream));
   }
   return std::nullopt;
 }

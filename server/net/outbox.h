@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -112,8 +113,10 @@ class Outbox {
   void beginClose(CloseCode code, std::string reason);
   /// Returns the level of the slot's watch as of now; the slot must have a watch.
   core::Level levelOf(const Slot& slot) const;
-  Outcome put(Slot& slot, const FrameBytes& frame, Clock::time_point now);
-  Outcome putNewest(Slot& slot, const FrameBytes& frame);
+  Outcome put(StreamIndex stream, const FrameBytes& frame, Clock::time_point now);
+  Outcome putNewest(StreamIndex stream, const FrameBytes& frame);
+  /// Puts a message of the frame into the stream's slot.
+  void fill(StreamIndex stream, const FrameBytes& frame, const core::SharedBytes& message);
   [[nodiscard]] std::optional<core::DemandTable::Need> needOf(const Slot& slot) const;
   /// Tells the room what it needs of the stream, if that has changed; or of all streams.
   void tellNeed(std::size_t stream);
@@ -137,25 +140,32 @@ class Outbox {
   /// Call these with the mutex held.
   [[nodiscard]] bool isFrameBeforeControl() const;
   /// The stream whose frame is next; nullopt if none waits.
-  [[nodiscard]] std::optional<std::size_t> nextStream() const;
+  [[nodiscard]] std::optional<std::size_t> nextStream();
   Next takeFrame(std::size_t stream);
   Next takeControl();
 
+  /// A bit per stream.
+  using StreamBits = std::uint16_t;
+  static_assert(std::numeric_limits<StreamBits>::digits == kMaxStreamCount);
+
   const std::size_t answer_max_count_;
+  // First what is looked at for each frame: much of the cost of a frame is memory that no cache has.
   mutable std::mutex mutex_;
+  StreamBits filled_slots_ = 0;  ///< that got a frame since they were last found empty
+  bool has_lost_turns_ = false;  ///< a slot got a lost_turn since the last next()
+  bool writer_sleeps_ = false;
+  bool shut_ = false;
+  std::size_t turn_ = 0;                       ///< the stream that is checked first
+  std::uint64_t turn_count_ = 0;               ///< number of times that the writer had finished what it took before
+  std::shared_ptr<core::DemandTable> demand_;  ///< of the room; null outside of one
+  std::optional<SessionEnd> close_;
+  LevelLadder ladder_;
   std::deque<Control> control_;
   std::size_t answer_count_ = 0;       ///< answers in control_
   bool whole_state_waits_ = false;     ///< control_ holds a message with Scope::kWhole
   std::size_t control_run_count_ = 0;  ///< control messages taken since the last frame
   std::array<Slot, kMaxStreamCount> slots_;
-  std::shared_ptr<core::DemandTable> demand_;  ///< of the room; null outside of one
   std::array<std::optional<core::DemandTable::Need>, kMaxStreamCount> told_needs_;
-  LevelLadder ladder_;
-  std::size_t turn_ = 0;          ///< the stream that is checked first
-  std::uint64_t turn_count_ = 0;  ///< number of times that the writer had finished what it took before
-  bool writer_sleeps_ = false;
-  bool shut_ = false;
-  std::optional<SessionEnd> close_;
 };
 
 }  // namespace spindrift::net

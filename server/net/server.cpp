@@ -38,7 +38,7 @@ class ServerImpl final : public Server {
   ServerImpl(const ServerOptions& options, TrustedNetworks proxies, std::unique_ptr<TlsCredentials> credentials,
              Application& application)
       : context_{options, std::move(proxies), std::move(credentials), application},
-        accept_strand_(asio::make_strand(io_)),
+        accept_strand_(newStrand()),
         acceptor_(accept_strand_) {
     context_.hub.gatherFrames(
         [this](std::function<void()> wake) {
@@ -67,6 +67,11 @@ class ServerImpl final : public Server {
   void stop() override;
 
  private:
+  /// Returns an executor whose handlers run one at a time. A single thread needs no lock for that.
+  asio::any_io_executor newStrand() {
+    if (context_.options.thread_count <= 1) return io_.get_executor();
+    return asio::make_strand(io_);
+  }
   core::Result<void> bind(const asio::ip::address& address);
   asio::awaitable<void> acceptLoop();
   asio::awaitable<void> watchCertificate();
@@ -165,7 +170,7 @@ asio::awaitable<void> ServerImpl::acceptLoop() {
   RareLine failed;
   RareLine refused;
   while (acceptor_.is_open()) {
-    auto [error, socket] = co_await acceptor_.async_accept(asio::any_io_executor(asio::make_strand(io_)), kToken);
+    auto [error, socket] = co_await acceptor_.async_accept(newStrand(), kToken);
     if (error == asio::error::operation_aborted) break;
     if (error) {
       context_.counters.add(&ServerStats::failed_accept_count);

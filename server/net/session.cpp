@@ -54,9 +54,9 @@ websocket::close_reason closeFrame(const SessionEnd& end) {
 Session::Session(Transport stream, ServerContext& context)
     : context_(context),
       id_(++context.last_session_id),
+      outbox_(context.options.answer_max_count),
       ws_(std::move(stream)),
       strand_(ws_.get_executor()),
-      outbox_(context.options.answer_max_count),
       message_tokens_(context.options.messages_per_s, context.options.message_burst_count, Clock::now()),
       wake_timer_(strand_),
       answers_timer_(strand_),
@@ -196,8 +196,10 @@ void Session::take(core::Translator::Incoming incoming) {
 asio::awaitable<void> Session::waitUntilAnswersAreTaken() {
   while (!outbox_.closing() && outbox_.waiting().answer_count >= context_.options.answer_pause_count) {
     // The writer cancels it after each message; both run on the strand.
+    is_reader_paused_ = true;
     answers_timer_.expires_at(Clock::time_point::max());
     (void)co_await answers_timer_.async_wait(kToken);
+    is_reader_paused_ = false;
   }
 }
 
@@ -323,7 +325,7 @@ void Session::watchWrites() {
 }
 
 void Session::afterWrite() {
-  answers_timer_.cancel();
+  if (is_reader_paused_) answers_timer_.cancel();
   const auto level = outbox_.reviewLevel(Clock::now());
   if (!level) return;
   const core::Level before = std::exchange(level_, *level);

@@ -98,12 +98,14 @@ class Session final : public SessionLink, public std::enable_shared_from_this<Se
 
   ServerContext& context_;
   const SessionId id_;
-  boost::beast::websocket::stream<MessageStream, false> ws_;  ///< without permessage-deflate
-  const boost::asio::any_io_executor strand_;
+  // First what is looked at for each frame.
+  bool is_writer_idle_ = false;                   ///< it waits on wake_timer_
+  bool is_reader_paused_ = false;                 ///< it waits on answers_timer_
   std::unique_ptr<core::Translator> translator_;  ///< null: the client speaks the application's protocol
   Outbox outbox_;
+  boost::beast::websocket::stream<MessageStream, false> ws_;  ///< without permessage-deflate
+  const boost::asio::any_io_executor strand_;
   Gathered gathered_;
-  bool is_writer_idle_ = false;             ///< it waits on wake_timer_
   core::Level level_ = core::Level::kFull;  ///< of the newest review
   TokenBucket message_tokens_;
   std::uint64_t untaken_fragment_count_ = 0;  ///< fragments for which no token was taken yet

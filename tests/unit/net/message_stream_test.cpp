@@ -144,6 +144,22 @@ TEST_F(MessageStreamTest, TheKernelTakesWhatItHasRoomForAtOnce) {
   EXPECT_EQ(received(14), frameOf(*small[0]) + frameOf(*small[1]));
 }
 
+TEST_F(MessageStreamTest, ASmallMessageContinuesWhereTheKernelStopped) {
+  core::Bytes bytes(11'003);
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<std::uint8_t>(k * 13);
+  const core::SharedBytes small = core::share(std::move(bytes));
+  std::string expected;
+  BegunWrite begun{.is_all = true};
+  while (begun.is_all) {  // until the buffers of the kernel are full
+    begun = stream_->beginMessages({&small, 1});
+    EXPECT_FALSE(begun.error);
+    expected += frameOf(*small);
+  }
+  const auto written = startMessages({small}, begun);
+  EXPECT_TRUE(received(expected.size()) == expected);
+  EXPECT_FALSE(waitFor(written));
+}
+
 TEST_F(MessageStreamTest, TheRestOfABegunMessageComesBeforeAFrameOfBeast) {
   const std::string pong = bytesOf({.opcode = Opcode::kPong, .payload = "pong", .masked = false});
   core::Bytes bytes(kHugeBytes);
