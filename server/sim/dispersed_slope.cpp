@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <iterator>
+#include <optional>
 #include <string>
 
 #include <shared/bindings.h>
@@ -26,6 +27,14 @@ Floats floatsOf(const Four& v) {
   return {static_cast<float>(v[0]), static_cast<float>(v[1]), static_cast<float>(v[2]), static_cast<float>(v[3])};
 }
 
+/// Cells that a strip computes with beyond its own, to either side (shaders/dispersion/strip.glsl).
+constexpr int kReach = 4;
+
+/// The invocations of whole work groups.
+std::uint32_t inGroups(std::size_t strips) {
+  return static_cast<std::uint32_t>((strips + DISPERSION_GROUP - 1) / DISPERSION_GROUP * DISPERSION_GROUP);
+}
+
 /// One texel per cell: the halves of both tables.
 std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four>& second) {
   std::vector<Words> out(first.size());
@@ -37,6 +46,101 @@ std::vector<Words> packed(const std::vector<Four>& first, const std::vector<Four
                 core::packHalves(b[2], b[3])};
     }
   });
+  return out;
+}
+
+/// Returns the weights of the face behind cell i of n, in both coarse faces along its axis, where no wall is near.
+/// Coarse faces at sides have none.
+std::uint32_t openWeights(int i, int n, bool is_periodic) {
+  static const std::uint32_t kWhole = core::packHalves(1.0, 0.0);
+  static const std::uint32_t kBoth = core::packHalves(0.5, 0.5);
+  static const std::uint32_t kBehind = core::packHalves(0.0, 0.5);
+  static const std::uint32_t kAhead = core::packHalves(0.5, 0.0);
+  if (i % 2 != 0) return kWhole;
+  if (is_periodic) return kBoth;
+  return i == n - 2 ? kBehind : (i == 0 ? kAhead : kBoth);
+}
+
+/// Returns a value if the strip at cell (first_x, first_z) is steady: every face that it computes with may use the
+/// coefficients of its second row, and weights without walls. 0, or DISPERSION_SIDES_WITHOUT_SPREAD if there is no
+/// spread beside sides across z.
+std::optional<std::uint32_t> steadiness(const DispersionLevel& level, const std::vector<Words>& coefficients,
+                                        const std::vector<Words>& weights, const StripShape& strip, int first_x,
+                                        int first_z) {
+  const int nx = static_cast<int>(level.count.x);
+  const int nz = static_cast<int>(level.count.z);
+  // Nothing passes a side that is not periodic, so what is beyond it does not matter.
+  const auto range = [](int first, std::uint32_t count, int n, bool is_periodic) {
+    const std::array out{first - kReach, std::min(first + static_cast<int>(count), n) + kReach + 1};
+    return is_periodic ? out : std::array{std::max(out[0], 0), std::min(out[1], n)};
+  };
+  const auto [begin_x, end_x] = range(first_x, strip.cells.x, nx, strip.is_periodic_x);
+  const auto [begin_z, end_z] = range(first_z, strip.cells.z, nz, strip.is_periodic_z);
+  // The shader closes the faces at sides itself.
+  const auto isLast = [](int i, int n, bool is_periodic) { return !is_periodic && i == n - 1; };
+  if (first_z + 1 >= nz || isLast(first_z + 1, nz, strip.is_periodic_z)) return {};
+  bool keeps_spread = true;
+  bool lacks_spread = true;
+  for (int x = begin_x; x < end_x; ++x) {
+    const Words& wanted = coefficients[level.index(x, first_z + 1)];
+    for (int z = begin_z; z < end_z; ++z) {
+      const std::size_t i = level.index(x, z);
+      Words here = coefficients[i];
+      const bool is_last = isLast(z, nz, strip.is_periodic_z);
+      if (is_last) here[0] = (here[0] & 0xffff) | (wanted[0] & 0xffff0000);
+      if (is_last && level.spread.empty()) here[3] = wanted[3];
+      if ((is_last || (z == 0 && !strip.is_periodic_z)) && !level.spread.empty()) {
+        keeps_spread = keeps_spread && here[2] == wanted[2] && here[3] == wanted[3];
+        lacks_spread = lacks_spread && here[2] == 0 && here[3] == 0;
+        here[2] = wanted[2];
+        here[3] = wanted[3];
+      }
+      const Words& w = weights[i];
+      const bool is_open_x =
+          isLast(x, nx, strip.is_periodic_x) || (w[0] == openWeights(x, nx, strip.is_periodic_x) && w[1] == 0);
+      const bool is_open_z = is_last || (w[2] == 0 && w[3] == openWeights(z, nz, strip.is_periodic_z));
+      if (here != wanted || !is_open_x || !is_open_z || (!keeps_spread && !lacks_spread)) return {};
+    }
+  }
+  return keeps_spread ? 0 : DISPERSION_SIDES_WITHOUT_SPREAD;
+}
+
+/// Returns whether all faces that a strip owns are closed, and those of the coarser grid that it sums up for.
+bool isClosed(const DispersionLevel& level, const DispersionLevel& coarser, const StripShape& strip,
+              std::uint32_t first_x, std::uint32_t first_z) {
+  const auto areClosed = [](const DispersionLevel& grid, std::uint32_t begin_x, std::uint32_t end_x,
+                            std::uint32_t begin_z, std::uint32_t end_z) {
+    for (std::uint32_t z = begin_z; z < std::min(end_z, grid.count.z); ++z) {
+      for (std::uint32_t x = begin_x; x < std::min(end_x, grid.count.x); ++x) {
+        const Four& stiffness = grid.stiffness[x + std::size_t{grid.count.x} * z];
+        if (stiffness[0] > 0.0 || stiffness[1] > 0.0) return false;
+      }
+    }
+    return true;
+  };
+  const std::uint32_t end_x = first_x + strip.cells.x;
+  const std::uint32_t end_z = first_z + strip.cells.z;
+  return areClosed(level, first_x, end_x, first_z, end_z) &&
+         areClosed(coarser, first_x / 2, end_x / 2, first_z / 2, end_z / 2);
+}
+
+/// Returns the strips of a grid as words for DISPERSION_STRIPS, in whole groups, by whether they are steady. Those of
+/// dry ground are left out: what they would write stays 0.
+std::array<std::vector<std::uint32_t>, 2> stripLists(const DispersionLevel& level, const DispersionLevel& coarser,
+                                                     const std::vector<Words>& coefficients,
+                                                     const std::vector<Words>& weights, const StripShape& strip) {
+  constexpr std::uint32_t kNone = 0xffffffff;
+  std::array<std::vector<std::uint32_t>, 2> out;
+  const CellCounts count = strip.stripsOf(level.count);
+  for (std::uint32_t z = 0; z < count.z; ++z) {
+    for (std::uint32_t x = 0; x < count.x; ++x) {
+      if (isClosed(level, coarser, strip, x * strip.cells.x, z * strip.cells.z)) continue;
+      const auto steady = steadiness(level, coefficients, weights, strip, static_cast<int>(x * strip.cells.x),
+                                     static_cast<int>(z * strip.cells.z));
+      out[steady.has_value()].push_back(x | steady.value_or(0) | z << 16);
+    }
+  }
+  for (auto& words : out) words.resize(inGroups(words.size()), kNone);
   return out;
 }
 
@@ -60,7 +164,11 @@ constexpr BottomTable kBottomTables[] = {
 
 DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const Dispersion& dispersion,
                                bool keeps_last_step)
-    : tuning_(create.context().tuning()), keeps_last_step_(keeps_last_step) {
+    : strip_{.cells = {create.context().tuning().dispersion_columns, create.context().tuning().dispersion_strip},
+             .is_periodic_x = layout.is_periodic_x,
+             .is_periodic_z = layout.is_periodic_z},
+      is_flat_(dispersion.is_flat),
+      keeps_last_step_(keeps_last_step) {
   // One work group takes fewer dispatches for the bottom, but has only one core.
   const std::size_t bottom = bottomOf(dispersionGrids(layout));
   bool is_narrow[2] = {false, false};
@@ -72,10 +180,10 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
     if (k > 0) {
       const CellCounts finer = dispersion.levels[k - 1].count;
       const bool is_exact = grid.count == CellCounts{finer.x / 2, finer.z / 2};
-      // No pass writes the cells beyond the water: they stay 0.
-      grid.right = create.texels("dispersion right side", cells, kFloats,
-                                 is_exact ? gpu::BufferContent::kScratch : gpu::BufferContent::kZero);
-      grid.faces = create.scratch("dispersion faces", cells, kFloats);
+      // No pass writes the cells beyond the water, and strips of dry ground: they stay 0.
+      const auto content = is_exact && is_flat_ ? gpu::BufferContent::kScratch : gpu::BufferContent::kZero;
+      grid.right = create.texels("dispersion right side", cells, kFloats, content);
+      grid.faces = create.texels("dispersion faces", cells, kFloats, content);
     }
     if (k == bottom) break;
     // The halo of a strip (shaders/dispersion/strip.glsl) goes around a grid with fewer cells more than once.
@@ -86,6 +194,9 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
     } else {
       grid.coefficients = create.texels("dispersion coefficients", cells, kWords);
       grid.weights = create.texels("dispersion weights", cells, kWords);
+      for (Strips& strips : grid.strips)
+        strips.list =
+            create.texels("dispersion strips", inGroups(strip_.stripsOf(grid.count).total()), gpu::TexelFormat::kR32UI);
     }
   }
   std::size_t bottom_cells = 0;
@@ -94,13 +205,17 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
     bottom_tables_.push_back(create.texels(table.name, bottom_cells, kFloats));
   dispersed_ =
       create.texels("dispersed slope", layout.counts().total(), keeps_last_step ? kFloats : gpu::TexelFormat::kRG32F,
-                    keeps_last_step ? gpu::BufferContent::kZero : gpu::BufferContent::kScratch);
+                    keeps_last_step || !is_flat_ ? gpu::BufferContent::kZero : gpu::BufferContent::kScratch);
   for (std::size_t finest = 0; finest < 2; ++finest) {
-    const gpu::Defines of_grid{{"FINEST", std::to_string(finest)},
-                               {"FLAT", dispersion.is_flat ? "1" : "0"},
-                               {"NARROW", is_narrow[finest] ? "1" : "0"}};
-    descend_[finest] = create.pass("dispersion/descend.comp", of_grid);
-    ascend_[finest] = create.pass("dispersion/ascend.comp", of_grid);
+    for (const bool steady : {false, true}) {
+      if (is_flat_ && !steady) continue;
+      const gpu::Defines of_grid{{"FINEST", std::to_string(finest)},
+                                 {"FLAT", is_flat_ ? "1" : "0"},
+                                 {"STEADY", steady ? "1" : "0"},
+                                 {"NARROW", is_narrow[finest] ? "1" : "0"}};
+      descend_[finest][steady] = create.pass("dispersion/descend.comp", of_grid);
+      ascend_[finest][steady] = create.pass("dispersion/ascend.comp", of_grid);
+    }
   }
   solve_bottom_ = create.plainPass("dispersion/bottom.comp");
   if (create.error()) return;
@@ -123,15 +238,28 @@ void DispersedSlope::declareState(StateBuffers& out) {
 
 void DispersedSlope::upload(const Dispersion& dispersion) {
   const std::size_t bottom = grids_.size() - 1;
+  if (!is_flat_) {
+    // Ground may have become dry; that of a nonlinear bulk, whose last step is state, does not change.
+    for (std::size_t k = 1; k <= bottom; ++k) grids_[k].right.clear(), grids_[k].faces.clear();
+    if (!keeps_last_step_) dispersed_.clear();
+  }
   for (std::size_t k = 0; k < bottom; ++k) {
     const DispersionLevel& level = dispersion.levels[k];
-    if (dispersion.is_flat) {
+    if (is_flat_) {
       // The first cell is wet and its faces are open.
       grids_[k].coefficients.upload(
           std::array{floatsOf(level.stiffness[0]), floatsOf(k == 0 ? dispersion.root_c[0] : level.spread[0])});
     } else {
-      grids_[k].coefficients.upload(packed(level.stiffness, k == 0 ? dispersion.root_c : level.spread));
-      grids_[k].weights.upload(packed(level.from_coarse_x, level.from_coarse_z));
+      const std::vector<Words> coefficients = packed(level.stiffness, k == 0 ? dispersion.root_c : level.spread);
+      const std::vector<Words> weights = packed(level.from_coarse_x, level.from_coarse_z);
+      grids_[k].coefficients.upload(coefficients);
+      grids_[k].weights.upload(weights);
+      const auto lists = stripLists(level, dispersion.levels[k + 1], coefficients, weights, strip_);
+      for (std::size_t steady = 0; steady < 2; ++steady) {
+        Strips& strips = grids_[k].strips[steady];
+        strips.count = static_cast<std::uint32_t>(lists[steady].size());
+        if (strips.count > 0) strips.list.upload(lists[steady]);
+      }
     }
   }
   for (std::size_t table = 0; table < bottom_tables_.size(); ++table) {
@@ -181,11 +309,16 @@ void DispersedSlope::ascend(std::size_t level) {
   run(ascend_[level == 0], level);
 }
 
-void DispersedSlope::run(Pass& pass, std::size_t level) {
-  const CellCounts count = grids_[level].count;
-  grids_[level].sizes.bindUniform(DISPERSION_UNIFORMS);
-  pass.run((count.x + tuning_.dispersion_columns - 1) / tuning_.dispersion_columns,
-           (count.z + tuning_.dispersion_strip - 1) / tuning_.dispersion_strip);
+void DispersedSlope::run(Pass (&passes)[2], std::size_t level) {
+  const Grid& grid = grids_[level];
+  grid.sizes.bindUniform(DISPERSION_UNIFORMS);
+  if (is_flat_) return passes[1].run(strip_.stripsOf(grid.count));
+  for (std::size_t steady = 0; steady < 2; ++steady) {
+    const Strips& strips = grid.strips[steady];
+    if (strips.count == 0) continue;
+    strips.list.bindTexel(DISPERSION_STRIPS);
+    passes[steady].run(strips.count);
+  }
 }
 
 }  // namespace spindrift::sim

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include <spindrift/sim/state_buffer.h>
@@ -10,6 +11,17 @@
 #include "creation.h"
 
 namespace spindrift::sim {
+
+/// Cells that an invocation of its passes owns, and the sides of the basin.
+struct StripShape {
+  CellCounts cells;
+  bool is_periodic_x, is_periodic_z;
+
+  /// Returns the strips of a grid of so many cells.
+  [[nodiscard]] CellCounts stripsOf(CellCounts grid) const {
+    return {(grid.x + cells.x - 1) / cells.x, (grid.z + cells.z - 1) / cells.z};
+  }
+};
 
 class DispersedSlope {
  public:
@@ -27,10 +39,16 @@ class DispersedSlope {
   void declareState(StateBuffers& out);
 
  private:
+  /// Strips of a grid that one dispatch takes (shaders/dispersion/strip.glsl).
+  struct Strips {
+    gpu::TexelBuffer list;
+    std::uint32_t count = 0;
+  };
   struct Grid {
     CellCounts count;
     gpu::Buffer sizes;                       ///< shared::DispersionUniforms
     gpu::TexelBuffer coefficients, weights;  ///< none in the last grid; no weights in a flat basin
+    Strips strips[2];                        ///< of an uneven basin: by whether they are steady
     gpu::TexelBuffer right, faces;           ///< except on the finest grid
   };
 
@@ -38,15 +56,16 @@ class DispersedSlope {
   void descend(std::size_t level);
   void solveBottom();
   void ascend(std::size_t level);
-  void run(Pass& pass, std::size_t level);
+  void run(Pass (&passes)[2], std::size_t level);
 
-  gpu::TuningProfile tuning_;
+  StripShape strip_;
+  bool is_flat_;
   bool keeps_last_step_;
   std::vector<Grid> grids_;  ///< finest first; the last one is the first of the bottom
   /// Tables of the grids that one work group solves, one grid behind the other.
   std::vector<gpu::TexelBuffer> bottom_tables_;
   gpu::TexelBuffer dispersed_;
-  Pass descend_[2], ascend_[2];  ///< by whether the grid is the finest
+  Pass descend_[2][2], ascend_[2][2];  ///< by whether the grid is the finest, and the strips are steady
   Pass solve_bottom_;
 };
 

@@ -185,12 +185,13 @@ std::uint64_t dispersionBytes(const WaveLayout& layout) {
   constexpr std::uint64_t kCoefficients = 16;
   constexpr std::uint64_t kWeights = 16;
   constexpr std::uint64_t kFaces = 2 * 16;  // and their right side
+  constexpr std::uint64_t kStrips = 1;      // two lists of words, strips of at least eight cells
   constexpr std::uint64_t kBottom = 4 * 16 + 8;
   const std::vector<CellCounts> grids = dispersionGrids(layout);
   const std::size_t bottom = bottomOf(grids);
   std::uint64_t bytes = layout.counts().total() * 8;
   for (std::size_t k = 0; k < grids.size(); ++k) {
-    bytes += grids[k].total() * (kCoefficients + kWeights + (k > 0 ? kFaces : 0) + (k >= bottom ? kBottom : 0));
+    bytes += grids[k].total() * (kCoefficients + kWeights + kStrips + (k > 0 ? kFaces : 0) + (k >= bottom ? kBottom : 0));
   }
   return bytes;
 }

@@ -1,6 +1,6 @@
 // On the way up the V-cycle: the two sweeps of descend.comp again, the correction of the coarser grid, two sweeps.
 // Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, with
-// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_FACES; on the finest grid
+// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_COARSE, DISPERSION_WEIGHTS except if STEADY. Writes DISPERSION_FACES; on the finest grid
 // DISPERSED instead: F grad(eta), what wave/momentum.comp takes for depth times slope [m * units per cell]; with NONLINEAR with
 // that of the step before behind it.
 // Equation: phi_3 = phi_2 + P coarse, with the weights P of strip.glsl; then phi += w (r - K phi) twice; F grad(eta) = a
@@ -35,20 +35,27 @@ void correct(int z, int block_column[WIDTH / 2 + 1], inout vec4 faces[WIDTH]) {
   }
   for (int c = 1; c < WIDTH - 1; ++c) {
     const int k = (c + 1) / 2;
+#if STEADY && !FLAT
+    // Rounded like the sums below.
+    const vec2 z_share = z % 2 == 1 ? here[k].zw : 0.5 * (here[k].zw + south[k]);
+    faces[c] += vec4(c % 2 == 0 ? here[k].xy : 0.5 * (here[k].xy + here[k - 1].xy), z_share);
+#else
     const Weights w = weightsAt(c, c % 2 == 0, z);
     faces[c] += vec4(w.x.x * here[k].xy + w.x.y * here[k - 1].xy + w.x.z * here[k].zw + w.x.w * south[k],
                      w.z.x * here[k].xy + w.z.y * here[k - 1].xy + w.z.z * here[k].zw + w.z.w * south[k]);
+#endif
   }
 }
 
 void main() {
-  const int first_x = int(gl_GlobalInvocationID.x) * DISPERSION_COLUMNS;
-  const int first_z = int(gl_GlobalInvocationID.y) * DISPERSION_STRIP;
-  // Three sweeps, each of which needs a row before.
-  const int begin_z = first_z - 3;
-  begin(first_x - kBefore, begin_z);
+  const ivec2 first = firstCell(ivec2(gl_GlobalInvocationID.xy));
+  const int first_x = first.x;
+  const int first_z = first.y;
   const ivec2 n = counts;
   if (first_x >= n.x || first_z >= n.y) return;
+  // Three sweeps, each of which needs a row before.
+  const int begin_z = first_z - 3;
+  begin(first_x - kBefore, begin_z, first_z + 1);
   const int end_z = min(first_z + DISPERSION_STRIP, n.y);
 #if FINEST
   const ivec2 owned = waveCounts();
@@ -84,13 +91,13 @@ void main() {
       const int i = first_x + k + owned.x * done;
       if (first_x + k >= owned.x || done >= owned.y) continue;
 #if FINEST
-#if FLAT
-      const vec4 root_c = flat_root_c;
+#if STEADY
+      const vec4 root_c = steady_rest[c];
 #else
       const vec4 root_c = halves(texelFetch(coefficients, first_x + k + n.x * done).zw);
 #endif
       const vec4 shares = root_c * swept[c];
-      const bvec2 is_open = greaterThan(rows[3].weight[c].xz, vec2(0.0));
+      const bvec2 is_open = greaterThan(weightOf(rows[3], c).xz, vec2(0.0));
       const vec2 slope = rows[3].right[c].xz / root_c.xz;
       const vec2 at_once = min(DISPERSION_DEPTH_SHARE * sim.wave_depth_m / stiffnessOf(rows[3], c).xy, vec2(DISPERSION_CELL_SHARE * sim.wave_cell_m));
       const vec2 filtered = mix(vec2(0.0), at_once * slope + vec2(shares.x + shares.y, shares.z + shares.w), is_open);

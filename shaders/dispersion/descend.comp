@@ -1,6 +1,6 @@
 // On the way down the V-cycle: two sweeps from zero; what is left goes to the next coarser grid.
 // Reads DISPERSION_COEFFICIENTS, the right side of this grid (ELEVATION and PRESSURE_HEAD if FINEST, with
-// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_WEIGHTS except if FLAT. Writes DISPERSION_COARSE_RIGHT.
+// NONLINEAR SURFACE_RISE, otherwise DISPERSION_RIGHT), DISPERSION_WEIGHTS except if STEADY. Writes DISPERSION_COARSE_RIGHT.
 // Equation: phi_1 = w r, phi_2 = phi_1 + w (r - K phi_1), r_coarse = P^T (r - K phi_2)/4, with the weights P of strip.glsl.
 #include "dispersion/strip.glsl"
 
@@ -13,13 +13,14 @@ const int kBefore = 2;
 const int kBlocks = DISPERSION_COLUMNS / 2;
 
 void main() {
-  const int first_x = int(gl_GlobalInvocationID.x) * DISPERSION_COLUMNS;
-  const int first_z = int(gl_GlobalInvocationID.y) * DISPERSION_STRIP;
-  // Two sweeps, and the row before the first.
-  const int begin_z = first_z - 2;
-  begin(first_x - kBefore, begin_z);
+  const ivec2 first = firstCell(ivec2(gl_GlobalInvocationID.xy));
+  const int first_x = first.x;
+  const int first_z = first.y;
   const ivec2 n = counts;
   if (first_x >= n.x || first_z >= n.y) return;
+  // Two sweeps, and the row before the first.
+  const int begin_z = first_z - 2;
+  begin(first_x - kBefore, begin_z, first_z + 1);
   const int end_z = min(first_z + DISPERSION_STRIP, n.y);
   Row rows[3];
   Swept first_sweep;

@@ -10,7 +10,8 @@
 // FINEST: 1 for the grid of the wave, whose right side r is the slope of the surface.
 // NONLINEAR: wave/shallow_slope.comp has computed that slope; elsewhere it follows from ELEVATION and PRESSURE_HEAD.
 // FLAT: 1 if there are no obstacles or beaches and no grid has cells beyond the water: m, e and c are the same in all cells,
-// and only faces at sides are closed.
+// and only faces at sides are closed. In other basins DISPERSION_STRIPS lists the strips of a dispatch.
+// STEADY: 1 if flat, and for strips in which m, e and c are the same in all rows and no wall is near.
 // NARROW: 1 if a grid has so few cells along an axis that the neighbours of a strip go around it more than once.
 #ifndef SPINDRIFT_DISPERSION_STRIP
 #define SPINDRIFT_DISPERSION_STRIP
@@ -20,6 +21,7 @@
 #include "shared/groups.h"
 #include "wave/wave_cell.glsl"
 
+
 // Tables of sim_setup/dispersion.h: m_x, m_z, e_0, e_1 of a cell, times the scene's depth. Then on the finest grid the square
 // roots of c_j times that depth at its faces, x face first, on the others f_0, f_1 of the cell, along x and along z.
 #if FLAT
@@ -27,6 +29,8 @@ layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 #else
 // Two halves in each number.
 layout(binding = DISPERSION_COEFFICIENTS) uniform usamplerBuffer coefficients;
+// Numbers of the strip along x (15 bits), DISPERSION_SIDES_WITHOUT_SPREAD and along z (16 bits); those beyond the grid are none.
+layout(binding = DISPERSION_STRIPS) uniform usamplerBuffer strips;
 #endif
 
 #if FINEST && NONLINEAR
@@ -40,7 +44,7 @@ layout(binding = PRESSURE_HEAD) uniform isamplerBuffer pressure_head;
 layout(binding = DISPERSION_RIGHT) uniform samplerBuffer right_side;
 #endif
 
-#if !FLAT
+#if !STEADY
 // Weights of the x face and the z face in the faces E, W, N, S of the coarser grid, two halves in each number.
 layout(binding = DISPERSION_WEIGHTS) uniform usamplerBuffer weights;
 #endif
@@ -51,8 +55,11 @@ layout(binding = DISPERSION_WEIGHTS) uniform usamplerBuffer weights;
 /// A row of cells: the right side and the coefficients of K.
 struct Row {
   vec4 right[WIDTH];
+#if STEADY
+  float open_z;  // 0 where the z faces are at a closed side
+  float spread_share;
+#else
   vec4 weight[WIDTH];
-#if !FLAT
   vec4 stiff[WIDTH];
 #if !FINEST
   vec4 spread[WIDTH];
@@ -80,14 +87,11 @@ struct Swept {
 // Cells of this grid and of the next coarser one; an axis that cannot be halved has one more row, of dry cells.
 ivec2 counts;         // of this grid
 int column[WIDTH];    // x of the columns
-#if FLAT
-vec4 flat_stiffness;
-float open_x[WIDTH];  // 0 where the x face is at a closed side
-#if FINEST
-vec4 flat_root_c;
-#else
-vec4 flat_spread;
-#endif
+#if STEADY
+vec4 steady_stiffness[WIDTH];
+vec4 steady_weight[WIDTH];  // 0 where the x face is closed
+vec4 steady_rest[WIDTH];    // root_c on the finest grid, elsewhere the spread
+float side_spread;          // 0 if cells at sides across z have no spread
 #else
 uvec4 coefficients_ahead[WIDTH + 1];  // of the next row
 #endif
@@ -128,20 +132,37 @@ vec2 unpacked(uint word) {
 vec4 halves(uvec2 words) { return vec4(unpacked(words.x), unpacked(words.y)); }
 
 vec4 stiffnessOf(Row row, int c) {
-#if FLAT
-  return flat_stiffness;
+#if STEADY
+  return steady_stiffness[c];
 #else
   return row.stiff[c];
 #endif
 }
 
+/// DISPERSION_SWEEP_WEIGHT over the diagonal of K; 0 where closed.
+vec4 weightOf(Row row, int c) {
+#if STEADY
+  return steady_weight[c] * vec4(1.0, 1.0, row.open_z, row.open_z);
+#else
+  return row.weight[c];
+#endif
+}
+
 #if !FINEST
 vec4 spreadOf(Row row, int c) {
-#if FLAT
-  return flat_spread;
+#if STEADY
+  return steady_rest[c] * row.spread_share;
 #else
   return row.spread[c];
 #endif
+}
+#endif
+
+#if !FLAT
+/// Of faces of a cell with the given stiffness, e_0 and e_1 of the cells behind them.
+vec4 weightFor(vec4 stiff, vec2 beyond_x, vec2 beyond_z) {
+  const vec4 diagonal = stiff.xxyy + stiff.zwzw + vec4(beyond_x, beyond_z);
+  return mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(stiff.xxyy, vec4(0.0)));
 }
 #endif
 
@@ -155,7 +176,7 @@ void fetchAhead(int z) {
   for (int c = 0; c <= WIDTH; ++c) level_ahead[c] = levelAt(level_column[c] + level_row);
 #endif
 #endif
-#if !FLAT
+#if !STEADY
   const int row = counts.x * z;
   const int beyond = wrapped(column[WIDTH - 1] + 1, counts.x);
   for (int c = 0; c < WIDTH; ++c) coefficients_ahead[c] = texelFetch(coefficients, column[c] + row);
@@ -163,9 +184,23 @@ void fetchAhead(int z) {
 #endif
 }
 
-/// Sets the columns, the first of which may be outside, and fetches what the first row needs.
-void begin(int first_column, int first_row) {
+/// Column and row of the first cell of the invocation's strip; outside the grid if it has none. Sets the counts.
+ivec2 firstCell(ivec2 invocation) {
   counts = ivec2(int(grid_nx), int(grid_nz));
+#if FLAT
+  const ivec2 strip = invocation;
+#else
+  const uint word = texelFetch(strips, invocation.x).x;
+  const ivec2 strip = ivec2(int(word & (DISPERSION_SIDES_WITHOUT_SPREAD - 1u)), int(word >> 16u));
+#if STEADY
+  side_spread = (word & DISPERSION_SIDES_WITHOUT_SPREAD) == 0u ? 1.0 : 0.0;
+#endif
+#endif
+  return strip * ivec2(DISPERSION_COLUMNS, DISPERSION_STRIP);
+}
+
+/// Sets the columns, the first of which may be outside, and fetches what the first row needs. `inner_row`: the second one of the strip.
+void begin(int first_column, int first_row, int inner_row) {
   for (int c = 0; c < WIDTH; ++c) column[c] = around(first_column + c, counts.x);
 #if FINEST
   wave_counts = waveCounts();
@@ -173,19 +208,26 @@ void begin(int first_column, int first_row) {
   level_column[WIDTH] = min(wrapped(column[WIDTH - 1] + 1, counts.x), wave_counts.x - 1);
 #endif
 #if FLAT
-  flat_stiffness = texelFetch(coefficients, 0);
+  const vec4 stiff = texelFetch(coefficients, 0);
+  const vec4 rest = texelFetch(coefficients, 1);
   for (int c = 0; c < WIDTH; ++c) {
-#if WAVE_PERIODIC_X
-    open_x[c] = 1.0;
-#else
-    open_x[c] = column[c] == counts.x - 1 ? 0.0 : 1.0;
+    steady_stiffness[c] = stiff;
+    steady_rest[c] = rest;
+    steady_weight[c] = DISPERSION_SWEEP_WEIGHT / (stiff.xxyy + 2.0 * stiff.zwzw);
+#if !WAVE_PERIODIC_X
+    if (column[c] == counts.x - 1) steady_weight[c].xy = vec2(0.0);
 #endif
   }
-#if FINEST
-  flat_root_c = texelFetch(coefficients, 1);
-#else
-  flat_spread = texelFetch(coefficients, 1);
-#endif
+#elif STEADY
+  uvec4 words[WIDTH + 1];
+  for (int c = 0; c < WIDTH; ++c) words[c] = texelFetch(coefficients, column[c] + counts.x * inner_row);
+  words[WIDTH] = texelFetch(coefficients, wrapped(column[WIDTH - 1] + 1, counts.x) + counts.x * inner_row);
+  for (int c = 0; c < WIDTH; ++c) {
+    const vec4 stiff = halves(words[c].xy);
+    steady_stiffness[c] = stiff;
+    steady_rest[c] = halves(words[c].zw);
+    steady_weight[c] = weightFor(stiff, unpacked(words[c + 1].y), stiff.zw);
+  }
 #endif
   fetchAhead(around(first_row, counts.y));
 }
@@ -199,7 +241,18 @@ Row fetchRow(int z) {
 #elif FINEST
   int level[WIDTH + 1] = level_ahead;
 #endif
-#if !FLAT
+#if STEADY
+#if WAVE_PERIODIC_Z
+  row.open_z = 1.0;
+#else
+  row.open_z = z == counts.y - 1 ? 0.0 : 1.0;
+#endif
+#if FLAT || WAVE_PERIODIC_Z
+  row.spread_share = 1.0;
+#else
+  row.spread_share = z == 0 || z == counts.y - 1 ? side_spread : 1.0;
+#endif
+#else
   uvec4 here[WIDTH + 1] = coefficients_ahead;
 #endif
   fetchAhead(wrapped(z + 1, counts.y));
@@ -210,26 +263,17 @@ Row fetchRow(int z) {
 #else
     const vec2 slope = vec2(level[c + 1] - level[c], level_ahead[c] - level[c]);
 #endif
-#if FLAT
-    row.right[c] = flat_root_c * slope.xxyy;
+#if STEADY
+    row.right[c] = steady_rest[c] * slope.xxyy;
 #else
     row.right[c] = halves(here[c].zw) * slope.xxyy;
 #endif
 #else
     row.right[c] = texelFetch(right_side, column[c] + first);
 #endif
-#if FLAT
-#if WAVE_PERIODIC_Z
-    const float open_z = 1.0;
-#else
-    const float open_z = z == counts.y - 1 ? 0.0 : 1.0;
-#endif
-    const vec4 weight = DISPERSION_SWEEP_WEIGHT / (flat_stiffness.xxyy + 2.0 * flat_stiffness.zwzw);
-    row.weight[c] = weight * vec2(open_x[c], open_z).xxyy;
-#else
+#if !STEADY
     const vec4 stiff = halves(here[c].xy);
-    const vec4 diagonal = stiff.xxyy + stiff.zwzw + vec4(unpacked(here[c + 1].y), unpacked(coefficients_ahead[c].y));
-    row.weight[c] = mix(vec4(0.0), DISPERSION_SWEEP_WEIGHT / diagonal, greaterThan(stiff.xxyy, vec4(0.0)));
+    row.weight[c] = weightFor(stiff, unpacked(here[c + 1].y), unpacked(coefficients_ahead[c].y));
     row.stiff[c] = stiff;
 #if !FINEST
     row.spread[c] = halves(here[c].zw);
@@ -248,7 +292,7 @@ struct Weights {
 };
 
 Weights weightsAt(int c, bool is_odd_x, int z) {
-#if !FLAT
+#if !STEADY
   const uvec4 words = texelFetch(weights, column[c] + counts.x * z);
   return Weights(halves(words.xy), halves(words.zw));
 #else
@@ -259,7 +303,7 @@ Weights weightsAt(int c, bool is_odd_x, int z) {
 
 /// First sweep from zero.
 void start(Row row, out vec4 faces[WIDTH]) {
-  for (int c = 0; c < WIDTH; ++c) faces[c] = row.weight[c] * row.right[c];
+  for (int c = 0; c < WIDTH; ++c) faces[c] = weightOf(row, c) * row.right[c];
 }
 
 /// What the faces of the last row have left, r - K phi, in columns margin + 1 to WIDTH - margin - 2; takes the faces of the
@@ -286,7 +330,7 @@ void sweepRow(int margin, inout Swept last, Row last_row, Row row, vec4 faces[WI
   const vec4 before[WIDTH] = last.faces;
   vec4 left[WIDTH];
   takeRow(margin, last, last_row, row, faces, left);
-  for (int c = margin + 1; c < WIDTH - margin - 1; ++c) swept[c] = before[c] + last_row.weight[c] * left[c];
+  for (int c = margin + 1; c < WIDTH - margin - 1; ++c) swept[c] = before[c] + weightOf(last_row, c) * left[c];
 }
 
 #endif

@@ -59,6 +59,8 @@
 #define DISPERSION_COARSE_RIGHT 4
 #define DISPERSION_COEFFICIENTS 5
 #define DISPERSION_WEIGHTS 6
+// Strips of a dispatch; the number is that of a table of the bottom, no pass has both.
+#define DISPERSION_STRIPS 1
 // Tables of the grids at the bottom.
 #define DISPERSION_STIFFNESS 1
 #define DISPERSION_SPREAD 7

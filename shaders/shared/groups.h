@@ -35,6 +35,8 @@
 #define DISPERSION_STRIP 32
 #endif
 #define DISPERSION_GROUP 16
+// In a word of DISPERSION_STRIPS: cells at sides across z have no spread.
+#define DISPERSION_SIDES_WITHOUT_SPREAD 0x8000u
 // Part of F that acts at once, for the shortest waves: so much of the depth, and at most so much of a cell.
 #define DISPERSION_DEPTH_SHARE 0.02
 #define DISPERSION_CELL_SHARE 0.4

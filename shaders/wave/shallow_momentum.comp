@@ -81,7 +81,9 @@ struct Face {
 /// velocity is that of the middle of the step, in which water moves on, and waves that travel with it by as much more: without
 /// their part such waves steepen by themselves (`spindrift-study --case breaking-front`).
 float steeperMomentum(float through, float water_m, float far_before, float before, float after, float far_after) {
-  const float rise = through > 0.0 ? vanLeer(after - before, before - far_before) : -vanLeer(after - before, far_after - after);
+  const bool forward = through > 0.0;
+  const float limited = vanLeer(after - before, forward ? before - far_before : far_after - after);
+  const float rise = forward ? limited : -limited;
   const float travelled_mps = abs(through) / max(water_m, 1e-6) + sqrt(sim.gravity_mps2 * water_m);
   return 0.5 * through * rise * max(1.0 - sim.wave_dt_s / sim.wave_cell_m * travelled_mps, 0.0);
 }
