@@ -191,7 +191,8 @@ std::uint64_t dispersionBytes(const WaveLayout& layout) {
   const std::size_t bottom = bottomOf(grids);
   std::uint64_t bytes = layout.counts().total() * 8;
   for (std::size_t k = 0; k < grids.size(); ++k) {
-    bytes += grids[k].total() * (kCoefficients + kWeights + kStrips + (k > 0 ? kFaces : 0) + (k >= bottom ? kBottom : 0));
+    bytes +=
+        grids[k].total() * (kCoefficients + kWeights + kStrips + (k > 0 ? kFaces : 0) + (k >= bottom ? kBottom : 0));
   }
   return bytes;
 }
