@@ -34,7 +34,7 @@ const kShots = {
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 312 },
   splash: { tick: 84 },
-  splash_particles: { tick: 84 },
+  splash_particles: { tick: 78 },
   splash_wave: { tick: 120 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },

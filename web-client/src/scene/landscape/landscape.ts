@@ -11,9 +11,9 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a tank is painted as its base is (solids/glass_tank.ts); its sides are seen through the glass. */
+/** A bed in a tank is painted like its base (solids/glass_tank.ts); its sides, seen through the glass, are darker than the water over it. */
 const kFill: Paint = [0.42, 0.72, 0.80, 0.1];
-const kFillCut: Paint = [0.62, 0.72, 0.76, 0.1];
+const kFillCut: Paint = [0.20, 0.46, 0.58, 0.1];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
