@@ -231,9 +231,13 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
 }
 
 void DispersedSlope::declareState(StateBuffers& out) {
-  if (keeps_last_step_) out.push_back({.buffer = &dispersed_, .checkpoint = true});
-  for (Grid& grid : grids_)
-    if (grid.right) out.push_back({.buffer = &grid.right, .lasts = false});  // overwritten, except cells that stay 0
+  out.push_back({.buffer = &dispersed_, .lasts = keeps_last_step_, .checkpoint = keeps_last_step_});
+  for (Grid& grid : grids_) {
+    if (!grid.right) continue;
+    // Overwritten, except cells that stay 0.
+    out.push_back({.buffer = &grid.right, .lasts = false});
+    out.push_back({.buffer = &grid.faces, .lasts = false});
+  }
 }
 
 void DispersedSlope::upload(const Dispersion& dispersion) {

@@ -25,7 +25,7 @@ interface FluidSurfaceInputs {
 
 export class FluidSurfacePass implements Pass {
   readonly name = "fluid surface";
-  readonly reads = ["fluidTiles", "fluidVolume", "fluidFloor", "solids", "canvas"] as const;
+  readonly reads = ["fluidTiles", "fluidVolume", "fluidFloor", "sea", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly tiles: FluidTilesPass;
   private readonly solids: SolidsPass;
@@ -41,7 +41,7 @@ export class FluidSurfacePass implements Pass {
     this.scale = scale;
     const { color, depth } = solids.textures;
     const { edge } = solids.surroundings;
-    const ripples = edge.kind === "sea" ? edge.sea : edge.kind === "walls" ? edge.ripples : undefined;
+    const ripples = edge.kind === "sea" ? edge.sea : edge.ripples;
     this.material = makeMaterial(
       "fluidSurface",
       {
@@ -62,7 +62,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }) }, transparent: true },
+      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind !== "cut" && { OUTDOORS: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

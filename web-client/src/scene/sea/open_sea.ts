@@ -8,7 +8,7 @@ import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { Uniforms } from "../shaders/materials";
 import { makeRipples, rippleSlope } from "./ripples";
-import { seaStateOf, withParameter, type PlaneWave } from "./sea_state";
+import { seaStateOf, withParameter, type PlaneWave, type SeaWater } from "./sea_state";
 import { SeaTile, slopeVariance } from "./sea_tile";
 
 /** As in the server: a sea fades into the next one in this time (wind_sea.cpp). */
@@ -52,7 +52,7 @@ export class OpenSea implements Pass {
   private readonly ripples: SeaTile;
   private readonly rippleWaves: PlaneWave[];
   private readonly variances = new Vector2();
-  private wave: WaveInfo;
+  private wave: SeaWater;
   private wind: WindInfo | undefined;
   private shown: PlaneWave[] = [];
   private shownSlope: number;
@@ -60,7 +60,7 @@ export class OpenSea implements Pass {
   private lastS = 0;
 
   /** `slope`: root mean square of the ripples' slopes, instead of what follows from the wind. */
-  constructor(wave: WaveInfo, wind: WindInfo | undefined, { plain, seaTexelsCount, texelType }: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">, private readonly givenSlope?: number) {
+  constructor(wave: SeaWater, wind: WindInfo | undefined, { plain, seaTexelsCount, texelType }: Pick<Quality, "plain" | "seaTexelsCount" | "texelType">, private readonly givenSlope?: number) {
     this.wave = wave;
     this.wind = wind;
     const kind = plain ? "plain" : "full";

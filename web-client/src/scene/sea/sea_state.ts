@@ -3,6 +3,9 @@
 import type { WaveInfo, WindInfo } from "../../../client/codec/scene_info";
 import { clamp } from "../maths/interpolate";
 
+/** What a sea follows from, of the water that it surrounds or whose ripples it is. */
+export type SeaWater = Pick<WaveInfo, "sides" | "sideM" | "widthM" | "depthM" | "resolutionCount" | "spongeWidthM" | "periodicX" | "periodicZ">;
+
 /** amplitude cos(kx x + kz z - omega t + phase), x and z from the centre of the water. */
 export interface PlaneWave {
   amplitudeM: number;
@@ -124,13 +127,13 @@ function mixedOrder(begin: number): number[] {
 }
 
 /** Returns true if a wave of this direction comes from an open side. With wind from the land a harbor is calm. */
-function entersThroughOpenSide(wave: WaveInfo, kxRadpm: number, kzRadpm: number): boolean {
+function entersThroughOpenSide(wave: SeaWater, kxRadpm: number, kzRadpm: number): boolean {
   const { sides } = wave;
   return (kxRadpm !== 0 && sides[kxRadpm > 0 ? "-x" : "+x"] === "open") || (kzRadpm !== 0 && sides[kzRadpm > 0 ? "-z" : "+z"] === "open");
 }
 
 /** Returns the waves of the scene's storm; none at level 0, without wind, and none from closed sides. */
-export function seaStateOf(wave: WaveInfo, wind: WindInfo): PlaneWave[] {
+export function seaStateOf(wave: SeaWater, wind: WindInfo): PlaneWave[] {
   const { gravityMps2: g, levelRatio } = wind;
   const d = wave.depthM;
   const cellM = wave.sideM / wave.resolutionCount;

@@ -3,7 +3,7 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass. RIPPLES: the wave's water has ripples, and so has the liquid.
+// volume is a tank with walls of glass. RIPPLES: with waves too short for particles. OUTDOORS: under the sky.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -53,8 +53,13 @@ const float kMist = 0.25;
 #else
 const float kAiry = 0.12, kTorn = 0.22;
 const float kLaceRadii = 22.0;
+#ifdef OUTDOORS
+const float kWhiteness = 0.2;
+const vec3 kFroth = vec3(0.93, 0.96, 0.97);
+#else
 const float kWhiteness = 0.4;
 const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before the white backdrop
+#endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
 

@@ -53,13 +53,20 @@ export function isIndoors({ setting }: GreetingInfo): boolean {
   return setting === "glassTank" || setting === "flume";
 }
 
-/** Root mean square slope of the ripples in a pool. */
+/** Root mean square slope of the ripples in a pool, and on water of particles alone. */
 const kPoolSlope = 0.02;
+const kParticlesSlope = 0.035;
+/** Particles alone carry no waves shorter than those of a grid with so many cells along x. */
+const kParticlesCells = 112;
+const kClosed = { "+x": "closed", "-x": "closed", "+z": "closed", "-z": "closed" } as const;
 
 /** Returns the waves that the simulation does not have: the sea around an open sea's square, and ripples. The caller disposes it. */
-export function makeSea({ setting, wave, wind }: GreetingInfo, quality: Quality): OpenSea | undefined {
+export function makeSea({ setting, wave, wind, sideM, widthM, waterExtents }: GreetingInfo, quality: Quality): OpenSea | undefined {
   if (wave && setting === "openSea") return new OpenSea(wave, wind, quality);
-  return wave && setting === "pool" && !quality.plain ? new OpenSea(wave, undefined, quality, kPoolSlope) : undefined;
+  if (quality.plain || (wave && setting !== "pool")) return undefined;
+  if (wave) return new OpenSea(wave, undefined, quality, kPoolSlope);
+  const box = { sideM, widthM, depthM: waterExtents.depthM, resolutionCount: kParticlesCells, sides: kClosed, spongeWidthM: 0, periodicX: false, periodicZ: false };
+  return new OpenSea(box, undefined, quality, kParticlesSlope);
 }
 
 export class Surroundings {
@@ -97,7 +104,7 @@ export class Surroundings {
       this.basin = new PoolBasin(greeting, context);
       this.solids.push(this.basin.group);
     } else {
-      this.edge = { kind: "cut" };
+      this.edge = { kind: "cut", ripples: this.sea?.uniforms };
       this.tank = new GlassTank(greeting, context);
       this.solids.push(this.tank.group);
       this.glass = this.tank.glass;

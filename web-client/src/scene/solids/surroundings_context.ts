@@ -29,6 +29,6 @@ export type WaterEdge =
   /** It continues as a sea, except at closed sides. */
   | { kind: "sea"; sea: Uniforms; sides: Readonly<Record<SideName, SideKind>> }
   /** Its sides are seen: a block of water, or water behind glass. */
-  | { kind: "cut" }
+  | { kind: "cut"; ripples: Uniforms | undefined }
   /** Walls, which others draw. */
   | { kind: "walls"; ripples: Uniforms | undefined };
