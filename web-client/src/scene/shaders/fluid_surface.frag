@@ -143,6 +143,12 @@ vec3 normalAt(vec3 at_m) {
   return -slope / max(length(slope), 1e-5);
 }
 
+// The normal, turned as far as the eye sees its front.
+vec3 facingEye(vec3 normal, vec3 ray) {
+  float back = dot(normal, ray) + 0.05;
+  return back > 0.0 ? normalize(normal - back * ray) : normal;
+}
+
 // Where the picture shows a position, and how far away it is along the axis of the view.
 vec3 shownAt(vec3 at_m) {
   vec3 at = transpose(mat3(u_camera_world)) * (at_m - u_camera_m);
@@ -203,17 +209,18 @@ void main() {
   vec3 surface = u_camera_m + ray * at_m;
   float raised = smoothstep(1.0, 2.4, overWave(surface));
   if (raised <= 0.0) discard;
-  vec3 normal = is_pane ? sideAt(surface) : normalAt(surface);
+  vec3 bending = facingEye(is_pane ? sideAt(surface) : normalAt(surface), ray);
+  vec3 normal = bending;
 #ifdef RIPPLES
+  // They mirror; what lies below is not torn by them.
   normal.xz -= rippleSlopes(surface.xz) * max(normal.y, 0.0) * (1.0 - liquid.y);
-  normal = normalize(normal);
+  normal = facingEye(normalize(normal), ray);
 #endif
-  if (dot(normal, ray) > -0.05) normal = normalize(normal - (dot(normal, ray) + 0.05) * ray);
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
 
   // Through the liquid to where the ray leaves it, reflected less than kParts times.
-  vec3 from = surface, bent = refract(ray, normal, kFromAir), leaving = bent;
+  vec3 from = surface, bent = refract(ray, bending, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
   bool is_floor = false;
   for (int part = 0; part < kParts; ++part) {
