@@ -71,11 +71,16 @@ TEST(DeriveWaves, RefusesRipplesThatItCannotCompute) {
   EXPECT_THAT(messageOf([](core::Scene& s) { s.wave_makers.emplace_back(); }), HasSubstr("wave_makers"));
 }
 
-TEST(DeriveWaves, GivesDispersedWavesLongerSteps) {
+core::Scene smallWave() {
   core::Scene scene = smallScene();
   scene.particles.reset();
   scene.coupling.reset();
   scene.foam.reset();
+  return scene;
+}
+
+TEST(DeriveWaves, GivesDispersedWavesLongerSteps) {
+  core::Scene scene = smallWave();
   scene.wave->resolution_count = 256;
   scene.wave->side_m = 25.6;
   scene.wave->depth_m = 4.0;
@@ -88,10 +93,7 @@ TEST(DeriveWaves, GivesDispersedWavesLongerSteps) {
 }
 
 TEST(DeriveWaves, GivesTheNinePointStencilALargerStep) {
-  core::Scene scene = smallScene();
-  scene.particles.reset();
-  scene.coupling.reset();
-  scene.foam.reset();
+  core::Scene scene = smallWave();
   scene.wave->depth_m = 20.0;
   const auto five = derive(scene);
   scene.wave->stencil = core::Stencil::kNinePoint;

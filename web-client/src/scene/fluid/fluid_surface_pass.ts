@@ -62,7 +62,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind !== "cut" && { OUTDOORS: 1 }) }, transparent: true },
+      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "walls" && { OUTDOORS: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

@@ -3,7 +3,7 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass. RIPPLES: with waves too short for particles. OUTDOORS: under the sky.
+// volume is a tank with walls of glass, or with OUTDOORS a pool. RIPPLES: the surface mirrors with waves too short for particles.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -212,7 +212,7 @@ void main() {
   vec3 bending = facingEye(is_pane ? sideAt(surface) : normalAt(surface), ray);
   vec3 normal = bending;
 #ifdef RIPPLES
-  // They mirror; what lies below is not torn by them.
+  // Only what is mirrored: refracted by them, what lies below would be torn.
   normal.xz -= rippleSlopes(surface.xz) * max(normal.y, 0.0) * (1.0 - liquid.y);
   normal = facingEye(normalize(normal), ray);
 #endif
