@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 
 import type { FoamFrame, ParticleFrame, SurfaceFrame } from "../src/net/messages";
 import { makePose } from "../src/scene/frames/bodies";
-import { DiffuseParticles, kFloatsPerParticle, kinds, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
+import { DiffuseParticles, kFloatsPerParticle, kinds, kLandedShare, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
 import { MovingSurface } from "../src/scene/whitewater/moving_surface";
 import { ramp } from "../src/scene/maths/interpolate";
 import { makeFastRandom } from "../src/scene/maths/random";
@@ -44,10 +44,10 @@ const born = (kind: Kind, change: Partial<Birth> = {}): Birth => ({ kind, xM: 0,
 const valuesOf = ({ values }: DiffuseParticles, n = 0): number[] => [...values.subarray(n * kFloatsPerParticle, (n + 1) * kFloatsPerParticle)];
 
 describe("a drop", () => {
-  it("flies like a thrown body and becomes foam where it falls", () => {
+  it("flies like a thrown body, and a share of the drops becomes foam where they fall", () => {
     const { particles } = births();
     // A large drop feels little drag: 2 m/s up comes down after 2 v / g, 0.41 s, 0.41 m away at 1 m/s.
-    particles.add(born(kinds.spray, { yM: 0.001, vxMps: 1, vyMps: 2, radiusM: 0.05 }));
+    for (let n = 0; n < 1000; ++n) particles.add(born(kinds.spray, { yM: 0.001, vxMps: 1, vyMps: 2, radiusM: 0.05 }));
     let highestM = 0;
     let timeS = 0;
     while (particles.countOf(kinds.spray) > 0 && timeS < 2) {
@@ -59,7 +59,9 @@ describe("a drop", () => {
     expect(timeS).toBeLessThan(0.43);
     expect(highestM).toBeGreaterThan(0.18);
     expect(highestM).toBeLessThan(0.205);
-    expect(particles.countOf(kinds.foam)).toBe(1);
+    expect(particles.count / 1000).toBeGreaterThan(0.7 * kLandedShare);
+    expect(particles.count / 1000).toBeLessThan(1.3 * kLandedShare);
+    expect(particles.countOf(kinds.foam)).toBe(particles.count);
     expect(particles.values[0]).toBeGreaterThan(0.36);
     expect(particles.values[0]).toBeLessThan(0.42);
     expect(particles.values[1]).toBe(0);
@@ -78,12 +80,13 @@ describe("a drop", () => {
 });
 
 describe("bubbles and foam", () => {
-  it("rise to the surface, become foam, slow down and vanish", () => {
+  it("rise and burst at the surface", () => {
     const { particles } = births();
     particles.add(born(kinds.bubble, { yM: -0.25 }));
-    for (let n = 0; n < 30; ++n) particles.step(kMaxStepS, kStill);
-    expect(particles.countOf(kinds.foam)).toBe(1);
-    for (let n = 0; n < 240; ++n) particles.step(kMaxStepS, kStill);
+    // 0.25 m at 0.28 m/s.
+    for (let n = 0; n < 24; ++n) particles.step(kMaxStepS, kStill);
+    expect(particles.countOf(kinds.bubble)).toBe(1);
+    for (let n = 0; n < 6; ++n) particles.step(kMaxStepS, kStill);
     expect(particles.count).toBe(0);
   });
 
@@ -182,12 +185,19 @@ describe("hulls", () => {
     expect(slow.countOf(kinds.spray)).toBeGreaterThan(20);
     expect(fast.countOf(kinds.spray)).toBeGreaterThan(2 * slow.countOf(kinds.spray));
     expect(run(0, 0.05, 20).particles.count).toBe(0);
+    let asternCount = 0;
     for (let n = 0; n < fast.count; ++n) {
       const [xM, , zM, kindAge] = valuesOf(fast, n);
-      // Spray at the bow (+x), foam and bubbles at the stern.
-      expect(Math.sign(xM!)).toBe(Math.floor(kindAge!) === kinds.spray ? 1 : -1);
-      expect(Math.abs(zM!)).toBeLessThan(0.5);
+      const kind = Math.floor(kindAge!);
+      // Spray at the bow (+x), bubbles at the stern, foam from the stem to where the stern was a step before.
+      if (kind === kinds.spray) expect(xM).toBeGreaterThan(0);
+      if (kind === kinds.bubble) expect(xM).toBeLessThan(-1.2);
+      expect(xM).toBeGreaterThan(-1.25 - 4.5 * 0.05 - 0.01);
+      expect(Math.abs(zM!)).toBeLessThanOrEqual(0.5);
+      if (kind === kinds.foam) asternCount += Number(xM! < -1.2);
     }
+    expect(asternCount).toBeGreaterThan(20);
+    expect(fast.countOf(kinds.foam) - asternCount).toBeGreaterThan(asternCount);
   });
 
   it("throw the same number per second at any rate of pictures", () => {

@@ -1,6 +1,7 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
 // TANK: indoors, where only what is inside the water's sides is under water.
 // SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
+// FIELD: what stands upright in the water is wet and darker above the water's surface, and less of the sky lights it there.
 // INSTANCES: the grain turns with the object. The plain tiers have solid_plain.frag. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
 
@@ -31,6 +32,11 @@ uniform float u_darkness; // 0 by day, 1 at night
 // forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
 const vec3 kWetSand = vec3(0.50, 0.46, 0.42);
 const vec3 kLace = vec3(0.80, 0.82, 0.82);
+#endif
+#ifdef FIELD
+uniform sampler2D u_field;
+// Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
+const float kWetBandM = 0.11, kDarkBandM = 0.16;
 #endif
 layout(location = 0) out vec4 color;
 
@@ -92,6 +98,20 @@ void main() {
     albedo *= 1.0 - 0.42 * min(grain, 1.0) * wet;
 #endif
   }
+  float seen_sky = 1.0;
+  float wet_band = 0.0;
+#ifdef FIELD
+  // The surface beside it: under a hull it is pressed down.
+  vec2 beside = (v_world.xz + 0.2 * normal.xz) / u_extent_m + 0.5;
+  float over_line_m = over_water_m - (all(lessThan(abs(beside - 0.5), vec2(0.5))) ? textureLod(u_field, beside, 0.0).r : 0.0);
+  float upright = 1.0 - smoothstep(0.6, 0.85, normal.y);
+  if (upright > 0.0 && over_line_m < 2.0 * kWetBandM) {
+    float ragged = texture(u_noise, vec2(v_world.x + v_world.z, 0.4 * v_world.y) / 0.9).r;
+    wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * (0.45 + 1.1 * ragged))));
+    seen_sky = 1.0 - 0.5 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
+    albedo *= 1.0 - 0.42 * wet_band;
+  }
+#endif
   float sun = max(dot(normal, u_sun_direction), 0.0);
   vec3 lit_at = v_world;
   vec3 lit_normal = normal;
@@ -113,7 +133,7 @@ void main() {
 #endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   // Lamps are painted brighter than white.
-  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) + 1.5 * max(albedo - 1.0, 0.0);
+  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) * seen_sky + 1.5 * max(albedo - 1.0, 0.0);
   vec3 ray = v_world - u_camera_m;
   float distance_m = length(ray);
   ray /= distance_m;
@@ -129,7 +149,7 @@ void main() {
   }
 #endif
   float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
-  float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0));
+  float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0) * (1.0 - wet_band)) * seen_sky;
   if (shine > 0.01 && over_water_m > 0.0) {
     vec3 mirrored = reflect(ray, normal);
     mirrored.y = abs(mirrored.y);

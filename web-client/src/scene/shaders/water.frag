@@ -190,9 +190,8 @@ void main() {
 #ifdef BEACH
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
 #endif
-  contact *= contact;
   // A band narrower than a pixel would be a row of dots.
-  contact *= 1.0 - smoothstep(0.3, 1.2, fwidth(solid_m) / kContactM);
+  contact *= 1.0 - smoothstep(0.4, 1.6, fwidth(solid_m) / kContactM);
 #elif !defined(SKIRT)
   // The floor and the panes of a tank are close everywhere.
   const float contact = 0.0;
@@ -294,7 +293,7 @@ void main() {
 #endif
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.
-  water *= 1.0 - 0.25 * contact * contact;
+  water *= 1.0 - 0.45 * contact;
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
 #else
@@ -354,12 +353,12 @@ void main() {
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
     float wide = texture(u_noise, at / u_lace_m).r;
     float lace = 0.5 * wide + 0.34 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r + 0.16 * texture(u_noise, at / (0.11 * u_lace_m)).r;
-    // Patches, not an even veil with straight edges.
-    foam *= 0.4 + 1.05 * curl.y;
+    // Thinning foam comes apart in patches; fresh foam is one body.
+    foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
     float cover = min(foam, 1.0);
     // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-    float thick = clamp((lace - 0.78 + 0.62 * cover + 0.5 * blur) / (0.22 + 0.3 * cover + blur), 0.0, 1.0);
-    float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.25, foam) * mix(0.62, 0.96, cover);
+    float thick = clamp((lace - 0.8 + 0.9 * cover + 0.5 * blur) / (0.3 + 0.15 * cover + blur), 0.0, 1.0);
+    float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
     // Bubbles below the surface reach further than the froth on it.
     float clouded = 0.55 * cover * (0.35 + 0.65 * wide);
 #ifdef SHORE

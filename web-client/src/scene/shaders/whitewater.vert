@@ -1,7 +1,7 @@
 // One point per drop, patch of foam or bubble (whitewater/diffuse_particles.ts). Draws those of one kind:
-// SPRAY: drops, stretched along their flight, and mist. BUBBLES: below the surface. FROTH: foam, seen from above.
-in vec4 position;  // position (m), kind + share of its life that has passed
-in vec4 a_motion;  // velocity (m/s), radius (m)
+// SPRAY: drops, stretched along their flight, and mist. BUBBLES: below the surface. FROTH: foam, seen from above, and what is around hulls.
+in vec4 position;  // position (m), kind + share of its life that has passed; of a hull its speed (m/s) instead of its height
+in vec4 a_motion;  // velocity (m/s), radius (m); of a hull: course x, beam (m), course z, length (m)
 
 #ifdef SPRAY
 #include <drop>
@@ -10,7 +10,12 @@ const int kKind = 0;
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_target_px;
 flat out float v_strength;
-const int kKind = 1;
+flat out vec4 v_hull;  // course, half of length and beam (m); length 0: a patch of foam
+flat out float v_radius_m;
+const int kKind = 1, kHull = 3;
+const float kAroundHullM = 0.5;  // reach of foam and shade
+const float kAtRest = 0.3, kFullFroude = 0.5;  // foam around a hull at rest, and the Froude number at which it is white
+const float kPatch = 0.5;  // foam in the middle of a patch that begins
 #else
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
@@ -38,6 +43,16 @@ void main() {
   noDrop();
 #elif defined(FROTH)
   v_strength = 0.0;
+  v_hull = vec4(0.0);
+  v_radius_m = 0.0;
+  if (int(position.w) == kHull && a_motion.w > 0.0) {
+    v_strength = mix(kAtRest, 1.0, smoothstep(0.1, kFullFroude, abs(position.y) * inversesqrt(9.81 * a_motion.w)));
+    v_hull = vec4(a_motion.xz, 0.5 * a_motion.wy);
+    v_radius_m = v_hull.z + kAroundHullM;
+    gl_Position = vec4(2.0 * position.xz / u_extent_m, 0.0, 1.0);
+    gl_PointSize = 2.0 * v_radius_m / max(u_extent_m.x, u_extent_m.y) * u_target_px;
+    return;
+  }
 #endif
   if (int(position.w) != kKind) return;
 #ifdef SPRAY
@@ -46,9 +61,10 @@ void main() {
   float strength = is_mist ? 0.04 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
   drawDrop(position.xyz, a_motion.xyz, is_mist ? a_motion.w * (1.0 + 1.5 * age) : a_motion.w, is_mist, strength, 0.6);
 #elif defined(FROTH)
-  // Foam spreads and fades.
-  float radius_m = a_motion.w * (1.0 + 1.5 * age);
-  v_strength = 0.75 * (1.0 - age);
+  // Foam spreads and fades; patches add up where many begin.
+  float spread = 1.0 + 2.0 * age;
+  float radius_m = a_motion.w * spread;
+  v_strength = kPatch * (1.0 - age) / (spread * spread);
   gl_Position = vec4(2.0 * position.xz / u_extent_m, 0.0, 1.0);
   gl_PointSize = max(2.0 * radius_m / max(u_extent_m.x, u_extent_m.y) * u_target_px, 2.0);
 #else

@@ -110,7 +110,7 @@ export class SolidsPass implements Pass {
       u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isIndoors(greeting) && { TANK: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
+    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isIndoors(greeting) ? { TANK: 1 } : field && !quality.plain && { FIELD: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
     if (quality.plain) defines["VERTEX_LIT"] = 1;
     const program = quality.plain ? "solidPlain" : "solid";
     this.material = makeMaterial(program, uniforms, { defines });

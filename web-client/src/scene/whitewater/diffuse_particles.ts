@@ -1,8 +1,10 @@
 // White water that is not simulated by the server: drops in the air, foam on the surface, bubbles below it (the three classes of Ihmsen,
 // Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the water or on
-// each other. A drop that falls into the water becomes foam, a bubble that reaches the surface too; foam fades. Pure: no renderer.
+// each other. Of the drops that fall into the water a share becomes foam, which spreads and fades; a bubble bursts at the surface. Pure: no renderer.
 
 export const kinds = { spray: 0, foam: 1, bubble: 2 } as const;
+/** Kind of a hull among the points that are drawn (whitewater_pass.ts). */
+export const kHullPoint = 3;
 export type Kind = (typeof kinds)[keyof typeof kinds];
 
 /** What the particles move through. */
@@ -28,6 +30,7 @@ export interface Birth {
 
 /** Floats of one particle for the GPU: position (m), kind + share of its life that has passed, velocity (m/s), radius (m). */
 export const kFloatsPerParticle = 8;
+export const kMostHulls = 64;
 
 /** A drop loses speed against the air at this rate (1/s) per m/s, scaled to a drop of 1 cm: drag grows as the drop becomes smaller. */
 const kDragPerM = 0.05;
@@ -37,15 +40,16 @@ const kFoamRelaxS = 0.6;
 const kFoamWindShare = 0.02;
 /** Bubbles of a few millimetres rise at about this speed. */
 const kBubbleRiseMps = 0.28;
-/** Life of the foam that a drop or a bubble leaves, times 0.5 to 1.5. */
+/** Life of the foam that a drop leaves, times 0.5 to 1.5. */
 const kFoamLifeS = 2.2;
-/** A drop spreads over so many of its radii when it falls into the water. */
-const kLandedRadii = 3;
+/** This share of the drops leaves a patch of foam where it falls, of this radius (m): each one would be a crumb by itself. */
+export const kLandedShare = 0.1;
+const kLandedRadiusM = 0.14;
 /** Longest step: a drop that falls into the water at 10 m/s is found at most 0.3 m below it. */
 export const kMaxStepS = 1 / 30;
 
 export class DiffuseParticles {
-  /** kFloatsPerParticle of each particle, the first `count` of which are alive. */
+  /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for kMostHulls more points. */
   readonly values: Float32Array<ArrayBuffer>;
   count = 0;
   private readonly lives: Float32Array;
@@ -57,7 +61,7 @@ export class DiffuseParticles {
     readonly capacityCount: number,
     private readonly random: () => number,
   ) {
-    this.values = new Float32Array(capacityCount * kFloatsPerParticle);
+    this.values = new Float32Array((capacityCount + kMostHulls) * kFloatsPerParticle);
     this.lives = new Float32Array(capacityCount);
     this.ages = new Float32Array(capacityCount);
     this.kindOf = new Uint8Array(capacityCount);
@@ -125,13 +129,17 @@ export class DiffuseParticles {
     const surfaceM = elevationAtM(values[at]!, values[at + 2]!);
     if (surfaceM === undefined) return false;
     if (kind === kinds.foam) values[at + 1] = surfaceM;
-    else if (kind === kinds.spray ? values[at + 1]! <= surfaceM && values[at + 5]! < 0 : values[at + 1]! >= surfaceM) this.becomeFoam(n, surfaceM);
+    else if (kind === kinds.bubble) return values[at + 1]! < surfaceM;
+    else if (values[at + 1]! <= surfaceM && values[at + 5]! < 0) {
+      if (this.random() >= kLandedShare) return false;
+      this.becomeFoam(n, surfaceM);
+    }
     return true;
   }
 
   private becomeFoam(n: number, surfaceM: number): void {
     const at = n * kFloatsPerParticle;
-    if (this.kindOf[n] === kinds.spray) this.values[at + 7]! *= kLandedRadii;
+    this.values[at + 7] = kLandedRadiusM;
     this.values[at + 1] = surfaceM;
     this.values[at + 5] = 0;
     this.ages[n] = 0;

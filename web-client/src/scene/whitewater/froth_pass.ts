@@ -1,6 +1,6 @@
 // Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
 // from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (shadows/flat_shadow_pass.ts).
-import { CustomBlending, MaxEquation, OneFactor, RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+import { AddEquation, CustomBlending, OneFactor, RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import { makeMaterial } from "../shaders/materials";
@@ -25,7 +25,7 @@ export class FrothPass implements Pass {
     this.material = makeMaterial("froth", { u_extent_m: { value: new Vector2(sideM, widthM) }, u_target_px: { value: texelsCount } }, {
       defines: { FROTH: 1 },
       blending: CustomBlending,
-      blendEquation: MaxEquation,
+      blendEquation: AddEquation,
       blendSrc: OneFactor,
       blendDst: OneFactor,
       depthTest: false,

@@ -88,8 +88,10 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 /** A hull throws spray above this speed, over sqrt(g L). */
 const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
-const kBowDropsPerMS = 1200;
-const kWakeFrothPerMS = 20;
+const kBowDropsPerMS = 500;
+const kWakeFrothPerMS = 70;
+/** Foam along the sides, which the bow throws out. */
+const kSideFrothPerMS = 130;
 
 /** Bow waves and wakes. `poses` are the first `boats.length` or fewer boats drawn now. */
 export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: MovingSurface, gravityMps2: number, stepS: number): void {
@@ -111,20 +113,31 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
     for (let left = countOf(kBowDropsPerMS * hit * lengthM * stepS * scale, random); left > 0; --left) {
       const side = random() < 0.5 ? -1 : 1;
       const [px, pz] = place(lengthM * (0.46 - 0.22 * random()), side * beamM * (0.15 + 0.3 * random()));
-      const outMps = side * speedMps * (0.25 + 0.35 * random());
+      const outMps = side * speedMps * (0.15 + 0.25 * random());
       const alongMps = speedMps * (0.45 + 0.4 * random());
-      const upMps = speedMps * (0.2 + 0.35 * random());
+      const upMps = speedMps * (0.12 + 0.25 * random());
       particles.add(drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
     }
     const wake = ramp(0.1, 0.6, froude) * lengthM * stepS * scale;
+    // Foam begins all along the way of this step, or it would lie in heaps.
+    const behindM = (): number => speedMps * stepS * random();
     for (let left = countOf(kWakeFrothPerMS * wake, random); left > 0; --left) {
-      const [px, pz] = place(-0.5 * lengthM, spread(random, 0.4 * beamM));
+      const [px, pz] = place(-0.5 * lengthM - behindM(), spread(random, 0.4 * beamM));
       // The screw throws the water astern.
       const asternMps = -0.15 * speedMps;
       const sternM = surface.elevationAtM(px, pz);
       if (sternM === undefined) continue;
       particles.add(froth(random, px, sternM, pz, fx * asternMps + spread(random, 0.15), fz * asternMps + spread(random, 0.15)));
       if (random() < 0.4) particles.add(bubble(random, px, sternM, pz));
+    }
+    for (let left = countOf(kSideFrothPerMS * wake, random); left > 0; --left) {
+      const side = random() < 0.5 ? -1 : 1;
+      // Most of it at the stem.
+      const astern = random() * random();
+      const [px, pz] = place(lengthM * (0.46 - 0.8 * astern) - behindM(), side * beamM * Math.min(0.12 + 1.6 * astern, 0.5));
+      const outMps = side * speedMps * (0.02 + 0.2 * random() * random());
+      const alongMps = 0.15 * speedMps;
+      particles.add({ ...froth(random, px, elevationM, pz, fx * alongMps - fz * outMps, fz * alongMps + fx * outMps), lifeS: 1 + 1.5 * random() });
     }
   }
 }

@@ -7,7 +7,7 @@ import type { WhitewaterQuality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import { makeFastRandom } from "../maths/random";
 import type { SolidsPass } from "../solids/solids_pass";
-import { DiffuseParticles, kMaxStepS, type Medium } from "./diffuse_particles";
+import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, kMostHulls, type Medium } from "./diffuse_particles";
 import { MovingSurface } from "./moving_surface";
 import { addCrests, addFromParticles, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
@@ -50,7 +50,19 @@ export class WhitewaterPass implements Pass {
     this.lastS = shownS;
     if (stepS < 0 || stepS > kGapS) this.particles.clear();
     else if (stepS > 0) this.advance(shownS!, Math.min(stepS, kLongestS), new MovingSurface(surfaces));
-    this.points.upload(this.particles.count);
+    this.points.upload(this.particles.count + this.placeHulls());
+  }
+
+  /** Writes the boats behind the particles, for the foam and the shade around their hulls (whitewater.vert). Returns how many. */
+  private placeHulls(): number {
+    const { greeting, particles, solids } = this;
+    const poses = solids.drawnBoats().slice(0, kMostHulls);
+    poses.forEach(({ boatId, xM, zM, headingRad, speedMps }, n) => {
+      const { lengthM = 0, beamM = 0 } = greeting.boats.find((boat) => boat.boatId === boatId) ?? {};
+      const hull = [xM, speedMps, zM, kHullPoint, Math.cos(headingRad), beamM, Math.sin(headingRad), lengthM];
+      particles.values.set(hull, (particles.count + n) * kFloatsPerParticle);
+    });
+    return poses.length;
   }
 
   dispose(): void {
