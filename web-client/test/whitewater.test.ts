@@ -1,13 +1,13 @@
 // White water without a renderer: how drops, foam and bubbles move, and where they begin.
 import { describe, expect, it } from "vitest";
 
-import type { FoamFrame, ParticleFrame, SurfaceFrame } from "../src/net/messages";
+import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { makePose } from "../src/scene/frames/bodies";
 import { DiffuseParticles, kFloatsPerParticle, kinds, kLandedShare, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
 import { MovingSurface } from "../src/scene/whitewater/moving_surface";
 import { ramp } from "../src/scene/maths/interpolate";
 import { makeFastRandom } from "../src/scene/maths/random";
-import { addCrests, addFromParticles, addHulls, addRims, rimOf, type Births } from "../src/scene/whitewater/sources";
+import { addCrests, addHulls, addRims, rimOf, type Births } from "../src/scene/whitewater/sources";
 
 const kSideM = 16;
 const kCount = 32;
@@ -243,36 +243,5 @@ describe("the water lines of obstacles", () => {
 
   it("are bounded for a scene with very many obstacles", () => {
     expect(rimOf(Array.from({ length: 64 }, () => ({ shape: "rock", xM: 0, zM: 0, radiusM: 1e5, heightM: 1 }) as const)).length).toBeLessThanOrEqual(4000);
-  });
-});
-
-describe("white particles of the server", () => {
-  const frameOf = (foam: number, vx: number, word: number): ParticleFrame => {
-    const bytes = new Uint8Array(12 * 100);
-    const view = new DataView(bytes.buffer);
-    for (let n = 0; n < 100; ++n) {
-      // x, z, y.
-      for (let axis = 0; axis < 3; ++axis) view.setUint16(12 * n + 2 * axis, word, true);
-      view.setInt8(12 * n + 6, vx);
-      view.setUint8(12 * n + 10, foam);
-    }
-    const bounds = { minM: [-2, -2, -2], maxM: [2, 2, 2], wordMinM: [-2, -2, -2], wordMaxM: [2, 2, 2] } as const;
-    return { ...header, ...structuredClone(bounds), layer: "particles", timeS: 0, count: 100, maxSpeedMps: 6, radiusM: 0.1, buffer: bytes.buffer } as unknown as ParticleFrame;
-  };
-
-  it("shed drops where they are fast, white and above the surface", () => {
-    const none = births();
-    addFromParticles(none, frameOf(0, 127, 65535), moving(0), 1);
-    addFromParticles(none, frameOf(255, 20, 65535), moving(0), 1);
-    addFromParticles(none, frameOf(255, 127, 0), moving(0), 1);
-    expect(none.particles.count).toBe(0);
-    const made = births();
-    addFromParticles(made, frameOf(255, 127, 65535), moving(0), 1);
-    expect(made.particles.count).toBeGreaterThan(240);
-    expect(made.particles.count).toBeLessThan(360);
-    const [xM, yM, zM, , vx] = valuesOf(made.particles);
-    for (const placeM of [xM!, yM!, zM!]) expect(Math.abs(placeM - 2)).toBeLessThanOrEqual(0.1);
-    expect(vx).toBeGreaterThan(4);
-    expect(vx).toBeLessThan(8);
   });
 });

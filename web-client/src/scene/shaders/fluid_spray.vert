@@ -20,9 +20,9 @@ const float kShade = 6.0;
 // Particles larger than this are drawn like those of this radius, m.
 const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
-const float kMist = 0.042, kMistRadii = 3.2;
+const float kMist = 0.07, kMistRadii = 3.2;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
-const float kFineRadii = 5.0, kLargeRadii = 2.5, kTrailS = 0.05;
+const float kFineRadii = 2.4, kLargeRadii = 1.6, kTrailS = 0.05;
 
 vec4 hash(vec3 at) {
   vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));

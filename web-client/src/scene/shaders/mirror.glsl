@@ -62,7 +62,7 @@ vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
       }
       behindScreen(from + direction * along_m, uv);
       vec2 edge = smoothstep(0.5, 0.42, abs(uv - 0.5));
-      return mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y * (1.0 - share * share));
+      return mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y * (1.0 - share));
     }
     before_m = along_m;
   }

@@ -30,7 +30,7 @@ uniform float u_darkness; // 0 by day, 1 at night
 #include <shore>
 // Wet over dry albedo, by eye. Light in wet sand is scattered more often before it leaves: water between the grains makes them scatter
 // forward (Twomey, Bohren & Mergenthaler 1986), and the film reflects it back (Lekner & Dorf 1988). Blue, which sand absorbs most, loses most.
-const vec3 kWetSand = vec3(0.50, 0.46, 0.42);
+const vec3 kWetSand = vec3(0.58, 0.54, 0.50);
 const vec3 kLace = vec3(0.80, 0.82, 0.82);
 #endif
 #ifdef FIELD
@@ -76,8 +76,8 @@ void main() {
     if (inner > 0.0) {
       vec3 shore = shoreAt(v_world.xz, u_extent_m);
       // With an edge that follows the sand's grain, not the cells.
-      float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.55, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
-      wet_film = inner * washed * smoothstep(0.75, 1.0, shore.g) * (is_sand ? 1.0 : 0.35);
+      float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.9, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
+      wet_film = inner * washed * smoothstep(0.4, 1.0, shore.g) * (is_sand ? 0.7 : 0.35);
       // Under standing water, the water mirrors the sky, not the ground.
       wet_film *= 1.0 - smoothstep(0.004, 0.03, shore.r);
       foam = inner * shore.b;

@@ -68,6 +68,7 @@ layout(location = 0) out vec4 color;
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.8;
+const float kSpillM = 0.4;
 
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
 #define GLITTER
@@ -246,9 +247,9 @@ void main() {
   vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
   float sunlit_share = 1.0;
 #ifdef SHADOWS
-  sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.12);
+  sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.3);
   // The sky still lights the water in the shade, but less of it near what casts the shadow.
-  scattered *= mix(0.65 * u_ambient_up.g / (u_ambient_up.g + 1.25 * u_sun_direction.y * u_sun_light.g), 1.0, sunlit_share);
+  scattered *= mix(0.8 * u_ambient_up.g / (u_ambient_up.g + 1.25 * u_sun_direction.y * u_sun_light.g), 1.0, sunlit_share);
 #endif
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   against_sun *= against_sun * sunlit_share;
@@ -314,7 +315,7 @@ void main() {
 #if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
 #else
-  float foam = 0.85 * contact;
+  float foam = 0.8 * contact * sqrt(contact);
 #endif
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
@@ -329,7 +330,9 @@ void main() {
     foam = max(foam, smoothstep(0.003, 0.012, u_slope_variances.y) * crestFoam(v_top_m, 2.0 * field.a));
 #endif
 #elif defined(OPEN_SEA)
-    foam = max(foam, crestFoam(v_top_m, field.a));
+    // It spills down both sides of the crest, which lies uphill.
+    vec4 crest = textureLod(u_field, place + kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m), 0.0);
+    foam = max(foam, max(crestFoam(v_top_m, field.a), 0.75 * crestFoam(crest.r, crest.a)));
 #endif
 #ifdef OPEN_SEA
     foam *= v_share_away.x;
@@ -357,7 +360,7 @@ void main() {
     foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
     float cover = min(foam, 1.0);
     // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-    float thick = clamp((lace - 0.8 + 0.9 * cover + 0.5 * blur) / (0.3 + 0.15 * cover + blur), 0.0, 1.0);
+    float thick = clamp((lace - 0.8 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
     float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
     // Bubbles below the surface reach further than the froth on it.
     float clouded = 0.55 * cover * (0.35 + 0.65 * wide);

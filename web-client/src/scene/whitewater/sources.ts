@@ -1,11 +1,10 @@
-// Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, where the surface rises against rocks
-// and breakwaters, and among fast white particles. Every source adds a mean number per second and area, length or particle, so that the
+// Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, and where the surface rises against rocks
+// and breakwaters. Every source adds a mean number per second and area, length or particle, so that the
 // picture does not depend on the rates of frames and pictures. Pure: no renderer.
 import type { BoatDetail } from "../../../client/codec/greeting";
 import type { ObstacleInfo } from "../../../client/codec/scene_info";
-import type { FoamFrame, ParticleFrame } from "../../net/messages";
+import type { FoamFrame } from "../../net/messages";
 import type { BodyPose } from "../../../client/codec/bodies";
-import { kWordsPerParticle, placeM, velocityMps, whiteOf } from "../frames/particle_values";
 import { clamp, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
 import type { MovingSurface } from "./moving_surface";
@@ -206,36 +205,6 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Movin
       const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
       particles.add(drop(random, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
       if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
-    }
-  }
-}
-
-/** Drops per s from one white particle of at least the second speed. */
-const kParticleDropsPerS = 3;
-const kParticleSpeedsMps = [1.5, 5] as const;
-const kWhite = 100;
-/** At most so many particles of a frame are looked at, evenly spaced. */
-const kLookedAtCount = 4000;
-
-/** Fast white particles of the server tear off finer drops, without mist, which would hide them (kinetic energy, Ihmsen et al. 2012, equation 6, with the speed for its root). */
-export function addFromParticles(births: Births, frame: ParticleFrame, surface: MovingSurface, intervalS: number): void {
-  const { particles, random, scale } = births;
-  const words = new Uint16Array(frame.buffer, 0, frame.count * kWordsPerParticle);
-  const shown = { frame, words, advanceS: 0 };
-  const stride = Math.max(Math.ceil(frame.count / kLookedAtCount), 1);
-  for (let n = 0; n < frame.count; n += stride) {
-    if (whiteOf(shown, n) < kWhite) continue;
-    const [vx, vy, vz] = velocityMps(shown, n);
-    const fast = ramp(...kParticleSpeedsMps, Math.hypot(vx, vy, vz));
-    if (fast <= 0) continue;
-    const drops = countOf(kParticleDropsPerS * fast * stride * intervalS * scale, random);
-    if (drops === 0) continue;
-    const [xM, yM, zM] = placeM(shown, n);
-    const surfaceM = surface.elevationAtM(xM, zM);
-    if (surfaceM === undefined || yM < surfaceM) continue;
-    for (let left = drops; left > 0; --left) {
-      const apart = (): number => spread(random, frame.radiusM);
-      particles.add(drop(random, xM + apart(), yM + apart(), zM + apart(), vx * (0.8 + 0.4 * random()) + spread(random, 0.5), vy * (0.8 + 0.4 * random()) + spread(random, 0.5), vz * (0.8 + 0.4 * random()) + spread(random, 0.5), 0));
     }
   }
 }

@@ -1,7 +1,7 @@
 // Drops, foam and bubbles of the time shown: lets them begin (sources.ts), moves them (diffuse_particles.ts) and uploads them.
 // Reads the frames and the boats as drawn. Writes the white water: points for the passes of white_points.ts.
 import type { GreetingInfo } from "../../../client/codec/greeting";
-import type { FoamFrame, ParticleFrame } from "../../net/messages";
+import type { FoamFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
@@ -9,7 +9,7 @@ import { makeFastRandom } from "../maths/random";
 import type { SolidsPass } from "../solids/solids_pass";
 import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, kMostHulls, type Medium } from "./diffuse_particles";
 import { MovingSurface } from "./moving_surface";
-import { addCrests, addFromParticles, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
+import { addCrests, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
 
 /** After a longer gap, or when time goes back, the white water starts anew. Of shorter ones the last kLongestS are computed. */
@@ -27,7 +27,6 @@ export class WhitewaterPass implements Pass {
   private readonly rim: readonly RimPoint[];
   private lastS: number | undefined;
   private lastFoam: FoamFrame | undefined;
-  private lastParticles: ParticleFrame | undefined;
 
   /** `greeting` is read in every picture, because its boats and its wind change. */
   constructor(
@@ -80,11 +79,6 @@ export class WhitewaterPass implements Pass {
     const hulls = new Map(greeting.boats.map((boat) => [boat.boatId, boat]));
     addHulls(births, this.solids.drawnBoats(), hulls, surface, gravityMps2, stepS);
     addRims(births, this.rim, surface, stepS);
-    const particles = frames.particles.around(shownS)?.from;
-    if (particles && particles !== this.lastParticles) {
-      addFromParticles(births, particles, surface, frames.clock.intervalS());
-      this.lastParticles = particles;
-    }
     const medium = this.medium(surface, gravityMps2);
     for (let leftS = stepS; leftS > 1e-6; leftS -= kMaxStepS) this.particles.step(Math.min(leftS, kMaxStepS), medium);
   }
