@@ -31,4 +31,4 @@ float unevenHeight(vec2 at, float top_m) {
 #endif
 
 // Foam of crests that curl over (curvature in 1/m), where the server sends none.
-float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.5, 1.8, -curvature); }
+float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.45, 1.8, -curvature); }

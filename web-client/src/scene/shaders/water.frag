@@ -68,7 +68,7 @@ layout(location = 0) out vec4 color;
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.8;
-const float kSpillM = 0.28;
+const float kSpillM = 0.34;
 
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
 #define GLITTER
@@ -330,9 +330,10 @@ void main() {
     foam = max(foam, smoothstep(0.003, 0.012, u_slope_variances.y) * crestFoam(v_top_m, 2.0 * field.a));
 #endif
 #elif defined(OPEN_SEA)
-    // It spills down both sides of the crest, which lies uphill.
-    vec4 crest = textureLod(u_field, place + kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m), 0.0);
-    foam = max(foam, max(crestFoam(v_top_m, field.a), 0.75 * crestFoam(crest.r, crest.a)));
+    // It spills down both sides of the crest, which lies uphill, and thins out.
+    vec2 uphill = kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m);
+    vec4 near_crest = textureLod(u_field, place + 0.5 * uphill, 0.0), far_crest = textureLod(u_field, place + uphill, 0.0);
+    foam = max(crestFoam(v_top_m, field.a), max(0.8 * crestFoam(near_crest.r, near_crest.a), max(0.5 * crestFoam(far_crest.r, far_crest.a), foam)));
 #endif
 #ifdef OPEN_SEA
     foam *= v_share_away.x;
