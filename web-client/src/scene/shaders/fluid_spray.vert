@@ -20,7 +20,7 @@ const float kShade = 6.0;
 // Particles larger than this are drawn like those of this radius, m.
 const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
-const float kMist = 0.07, kMistRadii = 3.2;
+const float kMist = 0.06, kMistRadii = 3.2;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
 const float kFineRadii = 2.4, kLargeRadii = 1.6, kTrailS = 0.05;
 
@@ -33,7 +33,9 @@ void main() {
   Particle particle = unpackParticle();
   noDrop();
 #ifdef VOLUME
-  float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
+  float density = volumeAt(particle.center_m).r;
+  // Single ones hide less than a cloud of them.
+  float strength = (1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), density)) * mix(0.2, 1.0, smoothstep(0.05, 0.3, density));
   if (strength <= 0.0) return;
 #else
   float strength = 1.0;

@@ -325,17 +325,13 @@ void main() {
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
     foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
-#ifdef OPEN_SEA
-    // Caps that wind tears from crests which do not break yet.
-    foam = max(foam, smoothstep(0.003, 0.012, u_slope_variances.y) * crestFoam(v_top_m, 2.0 * field.a));
 #endif
-#elif defined(OPEN_SEA)
-    // It spills down both sides of the crest, which lies uphill, and thins out.
+#ifdef OPEN_SEA
+    // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.
     vec2 uphill = kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m);
     vec4 near_crest = textureLod(u_field, place + 0.5 * uphill, 0.0), far_crest = textureLod(u_field, place + uphill, 0.0);
-    foam = max(crestFoam(v_top_m, field.a), max(0.8 * crestFoam(near_crest.r, near_crest.a), max(0.5 * crestFoam(far_crest.r, far_crest.a), foam)));
-#endif
-#ifdef OPEN_SEA
+    float curled = crestFoam(v_top_m, field.a * (1.0 + smoothstep(0.003, 0.012, u_slope_variances.y)));
+    foam = max(max(curled, 0.8 * crestFoam(near_crest.r, near_crest.a)), max(0.5 * crestFoam(far_crest.r, far_crest.a), foam));
     foam *= v_share_away.x;
   }
 #endif
