@@ -107,6 +107,7 @@ void main() {
   float upright = 1.0 - smoothstep(0.6, 0.85, normal.y);
   if (upright > 0.0 && over_line_m < 2.0 * kWetBandM) {
     float ragged = texture(u_noise, vec2(v_world.x + v_world.z, 0.4 * v_world.y) / 0.9).r;
+    upright *= smoothstep(-0.3, -0.02, over_line_m);
     wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * (0.45 + 1.1 * ragged))));
     seen_sky = 1.0 - 0.5 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
     albedo *= 1.0 - 0.42 * wet_band;
