@@ -324,7 +324,9 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    foam = max(foam, mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
+    float streamed = mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix);
+    // Old foam is a network; only what has just begun is a body.
+    foam = max(foam, streamed * (0.65 + 0.35 * streamed * streamed));
 #endif
 #ifdef OPEN_SEA
     // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.
@@ -338,7 +340,7 @@ void main() {
 #ifdef BEACH
   // Shallow water at a beach always has a little foam; a moving shore knows where.
 #ifdef SHORE
-  foam = max(foam, max(inner * shore.b, 0.6 * (1.0 - smoothstep(0.0, 0.06, deep_m))));
+  foam = max(foam, max(0.8 * inner * shore.b, 0.6 * (1.0 - smoothstep(0.0, 0.06, deep_m))));
 #else
   foam = max(foam, 0.55 * (1.0 - smoothstep(0.0, 0.055 * u_depth_m, deep_m)));
 #endif
