@@ -81,12 +81,9 @@ void Population::forParticles(Pass& pass) const {
   run(pass, POOL_PARTICLE_ARGS, (count_ + group - 1) / group);
 }
 
-void Population::forCells(Pass& pass) const {
-  run(pass, POOL_CELL_ARGS, std::min<std::uint32_t>(cell_count_ / pass.groupSize()[0] + 1, MAX_GROUPS));
-}
-
-void Population::forScanBlocks(Pass& pass, std::uint32_t block_count) const {
-  run(pass, POOL_BLOCK_ARGS, std::min<std::uint32_t>(block_count, MAX_GROUPS));
+void Population::forScanRuns(Pass& pass, std::uint32_t run_count) const {
+  const std::uint32_t group = pass.groupSize()[0];
+  run(pass, POOL_BLOCK_ARGS, std::min<std::uint32_t>((run_count + group - 1) / group, MAX_GROUPS));
 }
 
 void Population::forOneGroup(Pass& pass) const {

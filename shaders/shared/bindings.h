@@ -24,12 +24,12 @@
 #define ACCELERATION 6
 
 // Grid: particles per cell; first particle of a cell (cell_count + 1 entries); per particle (cell, arrival in the cell);
-// particle indices grouped by cell in arrival order; totals of the scan's blocks.
+// particle indices grouped by cell in arrival order; totals of the scan's runs of cells.
 #define CELL_COUNT 7
 #define CELL_START 8
 #define CELL_ARRIVAL 9
 #define CELL_MEMBER 10
-#define BLOCK_TOTAL 11
+#define RUN_TOTAL 11
 
 // Wave, nx x nz cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
 // of those faces [m]; loss rates in absorbing layers and on beaches [1/s] with the still depth of the cell [m]
