@@ -1,11 +1,14 @@
 #include "breakers.h"
 
+#include <algorithm>
+
 #include <shared/bindings.h>
 
 namespace spindrift::sim {
 
 Breakers::Breakers(Creation& create, const WaveLayout& layout)
     : count_(layout.counts()),
+      strip_(std::min(create.context().tuning().dispersion_strip, 32u)),
       now_(create.texels("breaking", count_.total(), gpu::TexelFormat::kRGBA32F)),
       before_(create.scratch("breaking before", count_.total(), gpu::TexelFormat::kRGBA32F)),
       pass_(create.pass("wave/breaking.comp")) {}
@@ -18,6 +21,7 @@ void Breakers::clear() {
 void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
   // The current state always stays in the same buffer, so that checkpoints and readers use a fixed one.
   before_.copyFrom(now_, 0, now_.sizeBytes());
+  now_.clear();
   wave.bindSurface();
   wave.bindBasin();
   wave.bindEvents();
@@ -29,7 +33,7 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
     pool->emitters().bindStorage(EMITTER);
     pass_.setUniform("tick", tick);
   }
-  pass_.run(count_);
+  pass_.run(count_.x, (count_.z + strip_ - 1) / strip_);
 }
 
 }  // namespace spindrift::sim

@@ -74,6 +74,8 @@
 #define SEA_COLUMNS 1
 #define SEA_ROWS 2
 #define INCIDENT_SEA 10
+// What crests across the whole domain do along their direction; wave/crest_profile.comp. As above.
+#define CREST_PROFILE 0
 // Nonlinear shallow water with dispersion: rise of the surface and of pressures across the faces that a cell owns [units]
 // (binding shared with SURFACE_FLOW; no pass has both). There FLOW holds velocities [m/s] and flows [m^2/s].
 #define SURFACE_RISE 16
