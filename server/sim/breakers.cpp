@@ -1,14 +1,11 @@
 #include "breakers.h"
 
-#include <algorithm>
-
 #include <shared/bindings.h>
 
 namespace spindrift::sim {
 
 Breakers::Breakers(Creation& create, const WaveLayout& layout)
     : count_(layout.counts()),
-      strip_(std::min(create.context().tuning().dispersion_strip, 32u)),
       now_(create.texels("breaking", count_.total(), gpu::TexelFormat::kRGBA32F)),
       before_(create.scratch("breaking before", count_.total(), gpu::TexelFormat::kRGBA32F)),
       pass_(create.pass("wave/breaking.comp")) {}
@@ -33,7 +30,7 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
     pool->emitters().bindStorage(EMITTER);
     pass_.setUniform("tick", tick);
   }
-  pass_.run(count_.x, (count_.z + strip_ - 1) / strip_);
+  pass_.runStrips(count_);
 }
 
 }  // namespace spindrift::sim

@@ -24,7 +24,6 @@ class Breakers {
 
  private:
   core::CellCounts count_;
-  std::uint32_t strip_;  ///< rows of cells of an invocation (wave/breaking.comp)
   gpu::TexelBuffer now_, before_;
   Pass pass_;
 };

@@ -40,7 +40,7 @@ class ParticlePool {
  private:
   core::CellCounts wave_count_;
   gpu::TexelBuffer words_, emitters_;
-  gpu::Buffer landed_;  ///< words as coupling/landed_water.glsl says; only with a nonlinear bulk
+  gpu::TexelBuffer landed_;  ///< words as coupling/landed_water.glsl says; only with a nonlinear bulk
   Pass plan_, emit_, mix_;
 };
 

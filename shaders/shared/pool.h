@@ -32,5 +32,6 @@
 
 // Words of LANDED_WATER per wave cell: water [units], its momentum along x and z (height times velocity, 2^-16 m^2/s).
 #define LANDED_WORDS 3
+#define MOMENTUM_UNITS 65536.0f
 
 #endif

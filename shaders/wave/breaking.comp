@@ -27,9 +27,6 @@ uniform uint tick;
 #endif
 
 #define LONGEST_EVENT 2.0
-/// Rows of cells of an invocation. It looks for those in which the wave may break, and visits them in a second loop: llvmpipe takes
-/// both sides of a branch, but repeats a loop only while a lane needs it. At most 32, the bits of a word.
-#define STRIP min(DISPERSION_STRIP, 32)
 /// Radii of its splash beyond which there is no crown; it ends at 1.1 + 0.3.
 #define CROWN_REACH 1.41
 
@@ -109,9 +106,9 @@ void breakAt(ivec2 cell, ivec2 n) {
 void main() {
   const ivec2 n = waveCounts();
   const int x = int(gl_GlobalInvocationID.x);
-  const int first_z = STRIP * int(gl_GlobalInvocationID.y);
+  const int first_z = WAVE_STRIP * int(gl_GlobalInvocationID.y);
   if (x >= n.x || first_z >= n.y) return;
-  const int end_z = min(first_z + STRIP, n.y);
+  const int end_z = min(first_z + WAVE_STRIP, n.y);
   const bool below_crown = isBelowCrown(waveCellCentre(ivec2(x, 0)).x);
   const ivec2 apart = rateApart(n);
   uint rows = 0u;
