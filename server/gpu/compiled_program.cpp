@@ -94,10 +94,29 @@ std::map<std::string, std::uint32_t> texelUnitsOf(GLuint program, std::string_vi
   return out;
 }
 
+bool isWord(char c) {
+  return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Returns the defines whose names are in the text. Another one would make the same program from a different text,
+/// which drivers compile anew: to Mesa the digest of the text is part of the program.
+Defines usedIn(std::string_view text, const Defines& defines) {
+  Defines out;
+  for (const auto& define : defines) {
+    const std::string& name = define.first;
+    for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
+      const std::size_t end = at + name.size();
+      if ((end < text.size() && isWord(text[end])) || (at > 0 && isWord(text[at - 1]))) continue;
+      out.push_back(define);
+      break;
+    }
+  }
+  return out;
+}
+
 /// Reads the qualifiers of the storage block from the text: `restrict readonly buffer Name {`. OpenGL has no query for
 /// them. A block declared several times, under different conditions, is read or written if any declaration allows it.
 void readQualifiers(std::string_view text, ProgramUses::Block& block) {
-  const auto isWord = [](char c) { return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0; };
   const std::string wanted = "buffer " + block.name;
   bool is_found = false;
   bool is_read = false;
@@ -261,9 +280,8 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
     source.lines = read.lines;
   }
   std::string text(kVersionLine);
-  const Defines tuning = ctx.tuning().defines();
-  for (const Defines* const each : {&tuning, &defines})
-    for (const auto& [name, value] : *each) text += "#define " + name + " " + value + "\n";
+  for (const Defines& each : {ctx.tuning().defines(), defines})
+    for (const auto& [name, value] : usedIn(source.text, each)) text += "#define " + name + " " + value + "\n";
   // The whole text is one string, because each source string has its own number in driver messages.
   text += "#line 1\n";
   const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
@@ -318,7 +336,10 @@ CompiledProgram::~CompiledProgram() {
 }
 
 core::Result<std::shared_ptr<CompiledProgram>> ProgramCache::get(Context& ctx, std::string_view shader_path,
-                                                                 const Defines& defines) {
+                                                                 const Defines& all_defines) {
+  // A file of a folder may use other ones when it is read again.
+  const EmbeddedShader* const embedded = ctx.shaderFolder() ? nullptr : findShader(shader_path);
+  const Defines defines = embedded ? usedIn(embedded->text, all_defines) : all_defines;
   const auto known = std::ranges::find_if(
       entries_, [&](const Entry& entry) { return entry.shader_path == shader_path && entry.defines == defines; });
   if (known != entries_.end()) {

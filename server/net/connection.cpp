@@ -36,10 +36,6 @@ constexpr int kUnsentLowWaterBytes = 128 * 1024;
 constexpr int kSendBufferBytes = 512 * 1024;
 /// A reply may take write_stall_timeout plus its size divided by this rate.
 constexpr std::size_t kSlowestBytesPerSecond = 16 * 1024;
-/// Limits for reading the rest of a refused request, so that closing does not reset the connection before the reply is
-/// read.
-constexpr std::chrono::seconds kLingerTime{1};
-constexpr std::size_t kLingerBytes = 256 * 1024;
 
 /// Sets socket options; failures are ignored, because they only cost speed.
 void tune(asio::ip::tcp::socket& socket) {
@@ -155,8 +151,7 @@ asio::awaitable<void> Connection::run() {
     const bool sent = co_await send(reply, request.method() == http::verb::head, request.version(), keep_alive);
     if (!sent || !keep_alive) break;
   }
-  stream_.expires_after(kLingerTime);
-  co_await finish();
+  (void)co_await stream_.async_linger(kToken);
 }
 
 asio::awaitable<bool> Connection::read(RequestParser& parser) {
@@ -223,12 +218,6 @@ asio::awaitable<bool> Connection::secure() {
   }
   context_.counters.add(&ServerStats::tls_handshake_count);
   co_return true;
-}
-
-asio::awaitable<void> Connection::finish() {
-  if (stream_.isTls()) (void)co_await stream_.async_shutdown(kToken);
-  boost::system::error_code ignored;
-  stream_.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
 }
 
 Reply Connection::fitted(const Request& request, Reply reply) const {
@@ -374,15 +363,7 @@ asio::awaitable<bool> Connection::send(const Reply& reply, bool head_only, unsig
 asio::awaitable<void> Connection::sendLast(Reply reply, bool head_only) {
   constexpr unsigned kHttp11 = 11;
   const bool sent = co_await send(reply, head_only, kHttp11, false);
-  if (!sent) co_return;
-  std::array<char, 4096> scratch;
-  stream_.expires_after(kLingerTime);
-  co_await finish();
-  for (std::size_t read_bytes = 0; read_bytes < kLingerBytes;) {
-    const auto [error, bytes_count] = co_await stream_.tcp().async_read_some(asio::buffer(scratch), kToken);
-    if (error) co_return;
-    read_bytes += bytes_count;
-  }
+  if (sent) (void)co_await stream_.async_linger(kToken);
 }
 
 }  // namespace spindrift::net

@@ -39,8 +39,6 @@ class Connection final : public std::enable_shared_from_this<Connection> {
   boost::asio::awaitable<bool> read(RequestParser& parser);
   /// Makes the connection a TLS one; returns false if it is over.
   boost::asio::awaitable<bool> secure();
-  /// Ends this side of the stream: with TLS by close_notify, which waits for the peer's until the deadline.
-  boost::asio::awaitable<void> finish();
   /// Asks the application; 503 if the server ends meanwhile.
   boost::asio::awaitable<Reply> ask(const HttpRequest& request);
   boost::asio::awaitable<void> upgrade(const Request& request);

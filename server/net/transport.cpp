@@ -80,10 +80,6 @@ void Transport::handshake(asio::const_buffer received, Handler handler) {
   state_->tls->stream.async_handshake(state_->tls->role, received, std::move(handler));
 }
 
-void Transport::shutdown(Handler handler) {
-  state_->tls->stream.async_shutdown([handler = std::move(handler)](const error_code& error) { handler(error, 0); });
-}
-
 void Transport::read(asio::mutable_buffer into, Handler handler) {
   if (isTls()) return state_->tls->stream.async_read_some(into, std::move(handler));
   tcp().async_read_some(into, std::move(handler));
@@ -94,10 +90,39 @@ void Transport::write(std::span<const asio::const_buffer> parts, Handler handler
   tcp().async_write_some(Parts(parts.begin(), parts.end()), std::move(handler));
 }
 
-void Transport::tearDown(boost::beast::role_type role, Handler handler) {
-  if (isTls()) return shutdown(std::move(handler));
-  websocket::async_teardown(role, socket(),
-                            [handler = std::move(handler)](const error_code& error) { handler(error, 0); });
+void Transport::linger(boost::beast::role_type role, Handler handler) {
+  struct Drain : std::enable_shared_from_this<Drain> {
+    Drain(const Transport& of, Handler end) : stream(of), handler(std::move(end)) {}
+
+    void endOurSide() {
+      error_code ignored;
+      stream.socket().shutdown(asio::socket_base::shutdown_send, ignored);
+    }
+    void read(std::size_t left_bytes) {
+      stream.tcp().async_read_some(asio::buffer(scratch), [self = shared_from_this(), left_bytes](
+                                                              const error_code& error, std::size_t bytes_count) {
+        if (!error && bytes_count < left_bytes) return self->read(left_bytes - bytes_count);
+        self->endOurSide();
+        self->stream.close();
+        self->handler({}, 0);
+      });
+    }
+
+    Transport stream;
+    Handler handler;
+    std::array<char, 16 * 1024> scratch;
+  };
+  const auto drain = std::make_shared<Drain>(*this, std::move(handler));
+  expires_after(kLingerTime);
+  const bool is_server = role == boost::beast::role_type::server;
+  if (isTls()) {
+    return state_->tls->stream.async_shutdown([drain, is_server](const error_code&) {
+      if (is_server) drain->endOurSide();
+      drain->read(kLingerBytes);
+    });
+  }
+  if (is_server) drain->endOurSide();
+  drain->read(kLingerBytes);
 }
 
 void teardown(boost::beast::role_type role, Transport& stream, error_code& error) {

@@ -69,13 +69,16 @@ class Transport {
   /// Writes the beginning of `parts`, which has at least one and none that is empty; reports how much. The bytes stay
   /// valid until then, the array of parts only during the call.
   virtual void write(std::span<const boost::asio::const_buffer> parts, Handler handler);
-  /// Ends the connection after the close frames: the shutdown of TLS, or that of TCP.
-  void tearDown(boost::beast::role_type role, Handler handler);
 
   /// TLS only. `received`: bytes that were read from tcp() before; they stay valid until the handler is called.
   void handshake(boost::asio::const_buffer received, Handler handler);
-  /// TLS only: sends close_notify and waits for the peer's, or for the end of the connection.
-  void shutdown(Handler handler);
+  /// Ends our side, TLS and TCP, and then reads and drops what the peer still sends until it ends its own, for at most
+  /// kLingerTime and kLingerBytes; then the socket is closed. Without this, bytes that nobody has read would reset the
+  /// connection, and the peer could lose our last words (RFC 9112 section 9.6). Reports no error. `role`: a client lets
+  /// the server end its side first (RFC 6455 section 7.1.1).
+  void linger(boost::beast::role_type role, Handler handler);
+  static constexpr std::chrono::seconds kLingerTime{1};
+  static constexpr std::size_t kLingerBytes = 4 * 1024 * 1024;
 
   template <typename Token>
   auto async_handshake(boost::asio::const_buffer received, Token&& token) {
@@ -84,9 +87,9 @@ class Transport {
   }
 
   template <typename Token>
-  auto async_shutdown(Token&& token) {
-    return boost::asio::async_initiate<Token, Signature>([this](auto handler) { shutdown(shared(std::move(handler))); },
-                                                         token);
+  auto async_linger(Token&& token) {
+    return boost::asio::async_initiate<Token, Signature>(
+        [this](auto handler) { linger(boost::beast::role_type::server, shared(std::move(handler))); }, token);
   }
 
   template <typename Buffers, typename Token>
@@ -153,11 +156,12 @@ inline void beast_close_socket(Transport& stream) {
   stream.close();
 }
 
-/// Beast ends a connection with these functions after the close frames, found by the type of the stream.
+/// Beast ends a connection with these functions after the close frames, found by the type of the stream. Its own
+/// function for TCP closes the socket after one read.
 template <std::derived_from<Transport> Stream, typename Handler>
 void async_teardown(boost::beast::role_type role, Stream& stream, Handler&& handler) {
-  stream.tearDown(role, stream.shared([kept = std::forward<Handler>(handler)](const boost::system::error_code& error,
-                                                                              std::size_t) mutable { kept(error); }));
+  stream.linger(role, stream.shared([kept = std::forward<Handler>(handler)](const boost::system::error_code& error,
+                                                                            std::size_t) mutable { kept(error); }));
 }
 void teardown(boost::beast::role_type role, Transport& stream, boost::system::error_code& error);
 

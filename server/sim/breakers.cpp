@@ -18,6 +18,7 @@ void Breakers::clear() {
 void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t tick) {
   // The current state always stays in the same buffer, so that checkpoints and readers use a fixed one.
   before_.copyFrom(now_, 0, now_.sizeBytes());
+  now_.clear();
   wave.bindSurface();
   wave.bindBasin();
   wave.bindEvents();
@@ -29,7 +30,7 @@ void Breakers::update(const Wave& wave, const ParticlePool* pool, std::uint32_t 
     pool->emitters().bindStorage(EMITTER);
     pass_.setUniform("tick", tick);
   }
-  pass_.run(count_);
+  pass_.runStrips(count_);
 }
 
 }  // namespace spindrift::sim

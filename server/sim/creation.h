@@ -1,12 +1,15 @@
 // What the parts of a simulation are made of: buffers, and passes over them.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <utility>
+
+#include <shared/groups.h>
 
 #include <spindrift/core/cell_counts.h>
 #include <spindrift/core/result.h>
@@ -24,6 +27,11 @@ class Pass : public gpu::Program {
   Pass(gpu::Context& ctx, gpu::Program program) : gpu::Program(std::move(program)), ctx_(&ctx) {}
 
   void run(core::CellCounts cells) { run(cells.x, cells.z); }
+  /// One invocation per WAVE_STRIP rows of cells (shared/groups.h).
+  void runStrips(core::CellCounts cells) {
+    const std::uint32_t strip = std::min<std::uint32_t>(ctx_->tuning().dispersion_strip, WAVE_STRIP_MAX);
+    run(cells.x, (cells.z + strip - 1) / strip);
+  }
   void run(std::uint32_t x_count, std::uint32_t y_count = 1, std::uint32_t z_count = 1) {
     dispatch(x_count, y_count, z_count);
     barrier();

@@ -124,19 +124,23 @@ bool isClosed(const DispersionLevel& level, const DispersionLevel& coarser, cons
          areClosed(coarser, first_x / 2, end_x / 2, first_z / 2, end_z / 2);
 }
 
-/// Returns the strips of a grid as words for DISPERSION_STRIPS, in whole groups, by whether they are steady. Those of
-/// dry ground are left out: what they would write stays 0.
+/// Returns the strips of a grid as words for DISPERSION_STRIPS, in whole groups, by whether they are steady, which
+/// only those of the finest grid are: on the others a second program saves nothing. Those of dry ground are left out:
+/// what they would write stays 0.
 std::array<std::vector<std::uint32_t>, 2> stripLists(const DispersionLevel& level, const DispersionLevel& coarser,
                                                      const std::vector<Words>& coefficients,
-                                                     const std::vector<Words>& weights, const StripShape& strip) {
+                                                     const std::vector<Words>& weights, const StripShape& strip,
+                                                     bool is_finest) {
   constexpr std::uint32_t kNone = 0xffffffff;
   std::array<std::vector<std::uint32_t>, 2> out;
   const CellCounts count = strip.stripsOf(level.count);
   for (std::uint32_t z = 0; z < count.z; ++z) {
     for (std::uint32_t x = 0; x < count.x; ++x) {
       if (isClosed(level, coarser, strip, x * strip.cells.x, z * strip.cells.z)) continue;
-      const auto steady = steadiness(level, coefficients, weights, strip, static_cast<int>(x * strip.cells.x),
-                                     static_cast<int>(z * strip.cells.z));
+      std::optional<std::uint32_t> steady;
+      if (is_finest)
+        steady = steadiness(level, coefficients, weights, strip, static_cast<int>(x * strip.cells.x),
+                            static_cast<int>(z * strip.cells.z));
       out[steady.has_value()].push_back(x | steady.value_or(0) | z << 16);
     }
   }
@@ -208,7 +212,7 @@ DispersedSlope::DispersedSlope(Creation& create, const WaveLayout& layout, const
                     keeps_last_step || !is_flat_ ? gpu::BufferContent::kZero : gpu::BufferContent::kScratch);
   for (std::size_t finest = 0; finest < 2; ++finest) {
     for (const bool steady : {false, true}) {
-      if (is_flat_ && !steady) continue;
+      if (is_flat_ ? !steady : steady && finest == 0) continue;
       const gpu::Defines of_grid{{"FINEST", std::to_string(finest)},
                                  {"FLAT", is_flat_ ? "1" : "0"},
                                  {"STEADY", steady ? "1" : "0"},
@@ -258,7 +262,7 @@ void DispersedSlope::upload(const Dispersion& dispersion) {
       const std::vector<Words> weights = packed(level.from_coarse_x, level.from_coarse_z);
       grids_[k].coefficients.upload(coefficients);
       grids_[k].weights.upload(weights);
-      const auto lists = stripLists(level, dispersion.levels[k + 1], coefficients, weights, strip_);
+      const auto lists = stripLists(level, dispersion.levels[k + 1], coefficients, weights, strip_, k == 0);
       for (std::size_t steady = 0; steady < 2; ++steady) {
         Strips& strips = grids_[k].strips[steady];
         strips.count = static_cast<std::uint32_t>(lists[steady].size());

@@ -1,4 +1,4 @@
-// The uniform grid (thesis 3.6.1): counts, an exclusive prefix sum in three dispatches, and a reordering after which
+// The uniform grid (thesis 3.6.1): counts, an exclusive prefix sum in two dispatches, and a reordering after which
 // neighbours are contiguous and the order is reproducible.
 #pragma once
 
@@ -22,22 +22,26 @@ class NeighborGrid {
   /// no cell. In a cell of more than ORDERED_MAX particles (grid_hash.glsl) the order is not reproducible.
   void build(const ParticleBuffers& particles, const Population& population);
 
-  /// Index of the first particle of each cell, cell_count + 1 entries.
+  /// Index of the first particle of each cell, cell_count + 1 entries, and up to 3 without a meaning.
   [[nodiscard]] const gpu::TexelBuffer& cellStart() const { return cells_.start; }
   /// Two words, see grid/candidates.glsl: number of particles, summed over the substeps since creation, with more
   /// neighbour candidates than the search limit, modulo 2^32. build() binds it for the passes that count.
   [[nodiscard]] const gpu::TexelBuffer& crowded() const { return crowded_; }
-  void declareState(StateBuffers& out) { out.push_back({.buffer = &crowded_, .lasts = false}); }
+  void declareState(StateBuffers& out) {
+    // Counts and totals are 0 between two builds.
+    for (gpu::TexelBuffer* buffer : {&crowded_, &cells_.count, &cells_.run_total})
+      out.push_back({.buffer = buffer, .lasts = false});
+  }
 
  private:
   struct Cells {
-    std::uint32_t block_count = 0;  ///< blocks of the prefix sum
-    gpu::TexelBuffer count, start, arrival, member, block_total;
+    std::uint32_t run_count = 0;  ///< runs of cells of the prefix sum
+    gpu::TexelBuffer count, start, arrival, member, run_total;
   };
 
   Cells cells_;
   gpu::TexelBuffer crowded_;
-  Pass clear_, count_, scan_blocks_, scan_totals_, scan_add_, scatter_, reorder_;
+  Pass count_, scan_totals_, scan_cells_, scatter_, reorder_;
 };
 
 }  // namespace spindrift::sim

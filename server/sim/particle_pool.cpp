@@ -23,7 +23,7 @@ ParticlePool::ParticlePool(Creation& create, const core::Scene& scene, const Der
       plan_(create.pass("coupling/plan.comp")),
       emit_(create.pass("coupling/emit.comp")) {
   if (!isNonlinear(scene)) return;
-  landed_ = create.buffer("landed water", LANDED_WORDS * sizeof(std::int32_t) * wave_count_.total());
+  landed_ = create.texels("landed water", LANDED_WORDS * wave_count_.total(), gpu::TexelFormat::kR32I);
   mix_ = create.pass("coupling/mix.comp");
 }
 
@@ -62,8 +62,8 @@ void ParticlePool::mix(Wave& wave) {
   wave.bindBasin();
   wave.elevation().bindTexel(ELEVATION);
   wave.flow().bindStorage(FLOW);
-  bindLanded();
-  mix_.run(wave_count_);
+  landed_.bindTexel(LANDED_WATER);
+  mix_.runStrips(wave_count_);
   landed_.clear();
 }
 
@@ -81,12 +81,9 @@ void Population::forParticles(Pass& pass) const {
   run(pass, POOL_PARTICLE_ARGS, (count_ + group - 1) / group);
 }
 
-void Population::forCells(Pass& pass) const {
-  run(pass, POOL_CELL_ARGS, std::min<std::uint32_t>(cell_count_ / pass.groupSize()[0] + 1, MAX_GROUPS));
-}
-
-void Population::forScanBlocks(Pass& pass, std::uint32_t block_count) const {
-  run(pass, POOL_BLOCK_ARGS, std::min<std::uint32_t>(block_count, MAX_GROUPS));
+void Population::forScanRuns(Pass& pass, std::uint32_t run_count) const {
+  const std::uint32_t group = pass.groupSize()[0];
+  run(pass, POOL_BLOCK_ARGS, std::min<std::uint32_t>((run_count + group - 1) / group, MAX_GROUPS));
 }
 
 void Population::forOneGroup(Pass& pass) const {

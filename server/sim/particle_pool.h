@@ -40,20 +40,18 @@ class ParticlePool {
  private:
   core::CellCounts wave_count_;
   gpu::TexelBuffer words_, emitters_;
-  gpu::Buffer landed_;  ///< words as coupling/landed_water.glsl says; only with a nonlinear bulk
+  gpu::TexelBuffer landed_;  ///< words as coupling/landed_water.glsl says; only with a nonlinear bulk
   Pass plan_, emit_, mix_;
 };
 
-/// Runs passes over particles, grid cells and scan blocks: fixed numbers, or the counts of the pool.
+/// Runs passes over particles and runs of the scan: fixed numbers, or the counts of the pool.
 class Population {
  public:
-  Population(std::uint32_t count, std::uint32_t cell_count, const ParticlePool* pool)
-      : count_(count), cell_count_(cell_count), pool_(pool) {}
+  Population(std::uint32_t count, const ParticlePool* pool) : count_(count), pool_(pool) {}
 
   void forParticles(Pass& pass) const;
-  /// Covers cell_count + 1 invocations, or fewer that loop over them: at most MAX_GROUPS groups.
-  void forCells(Pass& pass) const;
-  void forScanBlocks(Pass& pass, std::uint32_t block_count) const;
+  /// Covers run_count invocations, or fewer that loop over them: at most MAX_GROUPS groups.
+  void forScanRuns(Pass& pass, std::uint32_t run_count) const;
   void forOneGroup(Pass& pass) const;
   /// Makes the counts visible to passes, as the functions above do. Does nothing without a pool.
   void bind() const;
@@ -64,7 +62,6 @@ class Population {
   void run(Pass& pass, std::size_t arguments, std::uint32_t group_count) const;
 
   std::uint32_t count_;
-  std::uint32_t cell_count_;
   const ParticlePool* pool_;
 };
 

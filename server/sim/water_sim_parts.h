@@ -71,9 +71,7 @@ struct WaterSim::Parts {
   const std::vector<float>& startOf(const core::Scene& scene, const ParticleLayout& layout);
 
   /// Sizes of the dispatches over particles.
-  [[nodiscard]] Population population(const Derived& derived) const {
-    return {derived.particles->count, derived.particles->cell_count, pool.get()};
-  }
+  [[nodiscard]] Population population(const Derived& derived) const { return {derived.particles->count, pool.get()}; }
   [[nodiscard]] ParticleBuffers* particlesOrNull() { return particles ? &*particles : nullptr; }
   /// Returns the buffers that the parts declare.
   StateBuffers stateBuffers();

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include <shared/bindings.h>
@@ -39,7 +40,10 @@ Wave::Wave(Creation& create, const core::Scene& scene, const WaveLayout& layout,
   event_uniforms_ = create.uniforms<shared::EventUniforms>("event uniforms");
   splash_tiles_buffer_ = create.updatable("splash tiles", splash_tiles_.count() * sizeof(shared::SplashTile));
   splash_ = create.pass("wave/splash.comp");
-  crest_ = create.pass("wave/crest.comp");
+  crest_profile_ = create.scratch("crest profile", MAX_CRESTS * std::size_t{std::max(count_.x, count_.z)}, kRG32F);
+  profile_crests_ = create.pass("wave/crest_profile.comp");
+  for (const bool lateral : {false, true})
+    crest_[lateral] = create.pass("wave/crest.comp", {{"LATERAL", lateral ? "1" : "0"}});
   find_share_ = create.pass("wave/given_share.comp");
   limit_ = create.pass("wave/limit.comp");
   for (const bool sea : {false, true}) {
@@ -245,7 +249,12 @@ void Wave::displace(const shared::EventUniforms& events) {
     splash_tiles_buffer_.bindStorage(SPLASH_TILES);
     splash_.runGroups(static_cast<std::uint32_t>(tiles.size()));
   }
-  if (events.crest_count + events.calm_count > 0) crest_.run(count_);
+  if (events.crest_count + events.calm_count == 0) return;
+  crest_profile_.bindStorage(CREST_PROFILE);
+  if (events.crest_count > 0) profile_crests_.run(std::max(count_.x, count_.z), events.crest_count);
+  crest_profile_.bindTexel(CREST_PROFILE);
+  const std::span crests(events.crests, events.crest_count);
+  crest_[std::ranges::any_of(crests, [](const auto& each) { return each.lateral_m > 0.0f; })].run(count_);
 }
 
 /// Both passes run no group in a step in which no cell could become empty.

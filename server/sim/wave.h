@@ -111,7 +111,9 @@ class Wave {
   gpu::Buffer event_uniforms_;
   SplashTiles splash_tiles_;
   gpu::Buffer splash_tiles_buffer_;
-  Pass splash_, crest_, find_share_, limit_, sample_surface_, slope_, tense_;
+  gpu::TexelBuffer crest_profile_;  ///< crests x longer side of the domain; wave/crest_profile.comp
+  Pass splash_, profile_crests_, find_share_, limit_, sample_surface_, slope_, tense_;
+  Pass crest_[2];                     ///< by whether a crest has a finite width
   Pass momentum_[2], continuity_[2];  ///< by whether a sea comes in; the second only in scenes with a wind sea
 };
 

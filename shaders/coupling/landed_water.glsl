@@ -6,8 +6,6 @@
 #include "shared/bindings.h"
 #include "shared/pool.h"
 
-#define MOMENTUM_UNITS 65536.0
-
 layout(std430, binding = LANDED_WATER) restrict buffer LandedWater { int landed_water[]; };
 
 #endif

@@ -85,6 +85,7 @@ vec2 stripShare(int first, ivec2 n, int x, int z, int side) {
 void restrictToCoarse(int first, ivec2 n, ivec2 coarse_n) {
   const int coarse_right = first + n.x * n.y - textureSize(right_side);
   press(first, n);
+  const int sides = 4 * min(int(grid_count), 1);
   FOR_EACH(k, coarse_n.x * coarse_n.y) {
     const int x = 2 * (k % coarse_n.x);
     const int z = 2 * (k / coarse_n.x);
@@ -96,12 +97,16 @@ void restrictToCoarse(int first, ivec2 n, ivec2 coarse_n) {
     const int next_z = after(z + 1, n.y);
     const int i = first + x + n.x * z;
     const vec4 both = leftAt(first, n, x + 1, z + 1);
-    const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n.x + 1).x * both.xy +
-                       innerShare(first, n, x, z, 0) + innerShare(first, n, next_x, z, 1) +
-                       (stripShare(first, n, x, z, 0) + stripShare(first, n, next_x, z, 1));
-    const vec2 sum_z = texelFetch(from_z, i + n.x).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n.x + 1).z * both.zw +
-                       innerShare(first, n, x, z, 2) + innerShare(first, n, x, next_z, 3) +
-                       (stripShare(first, n, x, z, 2) + stripShare(first, n, x, next_z, 3));
+    vec2 inner[4], strip[4];
+    for (int side = 0; side < sides; ++side) {
+      const ivec2 at = side == 1 ? ivec2(next_x, z) : (side == 3 ? ivec2(x, next_z) : ivec2(x, z));
+      inner[side] = innerShare(first, n, at.x, at.y, side);
+      strip[side] = stripShare(first, n, at.x, at.y, side);
+    }
+    const vec2 sum_x = texelFetch(from_x, i + 1).x * leftAt(first, n, x + 1, z).xy + texelFetch(from_x, i + n.x + 1).x * both.xy + inner[0] +
+                       inner[1] + (strip[0] + strip[1]);
+    const vec2 sum_z = texelFetch(from_z, i + n.x).z * leftAt(first, n, x, z + 1).zw + texelFetch(from_z, i + n.x + 1).z * both.zw + inner[2] +
+                       inner[3] + (strip[2] + strip[3]);
     right_of_smaller[coarse_right + k] = 0.25 * vec4(sum_x, sum_z);
   }
 }

@@ -1,5 +1,5 @@
-// Groups particle indices by cell, in arrival order.
-// Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER.
+// Groups particle indices by cell, in arrival order, and clears the counts of their cells for the next build: other cells have none.
+// Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER, CELL_COUNT.
 #include "shared/groups.h"
 #include "shared/grid.h"
 #include "particles/population.glsl"
@@ -8,6 +8,7 @@ layout(local_size_x = PARTICLE_GROUP) in;
 
 layout(binding = CELL_ARRIVAL) uniform usamplerBuffer arrival;
 layout(binding = CELL_START) uniform usamplerBuffer cell_start;
+layout(std430, binding = CELL_COUNT) restrict writeonly buffer CellCount { uint cell_count_of[]; };
 layout(std430, binding = CELL_MEMBER) restrict writeonly buffer CellMember { uint cell_member[]; };
 
 void main() {
@@ -17,5 +18,6 @@ void main() {
 #if POOL_PARTICLES
   if (a.x == NO_CELL) return;
 #endif
+  cell_count_of[a.x] = 0u;
   cell_member[texelFetch(cell_start, int(a.x)).x + a.y] = i;
 }

@@ -24,12 +24,12 @@
 #define ACCELERATION 6
 
 // Grid: particles per cell; first particle of a cell (cell_count + 1 entries); per particle (cell, arrival in the cell);
-// particle indices grouped by cell in arrival order; totals of the scan's blocks.
+// particle indices grouped by cell in arrival order; totals of the scan's runs of cells.
 #define CELL_COUNT 7
 #define CELL_START 8
 #define CELL_ARRIVAL 9
 #define CELL_MEMBER 10
-#define BLOCK_TOTAL 11
+#define RUN_TOTAL 11
 
 // Wave, nx x nz cells: flow through the faces that a cell owns [m^2/s]; elevation now [units, fixed_point.h]; conductance
 // of those faces [m]; loss rates in absorbing layers and on beaches [1/s] with the still depth of the cell [m]
@@ -74,6 +74,8 @@
 #define SEA_COLUMNS 1
 #define SEA_ROWS 2
 #define INCIDENT_SEA 10
+// What crests across the whole domain do along their direction; wave/crest_profile.comp. As above.
+#define CREST_PROFILE 0
 // Nonlinear shallow water with dispersion: rise of the surface and of pressures across the faces that a cell owns [units]
 // (binding shared with SURFACE_FLOW; no pass has both). There FLOW holds velocities [m/s] and flows [m^2/s].
 #define SURFACE_RISE 16

@@ -15,19 +15,25 @@
 #define WAVE_GROUP_X 64
 #define WAVE_GROUP_Y 1
 #endif
+// Rows of cells of an invocation that first looks for rows with work and visits them in a second loop: llvmpipe takes both sides of a
+// branch, but repeats a loop only while a lane needs it. At most 32, the bits of a word; short where dispersion_strip is.
+#define WAVE_STRIP_MAX 32
+#define WAVE_STRIP min(DISPERSION_STRIP, WAVE_STRIP_MAX)
 // One invocation per cell of a small square of the wave; z is the boat in it.
 #define PATCH_GROUP 8
 // One invocation per cell of a tile that splashes reach.
 #define SPLASH_TILE 8
-// The scan: SCAN_GROUP invocations, SCAN_ITEMS cells each. 16 instead of 4 halved the grid's time on llvmpipe, where
-// barriers are expensive.
+// The scan. An invocation sums a run of SCAN_ITEMS times four cells, without shared memory: barriers are expensive on llvmpipe. One
+// group of SCAN_GROUP invocations sums the runs.
 #define SCAN_GROUP 256
 #ifndef SCAN_ITEMS
 #define SCAN_ITEMS 16
 #endif
-#define SCAN_BLOCK (SCAN_GROUP * SCAN_ITEMS)
+#define SCAN_RUN (4 * SCAN_ITEMS)
+#define SCAN_RUNS_GROUP 64
+#define SCAN_BLOCK (SCAN_RUNS_GROUP * SCAN_RUN)
 // The largest that a profile may have, for the pool's group counts.
-#define POOL_SCAN_BLOCK (SCAN_GROUP * 16)
+#define POOL_SCAN_BLOCK (SCAN_RUNS_GROUP * 4 * 16)
 // An invocation of the dispersion's passes owns so many columns, and rows of them; both even. A CPU wants long strips, because
 // neighbours of a strip are computed twice; a GPU wants many invocations with few registers (gpu::TuningProfile).
 #ifndef DISPERSION_COLUMNS

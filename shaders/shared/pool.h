@@ -19,7 +19,7 @@
 // Cells in EMITTER that emit now.
 #define POOL_EMITTING 7
 // Arguments of indirect dispatches (three words each): over emitting cells, over particles, over grid cells, over scan
-// blocks, one group. All 0 while there is nothing to do.
+// blocks, one group. All 0 while there is nothing to do. No pass runs over single grid cells any more; hashes of states have those words.
 #define POOL_EMIT_ARGS 8
 #define POOL_PARTICLE_ARGS 11
 #define POOL_CELL_ARGS 14
@@ -32,5 +32,6 @@
 
 // Words of LANDED_WATER per wave cell: water [units], its momentum along x and z (height times velocity, 2^-16 m^2/s).
 #define LANDED_WORDS 3
+#define MOMENTUM_UNITS 65536.0f
 
 #endif

@@ -1,6 +1,6 @@
 // Computes where and how strongly the wave breaks.
 // Reads SURFACE (eta, d eta/dt), BASIN, BED, EventUniforms, BREAKING_BEFORE (age [s], intensity, velocity of a splash's
-// crown [m/s]). Writes BREAKING; in two-way scenes lists the POOL_WANTED cells that emit a particle in EMITTER.
+// crown [m/s]). Writes BREAKING, which is 0 before, where the wave may break; in two-way scenes lists the POOL_WANTED cells that emit a particle in EMITTER.
 // Equation: Kennedy et al. 2000, eqs. 5-7: breaking starts where d eta/dt > 0.65 sqrt(g d); the threshold relaxes to
 // 0.15 sqrt(g d) within 5 sqrt(d/g) of the event; the intensity rises from 0 to 1 between one and two thresholds. The event travels
 // with the crest: a cell inherits the age of the oldest cell that broke where the crest may have come from.
@@ -27,6 +27,8 @@ uniform uint tick;
 #endif
 
 #define LONGEST_EVENT 2.0
+/// Radii of its splash beyond which there is no crown; it ends at 1.1 + 0.3.
+#define CROWN_REACH 1.41
 
 /// Horizontal velocity of the crown of splashes: outward, from a ring around the radius.
 vec2 crownAt(vec2 p) {
@@ -43,25 +45,42 @@ vec2 crownAt(vec2 p) {
 
 float ageAt(int x, int row) { return texelFetch(breaking_before, x + row).x; }
 
-void main() {
-  const ivec2 n = waveCounts();
-  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(cell, n))) return;
+/// Returns whether the crown of a splash may reach a column of cells.
+bool isBelowCrown(float x_m) {
+  bool reaches = false;
+  for (uint k = 0u; k < press_begin; ++k)
+    reaches = reaches || (splashes[k].speed_mps > 0.0 && abs(acrossSides(vec2(x_m - splashes[k].x_m, 0.0)).x) < CROWN_REACH * splashes[k].radius_m);
+  return reaches;
+}
+
+/// Height of the water at a cell. [m]
+float waterAt(ivec2 cell, ivec2 n) {
+  const int i = cell.x + n.x * cell.y;
+#if NONLINEAR
+  return texelFetch(surface_texels, i).x + stillDepth(i);
+#elif VARIED
+  const Flow open = conductanceOf(cell, n);
+  return max(open.x, open.y) / FLOW_WEIGHTS.x;
+#else
+  return sim.wave_depth_m;
+#endif
+}
+
+float longWaveSpeed(float depth_m) { return sqrt(sim.gravity_mps2 * max(depth_m, 0.0)); }
+
+/// There is no breaking below the lowest threshold, on dry ground, or without gravity.
+bool mayBreak(float rate_mps, float speed_mps, float depth_m) {
+  return speed_mps > 0.0 && rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m;
+}
+
+void breakAt(ivec2 cell, ivec2 n) {
   const int row = n.x * cell.y;
   const int i = cell.x + row;
   const float rate_mps = smoothRate(cell, n);
-#if NONLINEAR
-  const float depth_m = texelFetch(surface_texels, i).x + stillDepth(i);
-#elif VARIED
-  const Flow open = conductanceOf(cell, n);
-  const float depth_m = max(open.x, open.y) / FLOW_WEIGHTS.x;
-#else
-  const float depth_m = sim.wave_depth_m;
-#endif
-  const float speed_mps = sqrt(sim.gravity_mps2 * max(depth_m, 0.0));
+  const float depth_m = waterAt(cell, n);
+  const float speed_mps = longWaveSpeed(depth_m);
   vec4 state = vec4(0.0);
-  // There is no breaking below the lowest threshold, on dry ground, or without gravity.
-  if (speed_mps > 0.0 && rate_mps > 0.15 * speed_mps && depth_m > 0.02 * sim.wave_depth_m) {
+  if (mayBreak(rate_mps, speed_mps, depth_m)) {
     // Distance that a crest travels in a tick.
     const ivec2 hop = min(ivec2(max(int(ceil(speed_mps * sim.tick_s / sim.wave_cell_m - 0.2)), 1)), n);
     const float age_s = max(max(ageAt(cell.x, row), max(ageAt(waveNeighbourX(cell.x - hop.x, n.x), row), ageAt(waveNeighbourX(cell.x + hop.x, n.x), row))),
@@ -82,4 +101,27 @@ void main() {
     if (slot < sim.pool_capacity_count) emitter[slot] = uint(i);
   }
 #endif
+}
+
+void main() {
+  const ivec2 n = waveCounts();
+  const int x = int(gl_GlobalInvocationID.x);
+  const int first_z = WAVE_STRIP * int(gl_GlobalInvocationID.y);
+  if (x >= n.x || first_z >= n.y) return;
+  const int end_z = min(first_z + WAVE_STRIP, n.y);
+  const bool below_crown = isBelowCrown(waveCellCentre(ivec2(x, 0)).x);
+  const ivec2 apart = rateApart(n);
+  uint rows = 0u;
+  for (int begin_z = first_z; begin_z < first_z + apart.y; ++begin_z) {
+    float before = rowRate(x, begin_z - apart.y, apart.x, n);
+    float own = rowRate(x, begin_z, apart.x, n);
+    for (int z = begin_z; z < end_z; z += apart.y) {
+      const float after = rowRate(x, z + apart.y, apart.x, n);
+      const float depth_m = waterAt(ivec2(x, z), n);
+      if (below_crown || mayBreak(smoothRate(before, own, after), longWaveSpeed(depth_m), depth_m)) rows |= 1u << uint(z - first_z);
+      before = own;
+      own = after;
+    }
+  }
+  for (; rows != 0u; rows &= rows - 1u) breakAt(ivec2(x, first_z + findLSB(rows)), n);
 }

@@ -1,7 +1,9 @@
 // Crests displace water and set it in motion, so that they travel in one direction (d'Alembert; breaking wave: thesis
 // 3.6.4). Calmed discs slow the flow: a drag, so they move no water.
-// Reads EventUniforms, BASIN, BED, ELEVATION. Adds to TRANSFER [nx x nz, units] for this step, and to FLOW [m^2/s] for
+// Reads EventUniforms, CREST_PROFILE, BASIN, BED, ELEVATION. Adds to TRANSFER [nx x nz, units] for this step, and to FLOW [m^2/s] for
 // the next step, half a step earlier as the leapfrog needs it; raises LIMIT_ARGS as wave/momentum.comp does.
+// LATERAL: some crests have a finite width; those across the whole domain come from their profile alone (llvmpipe takes both sides of
+// a branch).
 // Invariant: a face's transfer is computed by one invocation; nothing passes a closed face.
 #include "shared/groups.h"
 #include "wave/displacement.glsl"
@@ -11,7 +13,7 @@ layout(local_size_x = WAVE_GROUP_X, local_size_y = WAVE_GROUP_Y) in;
 
 layout(std430, binding = FLOW) restrict buffer FaceFlow { StoredFlow stored_flow[]; };
 
-shared vec4 ends[MAX_CRESTS];  // crestEnds() now and half a step before
+layout(binding = CREST_PROFILE) uniform samplerBuffer crest_profile;
 
 /// What the calmed discs leave of the flow at a cell. Several at one position slow it as the strongest does.
 float keptFlow(vec2 p) {
@@ -21,20 +23,32 @@ float keptFlow(vec2 p) {
   return 1.0 - drag_ratio;
 }
 
+/// What a crest does at the faces that a cell owns, for a height of 1 m.
+struct Crest {
+  vec2 displaced_m2;  // along its direction, at the faces toward +x and +z
+  vec3 elevation;     // at these and in the corner, half a step before
+};
+
+#if LATERAL
 /// Position in the frame of a crest: nearest to where a paddle starts it, across periodic sides.
 vec2 seenFrom(EventUniform e, vec2 p) {
   const vec2 start = vec2(e.x_m, e.z_m);
   return e.half_side_m == 0.0 ? start + acrossSides(p - start) : p;
 }
 
+/// A crest of finite width.
+Crest lateralCrest(EventUniform e, vec2 p) {
+  const float half_m = 0.5 * sim.wave_cell_m;
+  const vec2 at_x = seenFrom(e, p + vec2(half_m, 0.0));
+  const vec2 at_z = seenFrom(e, p + vec2(0.0, half_m));
+  const vec2 displaced_m2 = vec2(crestDisplacement(e, at_x, vec2(0.0)), crestDisplacement(e, at_z, vec2(0.0)));
+  e.offset_m -= e.half_step_m;
+  return Crest(displaced_m2, vec3(crestElevation(e, at_x, vec2(0.0)), crestElevation(e, at_z, vec2(0.0)),
+                                  crestElevation(e, seenFrom(e, p + vec2(half_m)), vec2(0.0))));
+}
+#endif
+
 void main() {
-  for (uint k = gl_LocalInvocationIndex; k < crest_count; k += WAVE_GROUP_X * WAVE_GROUP_Y) {
-    EventUniform e = crests[k];
-    ends[k].xy = crestEnds(e);
-    e.offset_m -= e.half_step_m;
-    ends[k].zw = crestEnds(e);
-  }
-  barrier();
   const ivec2 n = waveCounts();
   const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
   if (any(greaterThanEqual(cell, n))) return;
@@ -46,23 +60,23 @@ void main() {
   const vec4 shares = effectShares(cell, next, n);
   ivec2 moved = ivec2(0);
   Flow flow = Flow(0.0);
-  for (uint k = 0u; k < crest_count; ++k) {
-    EventUniform e = crests[k];
+  // Counted by what is left: with its index as the counter Mesa repeats the body MAX_CRESTS times.
+  for (uint left = crest_count; left > 0u; --left) {
+    const uint k = crest_count - left;
+    const EventUniform e = crests[k];
     const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
-    const vec2 displaced_m2 = passing(-vec2(e.direction_x * crestDisplacement(e, seenFrom(e, p + vec2(0.5 * cell_m, 0.0)), ends[k].xy),
-                                            e.direction_z * crestDisplacement(e, seenFrom(e, p + vec2(0.0, 0.5 * cell_m)), ends[k].xy)),
-                                      shares);
-    moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
-    e.offset_m -= e.half_step_m;
     const vec2 d = vec2(e.direction_x, e.direction_z);
-    const float at_x = crestElevation(e, seenFrom(e, p + vec2(0.5 * cell_m, 0.0)), ends[k].zw);
-    const float at_z = crestElevation(e, seenFrom(e, p + vec2(0.0, 0.5 * cell_m)), ends[k].zw);
-    const float at_corner = crestElevation(e, seenFrom(e, p + vec2(0.5 * cell_m)), ends[k].zw);
-    flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d.x * at_x, d.y * at_z, (d.x + d.y) * at_corner, (d.y - d.x) * at_corner));
+    const vec2 profile = texelFetch(crest_profile, int(k) * max(n.x, n.y) + (d.x != 0.0 ? cell.x : cell.y)).xy;
+    Crest crest = Crest(profile.xx, profile.yyy);
+#if LATERAL
+    if (e.lateral_m > 0.0) crest = lateralCrest(e, p);
+#endif
+    const vec2 displaced_m2 = passing(-d * crest.displaced_m2, shares);
+    moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
+    flow += e.gain_m * e.speed_mps * FLOW_WEIGHTS * asFlow(vec4(d * crest.elevation.xy, vec2(d.x + d.y, d.y - d.x) * crest.elevation.z));
   }
   const float kept = keptFlow(p);
-  if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
-  if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
+  addTransfers(i, next, open, moved);
 #if DISPERSE
   flow = passing(flow, shares);
 #endif

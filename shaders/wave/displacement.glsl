@@ -6,7 +6,7 @@
 #include "wave/water_column.glsl"
 
 layout(binding = ELEVATION) uniform isamplerBuffer elevation;
-layout(std430, binding = TRANSFER) restrict buffer Transfer { int transfer[]; };
+layout(std430, binding = TRANSFER) restrict buffer Transfer { Units transfer[]; };
 layout(std430, binding = LIMIT_ARGS) restrict buffer LimitArgs { uint limit_args[]; };
 
 /// The cells toward +x and +z of cell i.
@@ -45,16 +45,18 @@ vec2 strokeShares(vec3 away_m, float highest_m) {
   return clamp(2.0 - max(away_m.xx, away_m.yz) / highest_m, 0.0, 1.0);
 }
 
-/// Adds to a face of the cell `from`; `face` 0 leads to +x, 1 to +z, and `to` is the cell there. No other invocation of
-/// the pass may add to it.
-void addTransfer(int from, int to, uint face, int units) {
-  if (units == 0) return;
-  const int at = int(OWNED_FACES) * from + int(face);
-  const int sum = transfer[at] + units;
-  transfer[at] = sum;
-  const uint held_from = heldUnits(texelFetch(elevation, from).x, stillDepth(from));
-  const uint held_to = heldUnits(texelFetch(elevation, to).x, stillDepth(to));
-  if (mayEmpty(sum, held_from, held_to)) limit_args[0] = limitGroups();
+/// Adds to the faces toward +x and +z of cell i, as far as they are open; `next`: nextCells(). No other invocation of the pass may
+/// add to them.
+void addTransfers(int i, ivec2 next, Flow open, ivec2 units) {
+  units *= ivec2(greaterThan(open.xy, vec2(0.0)));
+  if (units == ivec2(0)) return;
+  Units sum = transfer[i];
+  sum.xy += units;
+  transfer[i] = sum;
+  const uint held = heldUnits(texelFetch(elevation, i).x, stillDepth(i));
+  const uint held_x = heldUnits(texelFetch(elevation, next.x).x, stillDepth(next.x));
+  const uint held_z = heldUnits(texelFetch(elevation, next.y).x, stillDepth(next.y));
+  if ((units.x != 0 && mayEmpty(sum.x, held, held_x)) || (units.y != 0 && mayEmpty(sum.y, held, held_z))) limit_args[0] = limitGroups();
 }
 
 #endif

@@ -25,9 +25,12 @@ void main() {
   const vec3 away_m = abs(vec3(metres(texelFetch(elevation, i).x), metres(texelFetch(elevation, next.x).x),
                                metres(texelFetch(elevation, next.y).x)));
   ivec2 moved = ivec2(0);
-  for (uint words = place >> 24; words != 0u; words &= words - 1u) {
+  // Each tile has a splash, and each word. (llvmpipe runs the body of a loop once more than its condition allows.)
+  uint words = place >> 24;
+  do {
     const int word = findLSB(words);
-    for (uint left = splash_tiles[tile].splashes[word]; left != 0u; left &= left - 1u) {
+    uint left = splash_tiles[tile].splashes[word];
+    do {
       const EventUniform e = splashes[32 * word + findLSB(left)];
       const float units = e.gain_m * ELEVATION_UNITS_PER_M / cell_m;
       const vec2 centre = vec2(e.x_m, e.z_m);
@@ -37,10 +40,9 @@ void main() {
           passing(-vec2(splashDisplacement(at_x, e.radius_m).x, splashDisplacement(at_z, e.radius_m).y), shares);
       if (e.highest_m > 0.0) displaced_m2 *= strokeShares(away_m, e.highest_m);
       moved += ivec2(transferUnits(displaced_m2.x, units), transferUnits(displaced_m2.y, units));
-    }
-  }
-  if (moved == ivec2(0)) return;
-  const Flow open = conductanceOf(cell, n);
-  if (open.x > 0.0) addTransfer(i, next.x, 0u, moved.x);
-  if (open.y > 0.0) addTransfer(i, next.y, 1u, moved.y);
+      left &= left - 1u;
+    } while (left != 0u);
+    words &= words - 1u;
+  } while (words != 0u);
+  addTransfers(i, next, conductanceOf(cell, n), moved);
 }

@@ -80,14 +80,14 @@ part_tests() {
 # The same scene twice, and with another order of the work groups: the states must be equal bit for bit. Where they are not,
 # the scene runs two times side by side, which names the first buffers that differ.
 part_hash() {
-  local scene file checks hashes equal=true
+  local scene file checks hashes equal=true ticks="${SPINDRIFT_HASH_TICKS:-200}"
   for scene in pool splash harbor flotsam; do
     file="$bundle/share/spindrift/scenes/$scene.textproto"
-    hashes="$(for checks in "" "" shuffle=7; do SPINDRIFT_GPU_CHECKS="$checks" "$bundle/state_hash" "$file" 200 2>/dev/null; done)"
+    hashes="$(for checks in "" "" shuffle=7; do SPINDRIFT_GPU_CHECKS="$checks" "$bundle/state_hash" "$file" "$ticks" 2>/dev/null; done)"
     printf '%s %s\n' "$scene" "$(tr '\n' ' ' <<<"$hashes")"
     [[ "$(sort -u <<<"$hashes" | wc -l)" != 1 ]] || continue
     equal=false
-    "$bundle/state_hash" "$file" 200 twice 2>/dev/null | sed 's/^/  /' || true
+    "$bundle/state_hash" "$file" "$ticks" twice 2>/dev/null | sed 's/^/  /' || true
   done
   "$equal"
 }

@@ -69,7 +69,7 @@ struct ThesisComparison::State {
         particles(create, derived.particles->count, false, false),
         grid(create, *derived.particles),
         sph(create),
-        population(derived.particles->count, derived.particles->cell_count, nullptr),
+        population(derived.particles->count, nullptr),
         box(countedBox(scene, derived)),
         spacing_m(derived.particles->spacing_m) {
     if (!create.error()) uniforms.uploadValue(derived.uniforms);

@@ -43,7 +43,7 @@ describe("the front page", { skip, concurrency: 1 }, () => {
   const sessions = (what, wanted) => until(what, () => Promise.all(Object.keys(wanted).map(sessionsIn)), (counts) => Object.values(wanted).every((count, k) => counts[k] === count));
   /** A busy server answers 504 and opens the room a little later. */
   const openRoom = async (name) => {
-    const { status } = await ask("rooms", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ name, scene: "still_pool" }) });
+    const { status } = await ask("rooms", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ name, scene: "wave_only" }) });
     assert.ok([201, 504].includes(status), `status ${status}`);
     await until(`the room ${name}`, async () => (await ask(`rooms/${name}`)).status, (answer) => answer === 200);
   };

@@ -161,11 +161,11 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
   });
 
   it("opens the room for an operator, and leads all others into it", slow, async () => {
-    const link = `${server.url}?quality=minimal&scene=still_pool&set=wave.depth_m:1.25`;
+    const link = `${server.url}?quality=minimal&scene=wave_only&set=wave.depth_m:1.25`;
     const operator = await open(`${link}#token=${kOperator}`);
     await state(operator, "live");
     const [, room] = await roomsNow();
-    assert.match(room, /^still_pool-[0-9a-f]{8}$/);
+    assert.match(room, /^wave_only-[0-9a-f]{8}$/);
     assert.equal(await depthOf(room), 1.25);
     assert.deepEqual((await ask(`rooms/${room}/changes`)).parameters.map(({ path, value }) => [path, value]), [["wave.depth_m", 1.25]]);
     const guest = await open(link);
@@ -173,7 +173,7 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
     assert.equal((await ask(`rooms/${room}`)).session_count, 2);
 
     // A link with other values to a room that exists changes nothing, even for an operator.
-    const again = await open(`${server.url}?quality=minimal&room=${room}&scene=still_pool&set=wave.depth_m:0.5#token=${kOperator}`);
+    const again = await open(`${server.url}?quality=minimal&room=${room}&scene=wave_only&set=wave.depth_m:0.5#token=${kOperator}`);
     await state(again, "live");
     assert.equal(await depthOf(room), 1.25);
     for (const page of [operator, guest, again]) await page.close();

@@ -72,7 +72,7 @@ class SeaParameters : public Endurance, public ::testing::WithParamInterface<std
   void changeFidelity(const Settings& settings, v1::Fidelity to) {
     auto loaded = scene::loadSceneFile(sceneFolder() / (GetParam() + ".textproto"), to);
     ASSERT_TRUE(loaded) << loaded.error().message;
-    v1::Scene scene = *loaded;
+    v1::Scene scene = unsettled(*loaded);
     scene::keepParameters(base_, scene);
     for (const auto& [path, value] : settings) (void)scene::setParameter(scene, path, value);
     auto next = sim::WaterSim::create(*ctx_, scene::toCore(scene));
@@ -100,7 +100,7 @@ std::string textOf(const Settings& settings) {
 
 TEST_P(SeaParameters, KeepTheWaterHealthyWhileItMoves) {
   const auto level = levelFor("SPINDRIFT_SEA_TICKS");
-  base_ = shipped(GetParam(), level);
+  base_ = unsettled(shipped(GetParam(), level));
   if (base_.has_storm()) base_.mutable_storm()->set_level_ratio(1.0);
   const core::Scene base = scene::toCore(base_);
   make(base);

@@ -33,6 +33,11 @@ class Endurance : public ::testing::Test {
     if (!scene) throw std::runtime_error(scene.error().message);
     return *scene;
   }
+  /// Returns the scene with its lattice as it is laid out: to settle takes a still pool 720 ticks at each creation.
+  static v1::Scene unsettled(v1::Scene scene) {
+    if (scene.has_particles()) scene.mutable_particles()->clear_settle_s();
+    return scene;
+  }
 
  protected:
   void SetUp() override {

@@ -186,7 +186,7 @@ class StormInScene : public Storm, public ::testing::WithParamInterface<std::str
 /// Where the waves disperse, all live parameters move over their whole ranges as well; parameters_test moves those of
 /// the other scenes. Many values make a tick slow, so the longest runs may do without: SPINDRIFT_STORM_PARAMETERS=0.
 TEST_P(StormInScene, KeepsTheVolumeAndStaysBounded) {
-  v1::Scene scene = shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS"));
+  v1::Scene scene = unsettled(shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS")));
   if (scene.has_storm()) scene.mutable_storm()->set_level_ratio(1.0);
   const int ticks = wanted("SPINDRIFT_STORM_TICKS", 90);
   const double commands_per_tick = 0.01 * wanted("SPINDRIFT_STORM_COMMANDS_PER_100_TICKS", 280);
@@ -203,7 +203,7 @@ TEST_P(StormInScene, KeepsTheVolumeAndStaysBounded) {
 /// After the last command, water can only lose energy. With dispersion the diagnostics' energy leaves out a part that
 /// swings to and fro with the waves, so stretches of time are compared instead of ticks.
 TEST_P(StormInScene, CalmAfterwardsGainsNoEnergy) {
-  v1::Scene scene = shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS"));
+  v1::Scene scene = unsettled(shipped(GetParam(), levelFor("SPINDRIFT_STORM_TICKS")));
   scene.clear_events();
   scene.clear_storm();
   if (scene.has_boats()) scene.mutable_boats()->clear_boats();

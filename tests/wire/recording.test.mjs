@@ -254,7 +254,10 @@ describe("a recording that cannot be finished", () => {
     child.kill("SIGTERM");
     expect(await exited).toBe(0);
     expect(log).toContain("the recording run has ended: could not write");
-    expect((await readIndexed(join(folder, "full", "run_0001.mcap"))).messages.length).toBeGreaterThan(0);
+    // The summary is there only if the disk has room for it.
+    const { records, leftBytes } = readStream(join(folder, "full", "run_0001.mcap"));
+    expect(leftBytes).toBe(0);
+    expect(records.filter(({ type }) => type === "Message").length).toBeGreaterThan(0);
   });
 
   it("is refused by a server without a folder, and to players", async () => {

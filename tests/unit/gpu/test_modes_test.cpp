@@ -141,10 +141,12 @@ TEST_F(ProgramCacheTest, AVariantIsCompiledOncePerContext) {
     const auto first = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
     const auto second = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}});
     const auto other = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "24"}});
-    ASSERT_TRUE(first && second && other);
-    EXPECT_EQ(ledger.programs_made_count, 2u);
-    EXPECT_EQ(ledger.program_count, 3u);
+    const auto same = Program::create(*ctx, "tests/iota.comp", {{"GROUP", "64"}, {"GROUP_UNUSED", "1"}, {"ROUP", "1"}});
+    ASSERT_TRUE(first && second && other && same);
+    EXPECT_EQ(ledger.programs_made_count, 2u) << "a define that the shader does not use makes no other program";
+    EXPECT_EQ(ledger.program_count, 4u);
     EXPECT_EQ(first->id(), second->id());
+    EXPECT_EQ(first->id(), same->id());
     EXPECT_NE(first->id(), other->id());
   }
   EXPECT_EQ(ledger.program_count, 0u);

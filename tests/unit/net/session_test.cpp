@@ -284,6 +284,19 @@ TEST(Session, RefusesAFrameThatClaimsToBeImmense) {
   EXPECT_EQ(served.application.closed()[0].end.code, 1009);
 }
 
+TEST(Session, ReadsTheRestOfARefusedMessageSoThatThePeerGetsTheCloseFrame) {
+  // Bytes that nobody read would reset the connection: a peer that is still sending then loses the close frame.
+  TestServer served({.read_message_max_bytes = 1000});
+  RawTcp raw = upgraded(served);
+  ASSERT_TRUE(raw.send(std::string("\x82\xff\0\0\0\0\0\x10\0\0\0\0\0\0", 14)));  // 1 MiB
+  ASSERT_TRUE(raw.send(std::string(64 * 1024, 'x')));
+  EXPECT_EQ(raw.receive(4), std::string("\x88\x02\x03\xf1", 4)) << "a close frame with code 1009";
+  for (int k = 1; k < 16; ++k) ASSERT_TRUE(raw.send(std::string(64 * 1024, 'x'))) << "after " << k << " of 16 parts";
+  raw.close();
+  ASSERT_TRUE(eventually([&] { return served.application.closed().size() == 1; }));
+  EXPECT_EQ(served.application.closed()[0].end.code, 1009);
+}
+
 TEST(Session, RefusesBytesAfterAnUnansweredUpgrade) {
   const TestServer served;
   EXPECT_EQ(test::httpExchange(served.server->port(), kUpgrade + "\x82").status, 400U);

@@ -107,6 +107,20 @@ TEST_F(Tls, ARefusedRequestGetsItsReply) {
   EXPECT_THAT(client.receiveAll(), StartsWith("HTTP/1.1 413"));
 }
 
+TEST_F(Tls, APeerGetsTheCloseFrameWhileItIsStillSending) {
+  start({.read_message_max_bytes = 1000});
+  TlsTcp client;
+  ASSERT_TRUE(client.connect(port()));
+  ASSERT_TRUE(
+      client.send("GET /ws HTTP/1.1\r\nHost: localhost\r\nConnection: Upgrade\r\nUpgrade: "
+                  "websocket\r\nSec-WebSocket-Version: 13\r\n"
+                  "Sec-WebSocket-Key: c3BpbmRyaWZ0IHRlc3RzIQ==\r\n\r\n"));
+  EXPECT_THAT(client.receiveUntil("hello "), StartsWith("HTTP/1.1 101 "));
+  ASSERT_TRUE(client.send(std::string("\x82\xff\0\0\0\0\0\x10\0\0\0\0\0\0", 14)));  // a message of 1 MiB
+  for (int k = 0; k < 16; ++k) ASSERT_TRUE(client.send(std::string(64 * 1024, 'x'))) << "after " << k << " of 16 parts";
+  EXPECT_THAT(client.receiveAll(), testing::EndsWith(std::string("\x88\x02\x03\xf1", 4))) << "code 1009";
+}
+
 TEST_F(Tls, SessionsGetFramesOfAnySizeAndTheirAnswersInOrder) {
   test::TestServer& served = start();
   const auto pool = ClientPool::create(1, files().certificate);

@@ -34,7 +34,8 @@ class Grid : public OnDevice {
     Creation create(*ctx_, {{"PERIODIC_X", "1"}, {"PERIODIC_Y", "0"}, {"PERIODIC_Z", "1"}, {"POOL_PARTICLES", "0"}});
     NeighborGrid grid(create, *derived_.particles);
     ASSERT_FALSE(create.error()) << create.error()->message;
-    grid.build(p, Population(derived_.particles->count, derived_.particles->cell_count, nullptr));
+    // The second build finds what the first one has cleared.
+    for (int build = 0; build < 2; ++build) grid.build(p, Population(derived_.particles->count, nullptr));
     ctx_->barrier(gpu::Barrier::kBufferUpdate);
     sorted_ = p.sorted_position.downloadVector<float>(4 * n);
     sorted_velocity_ = p.sorted_velocity.downloadVector<float>(4 * n);

@@ -54,7 +54,7 @@ class PileUp : public OnDevice {
     for (std::uint32_t i = 0; i < derived->particles->count; ++i)
       position.insert(position.end(), {0.3f, 0.2f, 0.3f, static_cast<float>(i)});
     particles.position.upload(position);
-    const Population all(derived->particles->count, derived->particles->cell_count, nullptr);
+    const Population all(derived->particles->count, nullptr);
     grid.build(particles, all);
     if (solver == core::PressureSolver::kPositionBased) {
       PositionBased passes(create);

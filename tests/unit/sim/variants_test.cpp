@@ -175,8 +175,8 @@ TEST_F(Variants, EachSolverCompilesItsOwnProgramsOnly) {
     make(scene);
     return ctx_->ledger().program_count - before;
   };
-  EXPECT_EQ(programs(PressureSolver::kWeaklyCompressible), 13u);
-  EXPECT_EQ(programs(PressureSolver::kPositionBased), 15u);
+  EXPECT_EQ(programs(PressureSolver::kWeaklyCompressible), 11u);
+  EXPECT_EQ(programs(PressureSolver::kPositionBased), 13u);
 }
 
 TEST_F(Variants, SprayWithFewNeighboursIsFoam) {

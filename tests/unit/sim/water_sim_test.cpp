@@ -68,15 +68,15 @@ TEST_F(Water, AbsentPartsCostNoBufferProgramOrDispatch) {
   const Cost all = cost(full);
   const Cost wave = cost(wave_only);
   const Cost particles = cost(particles_only);
-  // A wave alone has programs for splash, crest, momentum, two passes that limit outflow, continuity, its diagnostics
-  // and packing. A tick has one wave step with four dispatches, two of which have no groups in calm water, and one
-  // dispatch for the health.
-  EXPECT_EQ(wave.programs, 8u);
+  // A wave alone has programs for splash, three for crests, momentum, two passes that limit outflow, continuity, its
+  // diagnostics and packing. A tick has one wave step with four dispatches, two of which have no groups in calm water,
+  // and one dispatch for the health.
+  EXPECT_EQ(wave.programs, 10u);
   EXPECT_EQ(wave.dispatches, 5u);
-  // Particles alone: 7 programs of the grid, 3 of sph, effects on particles, their diagnostics and packing; 2 x 10
+  // Particles alone: 5 programs of the grid, 3 of sph, effects on particles, their diagnostics and packing; 2 x 8
   // dispatches per tick, and one for the health.
-  EXPECT_EQ(particles.programs, 13u);
-  EXPECT_EQ(particles.dispatches, 21u);
+  EXPECT_EQ(particles.programs, 11u);
+  EXPECT_EQ(particles.dispatches, 17u);
   // Together: the sum, and the sampling of the surface once per tick; the effects act on the wave.
   EXPECT_EQ(all.programs, wave.programs + particles.programs - 1 + 1);
   EXPECT_EQ(all.dispatches, wave.dispatches + particles.dispatches + 1);

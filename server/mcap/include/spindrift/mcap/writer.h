@@ -58,11 +58,10 @@ class Writer {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Returns the number of the new schema, from 1. At most kIdMaxCount of them, which the caller keeps to.
+  /// Returns the number of the new schema, from 1. At most 65,000 of them, which the caller keeps to.
   std::uint16_t addSchema(const std::string& name, const std::string& encoding, core::ByteView data);
   /// Returns the number of the new channel, from 0; as many.
   std::uint16_t addChannel(const ChannelSetup& setup);
-  static constexpr std::size_t kIdMaxCount = 65'000;
 
   /// Puts the message into the open chunk, and writes the chunk if it is full. Error: that of the sink; the chunk is
   /// lost then.

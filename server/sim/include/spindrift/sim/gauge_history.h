@@ -55,12 +55,11 @@ class GaugeHistory {
   void clear();
 
   // Any thread.
-  [[nodiscard]] std::size_t gaugeCount() const { return gauge_count_; }
   /// Returns one value per gauge; zeros before the first reading.
   [[nodiscard]] std::vector<Now> now() const;
   /// Returns the time of the newest readings; 0 before the first.
   [[nodiscard]] double newestTime_s() const;
-  /// Returns the kept ticks of a gauge, oldest first. Precondition: gauge < gaugeCount().
+  /// Returns the kept ticks of a gauge, oldest first. Precondition: gauge < gauge_count.
   [[nodiscard]] Series series(std::size_t gauge) const;
 
  private:
