@@ -18,7 +18,7 @@ const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
 const kPlinth = 2.5;
 
-/** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs go on as far as one sees. */
+/** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
 const kTileShare = 1 / 36;
 const kSlabShare = 1 / 5;
 const kHallSides = 40;
@@ -56,7 +56,7 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
   const halfM = (kGlassThickness * sizeM({ sideM, widthM })) / 2;
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2, widthM / 2];
-  const railM = heightM - 2 * halfM;
+  const railM = heightM - halfM;
   const upright = (xM: number, zM: number, halfX: number, halfZ: number, paint: Paint): void => {
     builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: railM, halfX, halfZ }, paint);
     builder.block(xM, zM, { yM: railM, halfX, halfZ }, { yM: heightM, halfX, halfZ }, kCutEdge);
@@ -80,7 +80,7 @@ export function makeBaseGeometry({ sideM, widthM }: TankSize): BufferGeometry {
 }
 
 /** The tiles on the plate, and the floor of the hall. */
-export function makeFloorGeometry({ sideM, widthM }: TankSize): BufferGeometry {
+function makeFloorGeometry({ sideM, widthM }: TankSize): BufferGeometry {
   const size = sizeM({ sideM, widthM });
   const longM = Math.max(sideM, widthM);
   const thickM = kGlassThickness * size;
