@@ -19,7 +19,7 @@ const kSizeWidths = 6;
 const kPlinth = 2.5;
 
 /** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
-const kTileShare = 1 / 36;
+const kTileShare = 1 / 24;
 const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
