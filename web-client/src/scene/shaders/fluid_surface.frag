@@ -58,7 +58,7 @@ const float kWhiteness = 0.1;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
-const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before the white backdrop
+const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
