@@ -14,6 +14,8 @@ describe("the rain in the picture", () => {
     expect(rainShare(undefined)).toBe(0);
     expect(rainShare({ ...storm, dropsPerM2S: 0 })).toBe(0);
     expect(rainShare({ ...storm, levelRatio: 0.1, dropsPerM2S: 0.06 })).toBe(0);
+    // Without waves it is a shower.
+    expect(rainShare({ ...storm, waveHeightM: 0, levelRatio: 0.1, dropsPerM2S: 0.06 })).toBeCloseTo(0.075, 9);
     let before = 0;
     for (let levelRatio = 0; levelRatio <= 1; levelRatio += 0.05) {
       const share = rainShare({ ...storm, levelRatio });

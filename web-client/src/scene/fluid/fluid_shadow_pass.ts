@@ -13,8 +13,8 @@ import type { FluidParticles } from "./fluid_particles";
 import type { FluidVolumePass } from "./fluid_volume_pass";
 
 const kTargetPx = 160;
-/** Texels along the map of a tiled floor over those of one without tiles. */
-const kTilesTexelsRatio = 4;
+/** Texels along the map of a pool's floor over those of a tank's, whose tiles are fewer. */
+const kTankTexelsRatio = 2;
 /** The camera of the map looks down from this share of the tank's length over the floor. */
 const kMapAboveSides = 0.25;
 /** Distance between samples in particle radii. */
@@ -41,8 +41,7 @@ export class FluidShadowPass implements Pass {
     { sideM, widthM }: { sideM: number; widthM: number },
     { floorTexelsCount, texelType, plain }: Pick<FluidQuality, "floorTexelsCount"> & Pick<Quality, "texelType" | "plain">,
   ) {
-    // The floor of a pool has tiles, that of a tank none.
-    const sideTexelsCount = solids.surroundings.edge.kind === "walls" ? floorTexelsCount : floorTexelsCount / kTilesTexelsRatio;
+    const sideTexelsCount = solids.surroundings.edge.kind === "walls" ? floorTexelsCount : floorTexelsCount / kTankTexelsRatio;
     this.map = new WebGLRenderTarget(sideTexelsCount, sideTexelsCount, { type: texelType, generateMipmaps: !plain, minFilter: plain ? LinearFilter : LinearMipmapLinearFilter });
     this.above = new OrthographicCamera(-sideM / 2, sideM / 2, widthM / 2, -widthM / 2, 0, 2 * kMapAboveSides * sideM);
     this.above.up.set(0, 0, -1);

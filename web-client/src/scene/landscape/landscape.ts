@@ -11,9 +11,9 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a tank is painted like its base (solids/glass_tank.ts); its sides, seen through the glass, are darker than the water over it. */
-const kFill: Paint = [0.42, 0.72, 0.80, 0.1];
-const kFillCut: Paint = [0.20, 0.46, 0.58, 0.1];
+/** A bed in a tank is of concrete: dark, so that white water is seen over it; its sides cannot be taken for water. */
+const kFill: Paint = [0.17, 0.19, 0.19, 0.3];
+const kFillCut: Paint = [0.36, 0.33, 0.29, 0.3];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 

@@ -8,7 +8,7 @@ const kHazeSides = 34;
 const kRainHaze = 3;
 /** Drops of the server per m^2 and s at which the rain in the picture is hardest: a full storm's by default. */
 const kHardestPerM2S = 0.08;
-/** Below this share of it single drops make the rings that the server computes, and no other rain is drawn: the sky is still fair then. */
+/** Below this share of it a storm that raises waves is a breeze under a fair sky: no rain is drawn but the rings that the server computes. */
 const kLeastShare = 0.35;
 
 /**
@@ -18,7 +18,7 @@ const kLeastShare = 0.35;
 export function rainShare(wind: GreetingInfo["wind"]): number {
   if (!wind) return 0;
   const share = (wind.levelRatio * wind.dropsPerM2S) / kHardestPerM2S;
-  return ramp(kLeastShare, 1, share);
+  return ramp(wind.waveHeightM > 0 ? kLeastShare : 0, 1, share);
 }
 
 /** Returns the distance at which haze has half of the light. Rain makes it hazier. */

@@ -43,7 +43,7 @@ const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
 // Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
-const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
+const float kAiry = 0.2, kTorn = 0.12;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
@@ -51,14 +51,14 @@ const vec2 kFrothSun = vec2(0.0, 1.05);
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
 #else
-const float kAiry = 0.12, kTorn = 0.22;
+const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
-const float kWhiteness = 0.2;
+const float kWhiteness = 0.1;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
-const float kWhiteness = 0.4;
-const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before the white backdrop
+const float kWhiteness = 0.25;
+const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
@@ -261,6 +261,12 @@ void main() {
     length_m += down_m;
   }
 #else
+  // A sheet has parallel sides: it hardly turns what is seen through it.
+  float thin = is_floor ? 0.0 : 1.0 - smoothstep(4.0 * u_radius_m, 10.0 * u_radius_m, length_m);
+  if (thin > 0.0) {
+    leaving = normalize(mix(leaving, ray, thin));
+    past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
+  }
   // What stands in the liquid is seen through less of it.
   length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
 #endif
@@ -287,6 +293,8 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
   float at_sun = dot(mirrored, u_sun_direction);
+  // Where the water's level meets the glass it climbs, and mirrors the light from above.
+  if (is_pane) under = mix(under, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.7 * smoothstep(0.14, 0.03, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE

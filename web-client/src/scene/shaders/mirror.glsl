@@ -3,7 +3,12 @@
 uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
 uniform vec3 u_glow;
 // Share of the mirrored sky without single clouds: waves finer than the ripples blur them.
+#ifdef OPEN_SEA
 const float kVeiledShare = 0.7;
+#else
+const float kVeiledShare = 0.85;
+const vec3 kHedge = vec3(0.06, 0.11, 0.05);
+#endif
 
 // The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
 vec3 veiledSky(vec3 direction) {
@@ -11,7 +16,12 @@ vec3 veiledSky(vec3 direction) {
   sky = mix(u_veiled_sky[2], sky, smoothstep(-0.02, 0.20, direction.y));
   float toward_sun = max(dot(direction, u_sun_direction), 0.0);
   toward_sun *= toward_sun;
-  return sky + 0.08 * u_glow * toward_sun * toward_sun;
+  sky += 0.08 * u_glow * toward_sun * toward_sun;
+#ifndef OPEN_SEA
+  // The hedge around a pool.
+  sky = mix(kHedge * (u_ambient_up + 0.5 * u_sun_light), sky, smoothstep(0.05, 0.13, direction.y));
+#endif
+  return sky;
 }
 #endif
 

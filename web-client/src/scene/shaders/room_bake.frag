@@ -1,22 +1,42 @@
-// Bakes a photographer's studio into one face of the cube: a backdrop without seams that is white low behind the water and blue-grey above and at the
-// sides, and a soft box overhead. Against white one sees what water absorbs, and mirrored white beside grey gives its surface a shape.
+// Bakes the hall around a tank into one face of the cube: walls with tall windows behind the water and at its sides, a dim ceiling with a soft box,
+// and a dark floor. Through water one sees the windows' bars bent, and mirrored light beside dark gives its surface a shape.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;  // relative to noon
 layout(location = 0) out vec4 color;
 
-const vec3 kDark = vec3(0.02, 0.06, 0.11), kGrey = vec3(0.16, 0.30, 0.40), kWhite = vec3(0.95, 1.0, 1.0);
+// Half the hall along x and z and its height, seen from a place on its floor.
+const vec3 kHall = vec3(2.0, 1.05, 1.5);
+const vec3 kWall = vec3(0.25, 0.22, 0.19), kCeiling = vec3(0.11, 0.11, 0.11), kFloor = vec3(0.11, 0.085, 0.065), kDay = vec3(0.72, 0.84, 0.92);
+// Windows along a wall: distance, half width, sill and lintel; panes of a window along each side.
+const float kApart = 0.82, kHalfWidth = 0.29, kSill = 0.12, kLintel = 0.84;
+const vec2 kPanes = vec2(2.0, 4.0);
+
+float within(float at, float low, float high, float soft) { return smoothstep(low - soft, low + soft, at) * smoothstep(high + soft, high - soft, at); }
+
+// A wall at `along`, `high`: daylight in its windows.
+vec3 wallLight(float along, float high) {
+  float at = mod(along + 0.5 * kApart, kApart) - 0.5 * kApart;
+  float is_window = within(at, -kHalfWidth, kHalfWidth, 0.012) * within(high, kSill, kLintel, 0.012);
+  vec2 bar = 0.5 - abs(fract(vec2(at / (2.0 * kHalfWidth) + 0.5, (high - kSill) / (kLintel - kSill)) * kPanes) - 0.5);
+  bar *= vec2(2.0 * kHalfWidth, kLintel - kSill) / kPanes;
+  vec3 day = kDay * mix(0.75, 1.0, smoothstep(kSill, kLintel, high)) * mix(0.35, 1.0, smoothstep(0.003, 0.014, min(bar.x, bar.y)));
+  return mix(kWall * mix(0.7, 1.15, smoothstep(0.0, 0.5, high)), day, is_window);
+}
 
 void main() {
   vec3 to = normalize(v_direction);
-  float behind = 0.5 - 0.5 * to.z / max(length(to.xz), 1e-4);  // 1: behind the water in the usual view
-  // The pool of light on the backdrop; it spreads over the floor toward the eye.
-  float high = to.y < 0.0 ? -0.55 * to.y : to.y;
-  float lit = exp(-20.0 * high * high) * (0.15 + 0.85 * behind * behind * behind * behind);
-  vec3 light = mix(kDark, kGrey, smoothstep(0.0, 0.5, lit));
-  light = mix(light, kWhite, smoothstep(0.35, 1.0, lit));
+  // Polished, the floor mirrors the walls.
+  vec3 up = vec3(to.x, abs(to.y), to.z);
+  vec3 reach = kHall / max(abs(up), vec3(1e-4));
+  float away = min(reach.x, min(reach.y, reach.z));
+  vec3 at = up * away;
+  vec3 light = kCeiling;
+  if (away == reach.z) light = to.z < 0.0 ? wallLight(at.x, at.y) : 0.8 * kWall;
+  else if (away == reach.x) light = wallLight(at.z, at.y);
   // Overhead, and toward the back.
-  vec2 over = (to.xz + vec2(0.0, 0.25)) / max(to.y, 0.2);
-  light += vec3(2.0, 2.5, 2.9) * smoothstep(0.75, 0.45, abs(over.x)) * smoothstep(0.55, 0.3, abs(over.y)) * smoothstep(0.45, 0.6, to.y);
+  vec2 over = (up.xz + vec2(0.0, 0.25)) / max(up.y, 0.2);
+  light += vec3(2.0, 2.5, 2.9) * smoothstep(0.75, 0.45, abs(over.x)) * smoothstep(0.55, 0.3, abs(over.y)) * smoothstep(0.45, 0.6, up.y);
+  if (to.y < 0.0) light = mix(kFloor, light, 0.25 * exp(-6.0 * up.y));
   color = vec4(light * u_room_light, 1.0);
 }

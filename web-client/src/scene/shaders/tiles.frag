@@ -13,7 +13,6 @@
 in vec3 v_world;
 in vec3 v_normal;
 in vec4 v_color;
-uniform vec3 u_camera_m;
 #ifndef CAUSTICS
 uniform sampler2D u_field;
 #endif

@@ -1,4 +1,4 @@
-// A glass tank or flume before the backdrop of a studio, which is the cube map that stands for the sky (room_bake.frag).
+// A glass tank or flume on the floor of a hall, whose walls are the cube map that stands for the sky (room_bake.frag).
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
@@ -6,6 +6,7 @@ import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
+import { makeTiles } from "./tiles";
 
 /** Thickness of the glass and of the base: a share of the tank's size. */
 const kGlassThickness = 0.008;
@@ -14,11 +15,18 @@ const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
 /** The size of a long channel is this many of its shorter sides: its glass is not those of a wide tank. */
 const kSizeWidths = 6;
+/** Height of the plate under the tank, in thicknesses of the glass. */
+const kPlinth = 2.5;
 
-// Grain, as for other solids: 0 is paint, more is rough.
-/** What clear water shows where one looks down. */
-const kBase: Paint = [0.30, 0.62, 0.72, 0];
-const kBaseEdge: Paint = [0.10, 0.16, 0.22, 0];
+/** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
+const kTileShare = 1 / 24;
+const kSlabShare = 1 / 5;
+const kHallSides = 40;
+
+const kTile = [0.40, 0.48, 0.50] as const;
+const kSlab = [0.20, 0.125, 0.08] as const;
+/** Grain 0 is paint. */
+const kBase: Paint = [0.10, 0.13, 0.16, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
@@ -43,13 +51,15 @@ export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "wate
   return { sideM, widthM, heightM: depthM + freeboardM };
 }
 
-/** Four panes between four edges, without a frame or a rim that is seen: nothing stands before the water. The floor of the tank is at y = 0. */
+/** Four panes between four edges, with a rim. The floor of the tank is at y = 0. */
 export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferGeometry {
   const halfM = (kGlassThickness * sizeM({ sideM, widthM })) / 2;
   const builder = new MeshBuilder();
   const [hx, hz] = [sideM / 2, widthM / 2];
+  const railM = heightM - halfM;
   const upright = (xM: number, zM: number, halfX: number, halfZ: number, paint: Paint): void => {
-    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: heightM, halfX, halfZ }, paint);
+    builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: railM, halfX, halfZ }, paint);
+    builder.block(xM, zM, { yM: railM, halfX, halfZ }, { yM: heightM, halfX, halfZ }, kCutEdge);
   };
   for (const side of [-1, 1]) {
     // A gap to the water, whose sides would otherwise lie in the same planes.
@@ -65,18 +75,33 @@ export function makeBaseGeometry({ sideM, widthM }: TankSize): BufferGeometry {
   const thickM = kGlassThickness * sizeM({ sideM, widthM });
   const builder = new MeshBuilder();
   const [halfX, halfZ] = [sideM / 2 + thickM, widthM / 2 + thickM];
-  builder.block(0, 0, { yM: -thickM, halfX, halfZ }, { yM: -0.06 * thickM, halfX, halfZ }, kBaseEdge, kBase);
+  builder.block(0, 0, { yM: -kPlinth * thickM, halfX, halfZ }, { yM: -0.12 * thickM, halfX, halfZ }, kBase);
+  return builder.build();
+}
+
+/** The tiles on the plate, and the floor of the hall. */
+function makeFloorGeometry({ sideM, widthM }: TankSize): BufferGeometry {
+  const size = sizeM({ sideM, widthM });
+  const longM = Math.max(sideM, widthM);
+  const thickM = kGlassThickness * size;
+  const builder = new MeshBuilder();
+  const level = (x: number, yM: number, z: number, paint: Paint): void => void builder.quad([-x, yM, z], [x, yM, z], [x, yM, -z], [-x, yM, -z], paint);
+  level(sideM / 2, -0.06 * thickM, widthM / 2, [...kTile, (kTileShare * size) / longM]);
+  const hallM = kHallSides * longM;
+  level(hallM, -kPlinth * thickM, hallM, [...kSlab, (kSlabShare * size) / longM]);
   return builder.build();
 }
 
 export class GlassTank {
-  /** The base. */
+  /** What the tank stands on. */
   readonly group = new Group();
   readonly glass: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly floor: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly base: Mesh;
   private readonly uniforms: Uniforms;
 
-  constructor(greeting: GreetingInfo, { sky, solid, quality }: SurroundingsContext) {
+  constructor(greeting: GreetingInfo, context: SurroundingsContext) {
+    const { sky, solid, quality } = context;
     const size = tankSize(greeting);
     this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() }, u_half_m: { value: new Vector2(size.sideM / 2, size.widthM / 2) } };
     this.glass = new Mesh(
@@ -92,9 +117,10 @@ export class GlassTank {
       }),
     );
     this.base = new Mesh(makeBaseGeometry(size), solid);
-    for (const mesh of [this.glass, this.base]) mesh.frustumCulled = false;
+    this.floor = new Mesh(makeFloorGeometry(size), makeTiles(greeting, context));
+    for (const mesh of [this.glass, this.base, this.floor]) mesh.frustumCulled = false;
     castsShadow(this.base);
-    this.group.add(this.base);
+    this.group.add(this.base, this.floor);
     this.setFloorM(greeting.wave ? -greeting.waterExtents.depthM : 0);
   }
 
@@ -111,5 +137,7 @@ export class GlassTank {
     this.glass.geometry.dispose();
     this.glass.material.dispose();
     this.base.geometry.dispose();
+    this.floor.geometry.dispose();
+    this.floor.material.dispose();
   }
 }

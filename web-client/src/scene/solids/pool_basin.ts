@@ -1,11 +1,11 @@
 // A swimming pool: tiled floor and walls, a rim of stone, a deck of slabs, and a lawn with a hedge.
-import { Group, Mesh, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
+import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
-import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
+import { makeTiles } from "./tiles";
 
 /** Shares of the side: rim over the water, its width, the deck, and the lawn. */
 const kRimHeight = 0.026;
@@ -102,25 +102,13 @@ export class PoolBasin {
   readonly group = new Group();
   private readonly geometries: BasinGeometries;
   private readonly material: RawShaderMaterial;
-  private readonly uniforms: Uniforms;
 
-  constructor(greeting: GreetingInfo, { sky, field, caustics, shadow, solid, quality }: SurroundingsContext) {
+  constructor(greeting: GreetingInfo, context: SurroundingsContext) {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM);
-    this.uniforms = {
-      ...sky.uniforms,
-      ...caustics,
-      ...shadow,
-      u_camera_m: { value: new Vector3() },
-      u_field: { value: field ?? null },
-      u_extent_m: { value: new Vector2(sideM, widthM) },
-      u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
-      u_level_m: { value: 0 },
-      u_has_water: { value: field !== undefined },
-    };
-    this.material = makeMaterial("tiles", this.uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
-    for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, solid)]) {
+    this.material = makeTiles(greeting, context);
+    for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, context.solid)]) {
       mesh.frustumCulled = false;
       castsShadow(mesh);
       this.group.add(mesh);
@@ -130,10 +118,6 @@ export class PoolBasin {
 
   setFloorM(yM: number): void {
     this.group.position.y = yM;
-  }
-
-  look(cameraM: Vector3): void {
-    (this.uniforms["u_camera_m"]!.value as Vector3).copy(cameraM);
   }
 
   dispose(): void {

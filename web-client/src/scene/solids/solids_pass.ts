@@ -37,8 +37,8 @@ const kWetDepths = 0.08;
 const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
   openSea: [0.224, 0.205, 0.156],
   pool: [0.34, 0.63, 0.69],
-  glassTank: [0.02, 0.14, 0.28],
-  flume: [0.03, 0.17, 0.29],
+  glassTank: [0.40, 0.48, 0.50],
+  flume: [0.17, 0.19, 0.19],
 };
 
 /** Where a picture has the solids: in the textures, for passes that look through or around them, or on the canvas, for the display. */

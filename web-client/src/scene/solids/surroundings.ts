@@ -123,7 +123,6 @@ export class Surroundings {
   }
 
   look(cameraM: Vector3): void {
-    this.basin?.look(cameraM);
     this.tank?.look(cameraM);
   }
 
