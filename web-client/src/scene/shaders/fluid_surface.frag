@@ -43,7 +43,7 @@ const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
 // Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
-const float kAiry = 0.2, kTorn = 0.12;  // what is left of a clump are its drops
+const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
