@@ -125,10 +125,7 @@ class Server {
 
   void end() {
     ++pending_count_;
-    stream_.shutdown([this](error_code, std::size_t) {
-      answered();
-      stream_.close();
-    });
+    stream_.linger(boost::beast::role_type::server, [this](error_code, std::size_t) { answered(); });
   }
 
   net::Transport stream_;
