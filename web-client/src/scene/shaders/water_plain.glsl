@@ -90,6 +90,12 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   v_under.a = (passed.r + passed.g + passed.b) / 3.0 * (1.0 - undrawn);
   vec3 light = scattered * (1.0 - passed) + u_bed_light * (passed - v_under.a);
   v_under.rgb = toDisplay(max(light, 0.0) / max(1.0 - v_under.a, 0.02)) * (1.0 - v_under.a);
+#ifndef OPEN_SEA
+  // Without refraction, waves in clear water are seen by the sunlight that their curves focus and spread (thin lenses of index 1.33).
+  float focus = clamp(-0.25 * deep_m * curvature, -0.6, 0.6) * v_under.a;
+  v_under.rgb += max(focus, 0.0) * 0.5 * toDisplay(vec3(0.6, 0.9, 1.0) * u_water_light);
+  v_under.a += 0.6 * min(focus, 0.0);
+#endif
   float foam = foam_shade.r;
   v_foam_light = vec2(min(1.3 * foam * foam + 0.35 * foam, 0.92), 1.0 - 0.6 * foam_shade.g);
 }
