@@ -85,6 +85,7 @@ vec2 stripShare(int first, ivec2 n, int x, int z, int side) {
 void restrictToCoarse(int first, ivec2 n, ivec2 coarse_n) {
   const int coarse_right = first + n.x * n.y - textureSize(right_side);
   press(first, n);
+  // Not a constant, or Mesa repeats the body of the loop below four times.
   const int sides = 4 * min(int(grid_count), 1);
   FOR_EACH(k, coarse_n.x * coarse_n.y) {
     const int x = 2 * (k % coarse_n.x);

@@ -1,4 +1,4 @@
-// Groups particle indices by cell, in arrival order, and clears the counts of their cells for the next build: other cells have none.
+// Groups particle indices by cell, in arrival order, and clears the counts of their cells for the next build; those of empty cells are 0.
 // Reads CELL_ARRIVAL, CELL_START. Writes CELL_MEMBER, CELL_COUNT.
 #include "shared/groups.h"
 #include "shared/grid.h"

@@ -23,7 +23,7 @@
 #define PATCH_GROUP 8
 // One invocation per cell of a tile that splashes reach.
 #define SPLASH_TILE 8
-// The scan. An invocation sums a run of SCAN_ITEMS times four cells, without shared memory: barriers are expensive on llvmpipe. One
+// The scan. An invocation sums a run of SCAN_ITEMS groups of four cells, without shared memory: barriers are expensive on llvmpipe. One
 // group of SCAN_GROUP invocations sums the runs.
 #define SCAN_GROUP 256
 #ifndef SCAN_ITEMS

@@ -19,7 +19,8 @@
 // Cells in EMITTER that emit now.
 #define POOL_EMITTING 7
 // Arguments of indirect dispatches (three words each): over emitting cells, over particles, over grid cells, over scan
-// blocks, one group. All 0 while there is nothing to do. No pass runs over single grid cells any more; hashes of states have those words.
+// blocks, one group. All 0 while there is nothing to do. No pass uses those over grid cells; they are written because hashes of
+// states cover them.
 #define POOL_EMIT_ARGS 8
 #define POOL_PARTICLE_ARGS 11
 #define POOL_CELL_ARGS 14

@@ -78,7 +78,7 @@ part_tests() {
 }
 
 # The same scene twice, and with another order of the work groups: the states must be equal bit for bit. Where they are not,
-# the scene runs two times side by side, which names the first buffers that differ.
+# the scene runs two times side by side, which names the first buffers that differ. Its own test asks for fewer ticks.
 part_hash() {
   local scene file checks hashes equal=true ticks="${SPINDRIFT_HASH_TICKS:-200}"
   for scene in pool splash harbor flotsam; do

@@ -68,6 +68,7 @@ layout(location = 0) out vec4 color;
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
 const float kContactM = 0.8;
+// Foam of a crest spills down this far, m.
 const float kSpillM = 0.34;
 
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)

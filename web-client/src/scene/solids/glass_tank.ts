@@ -23,7 +23,8 @@ const kTileShare = 1 / 24;
 const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
-const kTile = [0.40, 0.48, 0.50] as const;
+/** Of the tiles in the tank, and of its floor where it is not on the screen. */
+export const kTankTile = [0.40, 0.48, 0.50] as const;
 const kSlab = [0.20, 0.125, 0.08] as const;
 /** Grain 0 is paint. */
 const kBase: Paint = [0.10, 0.13, 0.16, 0];
@@ -86,7 +87,7 @@ function makeFloorGeometry({ sideM, widthM }: TankSize): BufferGeometry {
   const thickM = kGlassThickness * size;
   const builder = new MeshBuilder();
   const level = (x: number, yM: number, z: number, paint: Paint): void => void builder.quad([-x, yM, z], [x, yM, z], [x, yM, -z], [-x, yM, -z], paint);
-  level(sideM / 2, -0.06 * thickM, widthM / 2, [...kTile, (kTileShare * size) / longM]);
+  level(sideM / 2, -0.06 * thickM, widthM / 2, [...kTankTile, (kTileShare * size) / longM]);
   const hallM = kHallSides * longM;
   level(hallM, -kPlinth * thickM, hallM, [...kSlab, (kSlabShare * size) / longM]);
   return builder.build();

@@ -17,6 +17,7 @@ import { Floaters } from "../floaters/floaters";
 import type { BodyPose } from "../../../client/codec/bodies";
 import type { FloaterPose } from "../../../client/codec/floaters";
 import type { StreamedFrames } from "../frames/streamed_frames";
+import { kTankBed } from "../landscape/landscape";
 import { bedOf } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
@@ -26,6 +27,7 @@ import { clamp } from "../maths/interpolate";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
+import { kTankTile } from "./glass_tank";
 import { isIndoors, Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
@@ -37,8 +39,8 @@ const kWetDepths = 0.08;
 const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
   openSea: [0.224, 0.205, 0.156],
   pool: [0.34, 0.63, 0.69],
-  glassTank: [0.40, 0.48, 0.50],
-  flume: [0.17, 0.19, 0.19],
+  glassTank: kTankTile,
+  flume: kTankBed,
 };
 
 /** Where a picture has the solids: in the textures, for passes that look through or around them, or on the canvas, for the display. */

@@ -30,6 +30,7 @@ export interface Birth {
 
 /** Floats of one particle for the GPU: position (m), kind + share of its life that has passed, velocity (m/s), radius (m). */
 export const kFloatsPerParticle = 8;
+/** Hulls that are drawn behind the particles (whitewater_pass.ts). */
 export const kMostHulls = 64;
 
 /** A drop loses speed against the air at this rate (1/s) per m/s, scaled to a drop of 1 cm: drag grows as the drop becomes smaller. */

@@ -1,5 +1,6 @@
 // Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
-// from above: 0 none, 1 white; u along x, v along z. Its second channel is of the flat shadows (shadows/flat_shadow_pass.ts).
+// from above: 0 none, 1 white; u along x, v along z. Its second channel is the light that
+// hulls take from the water beside them, and of the flat shadows (shadows/flat_shadow_pass.ts).
 import { AddEquation, CustomBlending, OneFactor, RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";

@@ -1,6 +1,6 @@
 // Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, and where the surface rises against rocks
-// and breakwaters. Every source adds a mean number per second and area, length or particle, so that the
-// picture does not depend on the rates of frames and pictures. Pure: no renderer.
+// and breakwaters. Every source adds a mean number per second and area or length, so that the picture does not depend on the rates of
+// frames and pictures. Pure: no renderer.
 import type { BoatDetail } from "../../../client/codec/greeting";
 import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import type { FoamFrame } from "../../net/messages";
@@ -28,13 +28,13 @@ const spread = (random: () => number, by: number): number => by * (2 * random() 
 const kMistShare = 0.1;
 
 /** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
-function dropRadiusM(random: () => number, mistShare: number): number {
+function dropRadiusM(random: () => number): number {
   const u = random();
-  return u < mistShare ? 0.06 + 0.08 * random() : 0.004 + 0.016 * u * u * u;
+  return u < kMistShare ? 0.06 + 0.08 * random() : 0.004 + 0.016 * u * u * u;
 }
 
-function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number, mistShare = kMistShare): Birth {
-  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random, mistShare), lifeS: 1 + 1.5 * random() };
+function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
+  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random), lifeS: 1 + 1.5 * random() };
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {

@@ -26,7 +26,7 @@ struct TuningProfile {
   std::uint32_t particle_group = PARTICLE_GROUP;          ///< particles of a work group
   std::uint32_t wave_group_x = WAVE_GROUP_X;              ///< wave cells of a work group along x
   std::uint32_t wave_group_y = WAVE_GROUP_Y;              ///< and along z
-  std::uint32_t scan_items = SCAN_ITEMS;                  ///< fours of grid cells per invocation of the prefix sum
+  std::uint32_t scan_items = SCAN_ITEMS;                  ///< groups of four grid cells per scan invocation
   std::uint32_t reduce_items = REDUCE_ITEMS;              ///< values per invocation of the diagnostics
   std::uint32_t dispersion_columns = DISPERSION_COLUMNS;  ///< columns per invocation of the dispersion's passes
   std::uint32_t dispersion_strip = DISPERSION_STRIP;      ///< and rows of each
