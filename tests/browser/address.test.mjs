@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { cameraAtRest, launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { startPathProxy } from "./path_proxy.mjs";
 import { repository, startServer } from "./server.mjs";
 import { panelsShown } from "./two_people.mjs";
@@ -68,6 +68,7 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     for (let k = 0; k < 20; ++k) await page.keyboard.press("Shift+ArrowLeft");
     await page.getByTestId("light").selectOption("golden hour");
     await page.waitForURL(/camera=/, { timeout: WAIT_MS });
+    await cameraAtRest(page);
     await sleep(2000);
     const { searchParams } = new URL(page.url());
     assert.equal(searchParams.get("light"), "golden-hour");
@@ -78,7 +79,7 @@ describe("the page's address", { skip, concurrency: 1 }, () => {
     await open(address);
     await waitFor(page, "frames", isLive);
     await waitFor(page, "the camera of the address", (stats) => stats.view === null);
-    await sleep(1000);
+    await cameraAtRest(page);
     const again = await pixels();
     shown.flat().forEach((px, k) => assert.ok(Math.abs(px - again.flat()[k]) < 2, `${JSON.stringify(shown)}, then ${JSON.stringify(again)}`));
     assert.equal(await page.getByTestId("light").inputValue(), "golden hour");

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
+import { cameraAtRest, launch, skip, until, WAIT_MS } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
 
 const slow = { timeout: 8 * WAIT_MS };
@@ -66,7 +66,7 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     const first = await pixel();
     await whenThere("the camera to move", pixel, ([x, y]) => Math.hypot(x - first[0], y - first[1]) > 5);
     await page.emulateMedia({ reducedMotion: "reduce" });
-    await sleep(500);
+    await cameraAtRest(page);
     const still = await pixel();
     for (let k = 0; k < 5; ++k) {
       await sleep(200);

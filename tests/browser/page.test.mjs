@@ -9,7 +9,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 
 import { chromium } from "playwright-core";
 
-import { executable, kChromiumArgs, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { cameraAtRest, executable, kChromiumArgs, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { focusLight } from "./caustics.mjs";
 import { unfolded } from "./panel.mjs";
 import { brightnessAt, colourAt, measure, measureBody, shootWater } from "./pixels.mjs";
@@ -63,6 +63,16 @@ async function acknowledged(target, press) {
 async function stillWater(target) {
   await acknowledged(target, () => target.getByTestId("reset").click());
   await waitFor(target, "still water", (stats) => stats.maxElevationM - stats.minElevationM < 0.02);
+}
+
+/** Simulates so many ticks of the paused room. */
+async function stepped(tick_count) {
+  const answer = await fetch(`${server.url}api/v1/rooms/main/commands`, {
+    method: "POST",
+    headers: { "Content-Type": "application/json" },
+    body: JSON.stringify({ step: { tick_count } }),
+  });
+  assert.equal(answer.status, 200, await answer.text());
 }
 
 /** Waits until pictures were drawn for this long, and three more. */
@@ -140,25 +150,24 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
 
   step("splashes at a click on the water, and surface and picture change", async () => {
     await stillWater(page);
+    // The water stands while it is looked at: a running ring is as wide as the machine is slow.
+    await acknowledged(page, () => page.getByTestId("pause").click());
     await newestIsDrawn(page);
     const before_click = await shootWater(page);
     const box = await page.locator("canvas").first().boundingBox();
     // A finger's ring would hardly be seen in this quality.
     await page.getByTestId("tool-splash").click();
     await acknowledged(page, () => page.mouse.click(box.x + box.width * 0.5, box.y + box.height * 0.55));
+    await stepped(40);
     const clicked = await waitFor(page, "the surface to move", (stats) => stats.maxElevationM - stats.minElevationM > 0.1);
     assert.equal(clicked.view, "start");
-    // The dent is a few pixels wide at first.
-    await waitFor(page, "the ring to spread", (stats) => stats.simTime > clicked.simTime + 0.3);
-    // Later it would have left the part that is compared: a picture can take seconds.
-    await acknowledged(page, () => page.getByTestId("pause").click());
     await newestIsDrawn(page);
     const picture = await measure(page, before_click, await shootWater(page));
     await acknowledged(page, () => page.getByTestId("pause").click());
     await page.getByTestId("tool-finger").click();
     // A picture of this run for the report.
     await page.screenshot({ path: join(repository, "build/reports/browser-splash.png"), timeout: 2 * WAIT_MS });
-    assert.ok(picture.changed_ratio > 0.005, `${(100 * picture.changed_ratio).toFixed(2)} % of the pixels changed`);
+    assert.ok(picture.changed_ratio > 0.02, `${(100 * picture.changed_ratio).toFixed(2)} % of the pixels changed`);
   });
 
   step("splashes and makes a breaking wave when the buttons are pressed", async () => {
@@ -369,10 +378,10 @@ describe("the page in Chromium", { concurrency: 1 }, () => {
     await waitFor(sea, "the waves to travel in", (stats) => stats.simTime > 8);
     // From farther above, so that the sides are in the picture.
     await sea.getByTestId("view-overview").click();
-    await sleep(3000);
+    await cameraAtRest(sea);
     await sea.mouse.move(300, 400);
     for (let turn = 0; turn < 4; ++turn) await sea.mouse.wheel(0, 300);
-    await sleep(3000);
+    await cameraAtRest(sea);
     const kHalfM = 12;
     const kApartM = 0.6;
     // Pairs of points on both sides of lines parallel to the far and to the left side, at several distances from the middle.

@@ -3,7 +3,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { cameraAtRest, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, twoPeople } from "./two_people.mjs";
@@ -170,7 +170,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await waitFor(desk, "the sound to change", (stats) => stats.sound.isOn !== sound.isOn);
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", (stats) => stats.view === "start");
-    await sleep(1200);
+    await cameraAtRest(desk);
     // A press of a slow page is a long one, with which a finger would draw.
     await desk.getByTestId("tool-splash").click();
     await press(0);
@@ -217,7 +217,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await desk.evaluate(() => (navigator.getGamepads = () => []));
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", (stats) => stats.view === "start");
-    await sleep(1200);
+    await cameraAtRest(desk);
   });
 
   it("draws with Enter and the arrow keys, and zooms with plus", async () => {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { cameraAtRest, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
@@ -93,14 +93,14 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     await stillWater(desk);
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", ({ view }) => view === "start");
-    await sleep(1200);
+    await cameraAtRest(desk);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]], "right");
     await desk.mouse.up({ button: "right" });
     const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
     assert.equal(turned.dents, 0);
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", ({ view }) => view === "start");
-    await sleep(1200);
+    await cameraAtRest(desk);
     await desk.mouse.move(12, 300);
     await desk.mouse.down();
     await desk.mouse.move(80, 300, { steps: 5 });
@@ -112,7 +112,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     await (await unfolded(desk.getByTestId("drag"))).selectOption("turn");
     await desk.getByTestId("view-start").click();
     await waitFor(desk, "the view", ({ view }) => view === "start");
-    await sleep(1200);
+    await cameraAtRest(desk);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]]);
     await desk.mouse.up();
     const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
@@ -143,12 +143,12 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
       await drag(desk, [[0, 0]]);
       await sleep(heldMs);
       await desk.mouse.up();
-      let lowestM = 0;
-      for (const endMs = Date.now() + 1500; Date.now() < endMs; await sleep(20)) {
-        const { minElevationM } = await desk.evaluate(() => window.spindrift.stats());
-        lowestM = Math.min(lowestM, minElevationM);
-      }
-      return lowestM;
+      return desk.evaluate(async () => {
+        let lowestM = 0;
+        for (const endS = window.spindrift.stats().simTime + 1.5; window.spindrift.stats().simTime < endS; await new Promise((done) => requestAnimationFrame(done)))
+          lowestM = Math.min(lowestM, window.spindrift.stats().minElevationM);
+        return lowestM;
+      });
     };
     await desk.keyboard.press("2");
     assert.equal(await desk.getByTestId("tool-splash").getAttribute("aria-pressed"), "true");
@@ -190,9 +190,19 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     assert.equal(await desk.getByTestId("tool-finger").getAttribute("aria-pressed"), "true");
     // Where pictures are slow this press is a long one: a finger would draw then, and a splash is a splash however long it is held.
     await press(5);
-    await desk.evaluate(() => (window.pad.axes[0] = 0.5));
-    await sleep(500);
-    await desk.evaluate(() => (window.pad.axes[0] = 0));
+    // The cursor moves by the pictures' time: the stick is held until it is there.
+    await desk.evaluate(() =>
+      new Promise((done) => {
+        const fromPx = window.innerWidth / 2;
+        window.addEventListener("pointermove", function moved({ clientX }) {
+          if (clientX < fromPx + 80) return;
+          window.removeEventListener("pointermove", moved);
+          window.pad.axes[0] = 0;
+          done();
+        });
+        window.pad.axes[0] = 0.5;
+      }),
+    );
     const moved = await acked("the splash of the gamepad", () => press(0));
     assert.equal(moved.case, "splash");
     assert.ok(Math.abs(moved.value.xM - middle.value.xM) > 0.1, "the cursor moved");
