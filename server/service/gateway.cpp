@@ -3,6 +3,8 @@
 #include <spindrift/service/stream_index.h>
 #include <spindrift/wire/server_message.h>
 
+#include "greeting.h"
+
 namespace spindrift::service {
 namespace {
 
@@ -46,9 +48,9 @@ Gateway::Gateway(AccessOptions access, const SessionRules& rules, const MetricsS
     : access_(std::move(access)),
       sessions_(rules, access_, counters_),
       recordings_(std::move(recordings),
-                  [this](const std::shared_ptr<rooms::Room>& room) {
+                  [this, rules](const std::shared_ptr<rooms::Room>& room) {
                     const LocalRoom venue(room, simulation(), sessions_);
-                    return sessions_.greetingOf(venue, *venue.view(), 0);
+                    return greetingOf(venue, *venue.view(), 0, rules);
                   }),
       rest_(
           access_, counters_, sources, recordings_, [this](const rooms::Room& room) { sessions_.dismiss(room.name()); },

@@ -43,9 +43,6 @@ class Sessions {
   void levelChanged(net::SessionId session, core::Level level);
   void closed(net::SessionId session, const net::SessionEnd& end);
 
-  /// Returns the greeting that a session gets now.
-  [[nodiscard]] core::SharedBytes greetingOf(const Venue& venue, const VenueView& view, net::SessionId session) const;
-
   // From the rooms.
   /// Sends a new greeting to the sessions of a room that has another scene, or can be reached again. Their
   /// subscriptions stay valid.
