@@ -56,6 +56,14 @@ describe("the automatic quality", () => {
     draw(governor, 80, 20_000);
     expect(governor.tier).toBe("minimal");
     expect(draw(governor, 80, 60_000)).toBe(0);
+    expect(governor.resolutionShare).toBe(1);
+  });
+
+  it("gives up sharpness of the lowest tier only for ten pictures per second", () => {
+    const governor = new QualityGovernor("high", "automatic");
+    draw(governor, (tier) => (tier === "minimal" ? 120 : 3000), 60_000);
+    expect([governor.tier, governor.resolutionShare]).toEqual(["minimal", 0.75]);
+    expect(draw(governor, 200, 60_000)).toBe(0);
   });
 
   it("lowers the resolution before it lowers the tier", () => {

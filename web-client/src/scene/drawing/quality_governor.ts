@@ -9,10 +9,10 @@ interface Rung {
 }
 
 /** From the cheapest to the most expensive; within a tier resolution comes before everything else. */
-const kRungs: readonly Rung[] = kTierNames.flatMap((tier) => (tier === "minimal" ? [1] : [0.75, 1]).map((resolutionShare) => ({ tier, resolutionShare })));
+const kRungs: readonly Rung[] = kTierNames.flatMap((tier) => [0.75, 1].map((resolutionShare) => ({ tier, resolutionShare })));
 
-/** Time between pictures that is too slow: at least 28 pictures per second where hardware can be expected, 20 elsewhere. */
-const kSlowMs: Record<TierName, number> = { minimal: 50, low: 50, medium: 36, high: 36, highest: 36 };
+/** Time between pictures that is too slow: at least 28 pictures per second where hardware can be expected, 20 elsewhere; for less sharpness than `minimal` has, 10. */
+const kSlowMs: Record<TierName, number> = { minimal: 100, low: 50, medium: 36, high: 36, highest: 36 };
 const kFastMs = 20;
 const kSlowForMs = 1500;
 const kFastForMs = 10_000;
@@ -98,7 +98,8 @@ export class QualityGovernor {
     const [, rungs] = kFalls.find(([times]) => timesTooSlow >= times)!;
     this.notBeforeMs[this.rung] = this.elapsedMs + this.waitMs[this.rung]!;
     this.waitMs[this.rung]! *= 2;
-    this.moveTo(Math.max(this.rung - rungs, 0));
+    // Only pictures that are too slow at `minimal` itself lead below its resolution.
+    this.moveTo(Math.max(this.rung - rungs, Math.min(this.rung - 1, rungOf("minimal"))));
     return true;
   }
 
