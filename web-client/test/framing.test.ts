@@ -117,7 +117,7 @@ describe("a view of the water", () => {
 });
 
 describe("the first view of a scene", () => {
-  const first = { xM: 3, zM: -2, acrossM: 12, awayM: 6, headingRad: 0.7, pitchRad: 0.3, hour: 12 };
+  const first = { xM: 3, zM: -2, acrossM: 12, awayM: 6, headingRad: 0.7, pitchRad: 0.3, hour: 12, subjectRightM: 2 };
   const water = { sideM: 40, minYM: -1, maxYM: 1 };
 
   it("looks along its heading and down by its pitch, at its rectangle", () => {
@@ -136,6 +136,9 @@ describe("the first view of a scene", () => {
   it("is shorter and steeper in a tall free part, and as wide as the setting where it names no size", () => {
     const tall = firstView(water, first, { across: 0.4, up: 1 });
     expect(tall.box.widthM).toBeLessThan(8);
+    // On its subject, 2 m to the right across the heading.
+    expect(tall.box.centreM!.x).toBeCloseTo(3 - 2 * Math.sin(0.7), 12);
+    expect(tall.box.centreM!.z).toBeCloseTo(-2 + 2 * Math.cos(0.7), 12);
     expect(Math.asin(tall.backward.y)).toBeGreaterThan(0.4);
     expect(firstView(water, { ...first, acrossM: 0, awayM: 0 }, { across: 2, up: 1 }).box).toMatchObject({ sideM: 40, widthM: 40 });
   });

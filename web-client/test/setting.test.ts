@@ -55,7 +55,7 @@ describe("the water", () => {
 describe("the first view", () => {
   it("is that of the scene in radians, with the defaults of the server's rules", () => {
     expect(readFirstView(create(SceneSchema, { wave: sized }))).toBeUndefined();
-    expect(readFirstView(create(SceneSchema, { firstView: { xM: 2, headingDeg: 180, hour: 16 } }))).toEqual({ xM: 2, zM: 0, acrossM: 0, awayM: 0, headingRad: Math.PI, pitchRad: (22 * Math.PI) / 180, hour: 16 });
+    expect(readFirstView(create(SceneSchema, { firstView: { xM: 2, headingDeg: 180, hour: 16 } }))).toEqual({ xM: 2, zM: 0, acrossM: 0, awayM: 0, headingRad: Math.PI, pitchRad: (22 * Math.PI) / 180, hour: 16, subjectRightM: 0 });
   });
 
   it("is left out where its numbers cannot be drawn", () => {

@@ -22,7 +22,7 @@ describe("names of the sides of the water", () => {
   });
 
   it("follow the direction in which the scene is seen first", () => {
-    const firstView = { xM: 0, zM: 0, acrossM: 0, awayM: 0, headingRad: (170 * Math.PI) / 180, pitchRad: 0.3, hour: 12 };
+    const firstView = { xM: 0, zM: 0, acrossM: 0, awayM: 0, headingRad: (170 * Math.PI) / 180, pitchRad: 0.3, hour: 12, subjectRightM: 0 };
     expect(named({ wave: undefined, beaches: [], setting: "pool", firstView })).toEqual(["near side: wall", "far side: wall", "left side: wall", "right side: wall"]);
   });
 });

@@ -150,14 +150,16 @@ export interface FirstViewInfo {
   pitchRad: number;
   /** Hour of the light. */
   hour: number;
+  /** What the view is about, to the right of the rectangle's middle. */
+  subjectRightM: number;
 }
 
 /** Returns the first view of a scene; undefined without one, or with numbers that cannot be drawn. */
 export function readFirstView({ firstView }: Scene): FirstViewInfo | undefined {
   if (!firstView) return undefined;
-  const { xM = 0, zM = 0, acrossM = 0, awayM = 0, headingDeg = -90, pitchDeg = 22, hour = 12 } = firstView;
-  const isDrawable = [xM, zM, headingDeg].every(Number.isFinite) && [acrossM, awayM].every((sizeM) => sizeM >= 0 && sizeM <= 1e6) && pitchDeg > 0 && pitchDeg < 90 && hour >= 0 && hour <= 24;
-  return isDrawable ? { xM, zM, acrossM, awayM, headingRad: (headingDeg * Math.PI) / 180, pitchRad: (pitchDeg * Math.PI) / 180, hour } : undefined;
+  const { xM = 0, zM = 0, acrossM = 0, awayM = 0, headingDeg = -90, pitchDeg = 22, hour = 12, subjectRightM = 0 } = firstView;
+  const isDrawable = [xM, zM, headingDeg, subjectRightM].every(Number.isFinite) && [acrossM, awayM].every((sizeM) => sizeM >= 0 && sizeM <= 1e6) && pitchDeg > 0 && pitchDeg < 90 && hour >= 0 && hour <= 24;
+  return isDrawable ? { xM, zM, acrossM, awayM, headingRad: (headingDeg * Math.PI) / 180, pitchRad: (pitchDeg * Math.PI) / 180, hour, subjectRightM } : undefined;
 }
 
 /** Returns whether closed sides without a beach are rocky shores: beside a beach, quays look like those of a canal. */

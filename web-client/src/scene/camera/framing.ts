@@ -86,7 +86,7 @@ export function focusBox(box: ViewedBox, tangents: { across: number; up: number 
   return { ...box, sideM: share * box.sideM, widthM: share * widthM, centreM };
 }
 
-/** In a tall free part, a scene's first view shows this share of its side across, and looks down with this multiple of its slope. */
+/** In a tall free part, a scene's first view shows this share of its side across, around its subject, and looks down with this multiple of its slope. */
 const kFirstTall = { across: 0.55, slope: 1.5 };
 /** Depth of water that it shows, as a share of its side across. */
 const kFirstDepth = 0.3;
@@ -96,13 +96,15 @@ export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { acro
   const tall = tallness(tangents);
   const whole = focusBox(box, tangents);
   const acrossM = first.acrossM > 0 ? first.acrossM * (1 + (kFirstTall.across - 1) * tall) : Math.max(whole.sideM, whole.widthM ?? 0);
-  const { headingRad, xM, zM } = first;
+  const { headingRad } = first;
+  const rightM = tall * first.subjectRightM;
+  const centreM = { x: first.xM - rightM * Math.sin(headingRad), z: first.zM + rightM * Math.cos(headingRad) };
   const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.slope - 1) * tall));
   // A part of wide water is seen without its floor.
   const minYM = box.showsFloor ? box.minYM : Math.max(box.minYM, -kFirstDepth * acrossM);
   const { maxYM } = box;
   return {
-    box: { sideM: first.awayM || acrossM, widthM: acrossM, minYM, maxYM, centreM: { x: xM, z: zM }, turnRad: headingRad },
+    box: { sideM: first.awayM || acrossM, widthM: acrossM, minYM, maxYM, centreM, turnRad: headingRad },
     backward: new Vector3(-Math.cos(headingRad) * Math.cos(pitchRad), Math.sin(pitchRad), -Math.sin(headingRad) * Math.cos(pitchRad)),
   };
 }
