@@ -71,7 +71,7 @@ describe("pictures of the shipped scenes", { concurrency: 1, skip }, () => {
       let without = same;
       for (const deadlineMs = Date.now() + kWaitMs / 4; without.equals(same) && Date.now() < deadlineMs; ) without = await page.picture(kFile);
       changed["a boat less"] = without;
-      await page.showTo(shot.tick + 6, 6);
+      await page.followTo(shot.tick + 6, 6);
       changed["6 ticks later"] = await page.picture(kFile);
       for (const [what, file] of Object.entries(changed)) {
         const difference = await compare(scratch, same, file);

@@ -46,11 +46,11 @@ describe("wet sand", { concurrency: 1, skip }, () => {
       const page = await DrivenPage.open(await browser.newContext(), { scene: join(repository, "tests/browser/shore.textproto"), quality, size });
       try {
         await page.look({ eyeM: [3, 4, 4], targetM: [4, 0, 0] });
-        await page.showTo(kBeforeTick, kStride);
+        await page.followTo(kBeforeTick, kStride);
         const untouched = await page.picture();
         let pairs = [];
         for (let tick = kBeforeTick + kStride; pairs.length < kLeastPairs && tick <= kLastTick; tick += kStride) {
-          await page.showTo(tick, kStride);
+          await page.followTo(tick, kStride);
           pairs = await pairsOn(page);
         }
         assert.ok(pairs.length >= kLeastPairs, `${pairs.length} pairs of wet and dry sand until tick ${kLastTick}`);

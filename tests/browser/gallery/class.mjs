@@ -28,7 +28,6 @@ async function play(page, crowd, seconds) {
     crowd.play();
     await sleep(kLinkMs);
     await page.goOn(kStride);
-    await page.showShown();
   }
 }
 

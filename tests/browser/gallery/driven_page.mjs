@@ -9,7 +9,7 @@ export const kTickRateHz = 60;
 const kWaitMs = 180_000;
 /** Most ticks of one command. */
 const kStepMaxTicks = 600;
-/** Pictures that are not kept only move the white water on. They are small, because they cost by the pixel. */
+/** Pictures that are not kept are small, because they cost by the pixel. */
 const kSmallWidthPx = 64;
 /** A light fades within 1.2 s of the pictures' clock. */
 const kFadeS = 2;
@@ -110,46 +110,39 @@ export class DrivenPage {
 
   /** Simulates up to `tick` without pictures. */
   async skipTo(tick) {
-    while (this.#tick < tick) await this.#advance(Math.min(tick - this.#tick, kStepMaxTicks), 0, false);
+    while (this.#tick < tick) await this.#advance(Math.min(tick - this.#tick, kStepMaxTicks), 0);
   }
 
   /**
-   * Shows every tick up to `tick` that is a multiple of `stride` after the last one, in small pictures, so that the white water is there.
+   * Takes every tick up to `tick` that is a multiple of `stride` after the last one, so that white water and wet ground are there.
    * The page is one stride behind the newest frames: rates of change need the frame before and the one after.
    */
-  async showTo(tick, stride) {
+  async followTo(tick, stride) {
     const count = (tick + stride - this.#tick) / stride;
     if (count <= 0) return;
     assert.ok(Number.isInteger(count), `tick ${tick} is not a multiple of ${stride} after ${this.#tick}`);
-    await this.#resize(true);
-    for (let i = 0; i < count; ++i) await this.#advance(stride, stride, true);
+    for (let i = 0; i < count; ++i) await this.goOn(stride);
   }
 
-  /** Draws the shown tick in a small picture. */
-  async showShown() {
-    await this.#resize(true);
-    await this.#page.evaluate((timeS) => window.spindrift.stepped.draw(timeS), this.#shownTick / kTickRateHz);
-  }
-
-  /** Continues by `stride` ticks without drawing; picture() draws. */
+  /** Continues by `stride` ticks; picture() draws. */
   async goOn(stride) {
-    await this.#advance(stride, stride, false);
+    await this.#advance(stride, stride);
   }
 
-  /** Simulates `count` ticks, takes their last frames, and shows the water `behind` ticks before them. */
-  async #advance(count, behind, isDrawn) {
+  /** Simulates `count` ticks, takes their last frames, and, with `behind`, follows the water so many ticks before them. */
+  async #advance(count, behind) {
     this.#tick += count;
     this.#shownTick = this.#tick - behind;
     await within(
       this.#page.evaluate(
-        async ({ ticks, timeS, shownS, draws }) => {
+        async ({ ticks, timeS, shownS, remembers }) => {
           const { stepped } = window.spindrift;
           const frames = stepped.take(timeS);
           await window.command({ step: { tick_count: ticks } });
           await frames;
-          if (draws) stepped.draw(shownS);
+          if (remembers) stepped.remember(shownS);
         },
-        { ticks: count, timeS: this.#tick / kTickRateHz, shownS: this.#shownTick / kTickRateHz, draws: isDrawn },
+        { ticks: count, timeS: this.#tick / kTickRateHz, shownS: this.#shownTick / kTickRateHz, remembers: behind > 0 },
       ),
       `the frames of tick ${this.#tick}`,
     );

@@ -119,14 +119,13 @@ async function shootSegment(context, { size, quality, ticksPerPicture: stride },
     const before = startTick - stride;
     await page.skipTo(before % stride);
     await page.skipTo(Math.max(before - kHistoryTicks + (kHistoryTicks % stride), before % stride));
-    if (before > 0) await page.showTo(before, stride);
+    if (before > 0) await page.followTo(before, stride);
     else await page.skipTo(stride);
     const last = paths.findLastIndex((path) => !existsSync(path));
     for (const [n, path] of paths.slice(0, last + 1).entries()) {
       for (const { action } of commands.filter(({ atPicture }) => atPicture === n)) await page.command(action);
-      // The water continues in small pictures where this one is there already.
       if (existsSync(path)) {
-        await page.showTo(startTick + n * stride, stride);
+        await page.followTo(startTick + n * stride, stride);
         continue;
       }
       await page.goOn(stride);

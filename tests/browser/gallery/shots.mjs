@@ -66,7 +66,7 @@ export const shotOf = (scene) => kShots[scene] ?? kDefault;
 export async function setUp(page, { tick, historyTicks = kHistoryTicks }) {
   await page.skipTo(tick % kStride);
   await page.skipTo(Math.max(tick - historyTicks, tick % kStride));
-  await page.showTo(tick, kStride);
+  await page.followTo(tick, kStride);
 }
 
 /** These are shown in every light, the others in the light of their first view. */

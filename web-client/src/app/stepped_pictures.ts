@@ -44,6 +44,13 @@ export class SteppedPictures {
     display.draw();
   }
 
+  /** Lets white water and wet ground become what they are at a time, without a picture. */
+  remember(timeS: number): void {
+    const { scene } = this.app.display;
+    scene.clock.hold(timeS);
+    scene.remember(nowS());
+  }
+
   /** Places the camera. */
   look(eyeM: Point, targetM: Point): void {
     this.app.display.views.place(eyeM, targetM);

@@ -151,6 +151,12 @@ export class WaterScene {
     this.lookRoom?.measure(nowS);
   }
 
+  /** Takes over from the picture of this time, without drawing it, what later pictures need of it. */
+  remember(nowS: number): void {
+    this.picture.shownS = this.clock.displayTimeS(nowS);
+    for (const pass of this.passes) pass.remember?.(this.picture);
+  }
+
   /** The look shown: the wanted one, or the natural one where the room lacks its data. */
   get look(): LookName {
     return this.greeting && looksOf(this.greeting).includes(this.wantedLook) ? this.wantedLook : "natural";

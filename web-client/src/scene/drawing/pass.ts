@@ -53,5 +53,7 @@ export interface Pass {
   readonly reads: readonly Resource[];
   readonly writes: readonly Resource[];
   draw(picture: Picture): void;
+  /** Takes over from a picture, without drawing it, what later pictures need of it; left out where they need nothing. */
+  remember?(picture: Picture): void;
   dispose(): void;
 }

@@ -52,13 +52,18 @@ export class ShorePass implements Pass {
     );
   }
 
-  draw({ renderer, shownS }: Picture): void {
-    const between = shownS === undefined ? undefined : this.frames.surfaces.around(shownS);
-    if (between) this.follow(between.from, between.to, between.mix);
+  draw(picture: Picture): void {
+    const { renderer } = picture;
+    this.remember(picture);
     const { width, height, counts } = this.field.sizes;
     this.target.setSize(width, height);
     this.cellsPerTexel.set(counts.resolutionCount / width, counts.countZ / height);
     this.screen.render(renderer, this.target);
+  }
+
+  remember({ shownS }: Picture): void {
+    const between = shownS === undefined ? undefined : this.frames.surfaces.around(shownS);
+    if (between) this.follow(between.from, between.to, between.mix);
   }
 
   dispose(): void {

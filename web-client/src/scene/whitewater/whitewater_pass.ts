@@ -43,13 +43,23 @@ export class WhitewaterPass implements Pass {
   }
 
   draw({ shownS }: Picture): void {
+    this.follow(shownS);
+    this.points.upload(this.particles.count + this.placeHulls());
+  }
+
+  remember({ shownS }: Picture): void {
+    this.solids.place(shownS);
+    this.follow(shownS);
+  }
+
+  /** Brings the white water to a time. */
+  private follow(shownS: number | undefined): void {
     const surfaces = shownS === undefined ? undefined : this.frames.surfaces.around(shownS);
     if (!surfaces) return;
     const stepS = shownS! - (this.lastS ?? shownS!);
     this.lastS = shownS;
     if (stepS < 0 || stepS > kGapS) this.particles.clear();
     else if (stepS > 0) this.advance(shownS!, Math.min(stepS, kLongestS), new MovingSurface(surfaces));
-    this.points.upload(this.particles.count + this.placeHulls());
   }
 
   /** Writes the boats behind the particles, for the foam and the shade around their hulls (whitewater.vert). Returns how many. */
