@@ -47,5 +47,6 @@ export default defineConfig({
     host: "127.0.0.1",
     proxy: { "/ws": { target: server, ws: true }, "/api": server },
   },
-  test: { include: ["test/**/*.test.ts"], environment: "node" },
+  // A limit for tests that hang, not a measure of a busy machine.
+  test: { include: ["test/**/*.test.ts"], environment: "node", testTimeout: 120_000 },
 });

@@ -5,7 +5,7 @@
 
 namespace spindrift::service {
 
-/// Of subscriptions.
+/// The most that a subscription gets.
 constexpr double kFrameRateMax_hz = 60.0;
 
 /// Returns the greeting of a room as it is in `view`. `session`: 0 in a recording.
