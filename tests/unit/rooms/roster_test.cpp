@@ -81,6 +81,21 @@ TEST_F(RosterTest, APersonWithAGaugeIsKeptForTheGraceTime) {
   EXPECT_FALSE(roster.isHere(ada.person_id));
 }
 
+TEST_F(RosterTest, APersonInATeamComesBackIntoIt) {
+  const Admission ada = arrive(7);
+  arrive(8);
+  v1::Lesson teams;
+  teams.set_teams(true);
+  roster.setLesson(teams);
+  const v1::Team team = roster.people().people(0).team();
+  ASSERT_NE(team, v1::TEAM_UNSPECIFIED);
+  roster.leave(7, now);
+  arrive(9);  // does not get the place that is kept
+  EXPECT_TRUE(arrive(10, "", ada.resume_key).resumed);
+  EXPECT_EQ(roster.people().people(0).person_id(), ada.person_id);
+  EXPECT_EQ(roster.people().people(0).team(), team);
+}
+
 TEST_F(RosterTest, APersonWhoseGaugesAreGoneIsForgottenAtOnce) {
   const Admission ada = arrive(7);
   roster.setGaugeOwners({ada.person_id});

@@ -128,7 +128,9 @@ class Roster {
     bool waits = false;  ///< was here before a restart: kept for the grace time also without a boat
 
     /// Returns whether the person is kept for the grace time after a lost connection.
-    [[nodiscard]] bool isKept() const { return waits || is_muted || has_gauges || !boats.empty(); }
+    [[nodiscard]] bool isKept() const {
+      return waits || is_muted || has_gauges || team != v1::TEAM_UNSPECIFIED || !boats.empty();
+    }
   };
 
   /// Calls on_news at its end, after the lock that is taken later.
