@@ -20,7 +20,7 @@ const kShots = {
   breaking_wave: { tick: 156 },
   breaking_wave_particles: { tick: 102 },
   breaking_wave_wave: { tick: 150 },
-  dam_break: { tick: 96 },
+  dam_break: { tick: 126 },
   flume: { tick: 894 },
   flotsam: { tick: 300 },
   harbor: { tick: 330 },
