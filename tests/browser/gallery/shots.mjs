@@ -28,7 +28,7 @@ const kShots = {
   kelvin: { tick: 840 },
   open_water: { tick: 240 },
   particles_only: { tick: 60 },
-  pool: { tick: 120 },
+  pool: { tick: 138 },
   regatta: { tick: 300 },
   river_mouth: { tick: 780, historyTicks: 300 },
   ripple_tank: { tick: 540 },

@@ -57,7 +57,11 @@ const float kSlopeRadii = 3.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
+#ifdef AGAIN
+const float kWhiteness = 0.06;  // of two sheets
+#else
 const float kWhiteness = 0.1;
+#endif
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
@@ -66,6 +70,13 @@ const float kTankScatter = 2.2;
 const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
+#endif
+
+// Mip level of what is mirrored: clouds are blurred, windows are not.
+#if defined(WAVE) || defined(OUTDOORS)
+const float kMirrorLevel = 4.0;
+#else
+const float kMirrorLevel = 2.0;
 #endif
 
 float distanceAt(vec2 uv) {
@@ -291,7 +302,7 @@ void main() {
       vec3 far_normal = facingEye(normalAt(at), leaving);
       vec3 up = reflect(leaving, far_normal);
       far_fresnel = waterFresnel(clamp(-dot(far_normal, leaving), 0.0, 1.0));
-      far_light = textureLod(u_sky, vec3(up.x, abs(up.y), up.z), 2.0).rgb;
+      far_light = textureLod(u_sky, vec3(up.x, abs(up.y), up.z), kMirrorLevel).rgb;
     }
   }
 #endif
@@ -320,7 +331,7 @@ void main() {
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 2.0).rgb;
+  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), kMirrorLevel).rgb;
   float at_sun = dot(mirrored, u_sun_direction);
   // Where the water's level meets the glass it climbs, and mirrors the light from above.
   if (is_pane) under = mix(under, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.7 * smoothstep(0.14, 0.03, liquid.x) * (1.0 - white));
