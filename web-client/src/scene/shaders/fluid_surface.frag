@@ -79,6 +79,8 @@ const float kMirrorLevel = 4.0;
 const float kMirrorLevel = 2.0;
 #endif
 
+vec3 mirroredAlong(vec3 to) { return textureLod(u_sky, vec3(to.x, abs(to.y), to.z), kMirrorLevel).rgb; }
+
 float distanceAt(vec2 uv) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
   return near * far / (far - (far - near) * texture(u_behind_depth, uv).r);
@@ -285,24 +287,19 @@ void main() {
   length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
 #endif
   // Beyond the air behind it there may be liquid again.
-  vec3 far_light = vec3(0.0);
-  float far_fresnel = 0.0;
+  vec4 again = vec4(0.0);  // what it mirrors, and the share of it
 #ifdef AGAIN
-  if (!is_floor && past_m > 0.0) {
+  if (!is_floor) {
     float most_m = min(throughVolume(from, leaving).y, past_m);
-    bool is_far = false;
     for (float along_m = u_radius_m; along_m < most_m; along_m += 2.0 * step_m) {
       vec3 at = from + leaving * along_m;
       vec2 through = liquidAt(at);
       if (through.x <= 0.0) continue;
       length_m += 2.0 * step_m;
       white_m += 2.0 * step_m * through.y * through.y;
-      if (is_far) continue;
-      is_far = true;
-      vec3 far_normal = facingEye(normalAt(at), leaving);
-      vec3 up = reflect(leaving, far_normal);
-      far_fresnel = waterFresnel(clamp(-dot(far_normal, leaving), 0.0, 1.0));
-      far_light = textureLod(u_sky, vec3(up.x, abs(up.y), up.z), kMirrorLevel).rgb;
+      if (again.a > 0.0) continue;
+      vec3 turned = facingEye(normalAt(at), leaving);
+      again = vec4(mirroredAlong(reflect(leaving, turned)), waterFresnel(-dot(turned, leaving)));
     }
   }
 #endif
@@ -315,7 +312,7 @@ void main() {
   vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * from.xz / u_floor_size_m + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
 #endif
 
-  behind = mix(behind, far_light, far_fresnel);
+  behind = mix(behind, again.rgb, again.a);
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
@@ -331,7 +328,7 @@ void main() {
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), kMirrorLevel).rgb;
+  vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
   // Where the water's level meets the glass it climbs, and mirrors the light from above.
   if (is_pane) under = mix(under, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.7 * smoothstep(0.14, 0.03, liquid.x) * (1.0 - white));

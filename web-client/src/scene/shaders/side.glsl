@@ -2,7 +2,6 @@
 // glass and goes to the far glass, to the bed or to the surface, which mirrors it or lets it out. BEACH: the bed is not level.
 uniform mat4 projectionMatrix;
 const float kSideSteps = 28.0;
-const float kFromWater = 1.333;  // ratio of refractive indices
 
 // Heights of the water over a position, and of the position over the bed [m].
 vec2 heightsAt(vec3 at) {
@@ -51,7 +50,7 @@ vec3 throughSide(vec3 from, vec3 ray, vec3 side, out float length_m) {
       vec2 left_m = 0.5 * u_extent_m - abs(from.xz);
       outward.xz = sign(from.xz) * (left_m.x < left_m.y ? vec2(1.0, 0.0) : vec2(0.0, 1.0));
     } else break;
-    vec3 leaving = refract(bent, -outward, kFromWater);
+    vec3 leaving = refract(bent, -outward, 1.333);
     if (dot(leaving, leaving) > 0.0) return roomLight(from, leaving);
     bent = reflect(bent, outward);
     from -= outward * 0.01 * u_depth_m;
