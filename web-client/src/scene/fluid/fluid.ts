@@ -43,7 +43,7 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   // A wave has no floor of its own.
   const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, size, { ...quality, texelType, plain });
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
-  const surface = new FluidSurfacePass(inputs, field ? 1 : kTankColourRatio, quality);
+  const surface = new FluidSurfacePass(inputs, field ? 1 : kTankColourRatio, quality, plain);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };

@@ -35,7 +35,7 @@ export class FluidSurfacePass implements Pass {
   private readonly small: { target: WebGLRenderTarget; material: RawShaderMaterial } | undefined;
 
   /** `colourRatio`: water_optics.ts. */
-  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale }: FluidQuality) {
+  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale }: FluidQuality, plain: boolean) {
     this.tiles = tiles;
     this.solids = solids;
     this.scale = scale;
@@ -62,7 +62,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { ...(!floorUniforms && { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "walls" && { OUTDOORS: 1 }) }, transparent: true },
+      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "walls" && { OUTDOORS: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

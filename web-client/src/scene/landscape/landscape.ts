@@ -11,10 +11,10 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a tank is of concrete: dark, so that white water is seen over it; its sides cannot be taken for water. */
-export const kTankBed = [0.17, 0.19, 0.19] as const;
+/** A bed in a tank is of concrete, painted as a pool is: clear water over it is bright. Its sides are dark and cannot be taken for water. */
+export const kTankBed = [0.33, 0.50, 0.54] as const;
 const kFill: Paint = [...kTankBed, 0.3];
-const kFillCut: Paint = [0.36, 0.33, 0.29, 0.3];
+const kFillCut: Paint = [0.15, 0.145, 0.145, 0.3];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 

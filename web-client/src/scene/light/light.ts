@@ -70,6 +70,8 @@ const kFairStorm = 0.3;
 
 /** Direct light in a room at noon: white, so that white water is. */
 const kStudioKey: Rgb = [0.92, 0.94, 0.97];
+/** A room by day is shown brighter than its light, as photographs of rooms are. */
+const kStudioExposure = 1.12;
 /** Light of lamps in a room, which adds to the daylight. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
@@ -167,7 +169,7 @@ export function indoors(light: Light): Light {
     key: from(kStudioKey, kLampKey),
     ambientUp: from(kNoonSky.ambientUp, kLampAmbientUp),
     ambientDown: from(kNoonSky.ambientDown, kLampAmbientDown),
-    exposure: mix(light.exposure, 1, lamps),
+    exposure: mix(kStudioExposure * light.exposure, 1, lamps),
   };
 }
 

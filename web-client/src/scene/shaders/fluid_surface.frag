@@ -3,7 +3,8 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass, or with OUTDOORS a pool. RIPPLES: the surface mirrors with waves too short for particles.
+// volume is a tank with walls of glass, or with OUTDOORS a pool. AGAIN: a ray that has left the liquid may enter it again. RIPPLES: the
+// surface mirrors with waves too short for particles.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -43,6 +44,7 @@ const int kHalvings = 5, kParts = 3;
 // White water is torn: its density less that of the air in it, and how far that varies.
 // Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
+const float kSlopeRadii = 2.0;         // slopes are taken over so much to each side
 const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
@@ -51,17 +53,33 @@ const vec2 kFrothSun = vec2(0.0, 1.05);
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
 #else
+const float kSlopeRadii = 3.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
+#ifdef AGAIN
+const float kWhiteness = 0.06;  // of two sheets
+#else
 const float kWhiteness = 0.1;
+#endif
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
+// The glass around a tank's water sends back light that it scattered.
+const float kTankScatter = 2.2;
 const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
+
+// Mip level of what is mirrored: clouds are blurred, windows are not.
+#if defined(WAVE) || defined(OUTDOORS)
+const float kMirrorLevel = 4.0;
+#else
+const float kMirrorLevel = 2.0;
+#endif
+
+vec3 mirroredAlong(vec3 to) { return textureLod(u_sky, vec3(to.x, abs(to.y), to.z), kMirrorLevel).rgb; }
 
 float distanceAt(vec2 uv) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -138,7 +156,7 @@ float densityAt(vec3 at_m) {
 }
 
 vec3 normalAt(vec3 at_m) {
-  vec2 apart_m = vec2(2.0 * u_radius_m, 0.0);
+  vec2 apart_m = vec2(kSlopeRadii * u_radius_m, 0.0);
   vec3 slope = vec3(densityAt(at_m + apart_m.xyy) - densityAt(at_m - apart_m.xyy), densityAt(at_m + apart_m.yxy) - densityAt(at_m - apart_m.yxy), densityAt(at_m + apart_m.yyx) - densityAt(at_m - apart_m.yyx));
   return -slope / max(length(slope), 1e-5);
 }
@@ -245,6 +263,10 @@ void main() {
     is_floor = is_side && from.y < u_volume_min_m.y + 0.5 * u_cell_m;
     if (is_floor || overWave(from) < 0.0) break;
     vec3 outward = is_side ? sideAt(from) : normalAt(from);
+#ifndef WAVE
+    // A sheet has parallel sides: it hardly turns what is seen through it, and mirrors nothing totally.
+    if (part == 0 && !is_side) outward = normalize(mix(-bending, outward, smoothstep(4.0 * u_radius_m, 10.0 * u_radius_m, along_m)));
+#endif
     leaving = refract(bent, -outward, kFromWater);
     past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
     if (dot(leaving, leaving) > 0.0) break;
@@ -261,14 +283,25 @@ void main() {
     length_m += down_m;
   }
 #else
-  // A sheet has parallel sides: it hardly turns what is seen through it.
-  float thin = is_floor ? 0.0 : 1.0 - smoothstep(4.0 * u_radius_m, 10.0 * u_radius_m, length_m);
-  if (thin > 0.0) {
-    leaving = normalize(mix(leaving, ray, thin));
-    past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
-  }
   // What stands in the liquid is seen through less of it.
   length_m = min(length_m, max(solid_m - at_m, 0.0) + 2.0 * u_radius_m);
+#endif
+  // Beyond the air behind it there may be liquid again.
+  vec4 again = vec4(0.0);  // what it mirrors, and the share of it
+#ifdef AGAIN
+  if (!is_floor) {
+    float most_m = min(throughVolume(from, leaving).y, past_m);
+    for (float along_m = u_radius_m; along_m < most_m; along_m += 2.0 * step_m) {
+      vec3 at = from + leaving * along_m;
+      vec2 through = liquidAt(at);
+      if (through.x <= 0.0) continue;
+      length_m += 2.0 * step_m;
+      white_m += 2.0 * step_m * through.y * through.y;
+      if (again.a > 0.0) continue;
+      vec3 turned = facingEye(normalAt(at), leaving);
+      again = vec4(mirroredAlong(reflect(leaving, turned)), waterFresnel(-dot(turned, leaving)));
+    }
+  }
 #endif
 #ifdef WAVE
   vec3 behind = behindAt(from, leaving, past_m, ahead_m);
@@ -279,10 +312,14 @@ void main() {
   vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * from.xz / u_floor_size_m + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
 #endif
 
+  behind = mix(behind, again.rgb, again.a);
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+#if !defined(WAVE) && !defined(OUTDOORS)
+  scattered *= kTankScatter;
+#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
@@ -291,7 +328,7 @@ void main() {
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-  vec3 mirrored_light = textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 3.0).rgb;
+  vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
   // Where the water's level meets the glass it climbs, and mirrors the light from above.
   if (is_pane) under = mix(under, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.7 * smoothstep(0.14, 0.03, liquid.x) * (1.0 - white));

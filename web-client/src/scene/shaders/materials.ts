@@ -53,6 +53,7 @@ import lookSurfaceFrag from "./look_surface.frag?raw";
 import lookValueFrag from "./look_value.frag?raw";
 import presentBelowFrag from "./present_below.frag?raw";
 import mirror from "./mirror.glsl?raw";
+import side from "./side.glsl?raw";
 import presentFrag from "./present.frag?raw";
 import rainRingFrag from "./rain_ring.frag?raw";
 import rainRingVert from "./rain_ring.vert?raw";
@@ -153,6 +154,7 @@ const kShared: Record<string, string> = {
   sea_blend: seaBlend,
   shadow,
   shore,
+  side,
   solid_plain: solidPlain,
   water_plain: waterPlain,
   water_optics: waterOptics,

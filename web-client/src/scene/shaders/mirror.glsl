@@ -18,8 +18,8 @@ vec3 veiledSky(vec3 direction) {
   toward_sun *= toward_sun;
   sky += 0.08 * u_glow * toward_sun * toward_sun;
 #ifndef OPEN_SEA
-  // The hedge around a pool.
-  sky = mix(kHedge * (u_ambient_up + 0.5 * u_sun_light), sky, smoothstep(0.05, 0.13, direction.y));
+  // The hedge around a pool, above its pale deck.
+  sky = mix(kHedge * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(0.04, 0.10, direction.y)));
 #endif
   return sky;
 }
@@ -54,6 +54,10 @@ float behindScreen(vec3 at, out vec2 uv) {
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
+#if defined(RIPPLES) || defined(WALLS)
+  // A ray that rises past a pool's walls does not meet the deck, of which the screen shows the upper side.
+  reach_m = min(reach_m, 1.02 * wayOut(from, direction));
+#endif
   // Of what stands on the screen, whose back is not seen.
   float thick_m = min(1.0, 0.2 * min(u_extent_m.x, u_extent_m.y));
   float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));

@@ -1,5 +1,5 @@
 // Bakes the hall around a tank into one face of the cube: walls with tall windows behind the water and at its sides, a dim ceiling with a soft box,
-// and a dark floor. Through water one sees the windows' bars bent, and mirrored light beside dark gives its surface a shape.
+// and a floor. The walls are blue, as what level water mirrors outdoors is. Through water one sees the windows' bars bent, and mirrored light beside dark gives its surface a shape.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;  // relative to noon
@@ -7,7 +7,7 @@ layout(location = 0) out vec4 color;
 
 // Half the hall along x and z and its height, seen from a place on its floor.
 const vec3 kHall = vec3(2.0, 1.05, 1.5);
-const vec3 kWall = vec3(0.25, 0.22, 0.19), kCeiling = vec3(0.11, 0.11, 0.11), kFloor = vec3(0.11, 0.085, 0.065), kDay = vec3(0.72, 0.84, 0.92);
+const vec3 kWall = vec3(0.20, 0.29, 0.36), kCeiling = vec3(0.16, 0.18, 0.19), kFloor = vec3(0.20, 0.18, 0.16), kDay = vec3(1.20, 1.17, 1.10);
 // Windows along a wall: distance, half width, sill and lintel; panes of a window along each side.
 const float kApart = 0.82, kHalfWidth = 0.29, kSill = 0.12, kLintel = 0.84;
 const vec2 kPanes = vec2(2.0, 4.0);

@@ -4,7 +4,7 @@
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // UNEVEN: straight crests are drawn uneven.
-// RIPPLES: of a pool, whose walls others draw, as with WALLS. RAIN: with the rings of rain.
+// SKIRT: the side of the water in a tank, through which one looks into it. RIPPLES: of a pool, whose walls others draw, as with WALLS. RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
 #include <sky>
@@ -101,6 +101,9 @@ float wayOut(vec3 from, vec3 direction) {
 }
 
 #include <mirror>
+#ifdef SKIRT
+#include <side>
+#endif
 
 void main() {
   vec2 uv = gl_FragCoord.xy / u_resolution;
@@ -236,6 +239,9 @@ void main() {
   vec3 behind = texture(u_behind, shifted_uv).rgb;
 #endif
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
+#ifdef SKIRT
+  behind = throughSide(v_world, ray, normal, path_m);
+#endif
 #ifdef SHORE
   // In thin water the way follows from the depth and the refracted ray: the distance between two meshes says little, and a straight ray at
   // a low angle would make a film milky.
@@ -285,13 +291,23 @@ void main() {
 #endif
   fresnel *= edge;
 #ifdef SKIRT
-  float rim = smoothstep(min(0.07, 0.1 * u_depth_m), 0.0, v_top_m - v_world.y);
-  vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.8 * fresnel) + rim * vec3(0.10, 0.20, 0.23) * u_water_light;
+  // Where the surface meets the glass it climbs, and mirrors the light from above in a line over a darker one.
+  float under_top = (v_top_m - v_world.y) / max(0.012 * u_depth_m, 1.2 * fwidth(v_world.y));
+  vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.2 * fresnel);
+  water *= 1.0 - 0.35 * smoothstep(3.0, 1.0, under_top);
+  water = mix(water, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.85 * smoothstep(1.3, 0.7, under_top));
 #else
+#ifndef OPEN_SEA
+  // What a steep slope mirrors downward is water again.
+  float again = 1.0 - smoothstep(-0.07, 0.03, mirrored.y);
+#endif
   mirrored.y = abs(mirrored.y);
   vec3 over = mirroredSky(mirrored, variance);
 #ifdef MIRROR
   if (fresnel > 0.03) over = mirroredLight(v_world, mirrored, over);
+#endif
+#ifndef OPEN_SEA
+  over = mix(over, under, 0.9 * again);
 #endif
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.

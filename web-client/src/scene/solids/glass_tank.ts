@@ -25,7 +25,7 @@ const kHallSides = 40;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
 export const kTankTile = [0.40, 0.48, 0.50] as const;
-const kSlab = [0.20, 0.125, 0.08] as const;
+const kSlab = [0.34, 0.28, 0.215] as const;
 /** Grain 0 is paint. */
 const kBase: Paint = [0.10, 0.13, 0.16, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).

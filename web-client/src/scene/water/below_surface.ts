@@ -16,6 +16,7 @@ export class BelowSurface {
   readonly solids: RawShaderMaterial;
   private readonly uniforms: Uniforms;
   private readonly ahead = new Vector3();
+  private readonly isPlain: boolean;
 
   /**
    * `floorAlbedo`: on average, where the floor is not on the screen. `isCut`: the water ends at panes of glass. `uniforms` and `defines` are
@@ -28,6 +29,7 @@ export class BelowSurface {
     defines: Record<string, number>,
     private readonly newest: () => SurfaceFrame | undefined,
   ) {
+    this.isPlain = "PLAIN" in defines;
     this.uniforms = {
       ...uniforms,
       u_floor_albedo: { value: floorAlbedo },
@@ -45,6 +47,8 @@ export class BelowSurface {
     const { x, y, z } = camera.position;
     const extentM = this.uniforms["u_extent_m"]!.value as Vector2;
     const isBeside = this.isCut && Math.max(Math.abs(x) - extentM.x / 2, Math.abs(z) - extentM.y / 2) > camera.near;
+    // The sides show the surface from below themselves (side.glsl).
+    if (isBeside && !this.isPlain) return false;
     if (y > (frame ? elevationAtM(frame, x, z) : 0) + (isBeside ? 0 : kCloseNears * camera.near)) return false;
     (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
     (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
