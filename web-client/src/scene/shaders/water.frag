@@ -38,6 +38,10 @@ uniform float u_lift_m;  // by which thin water may lie below the ground that is
 #ifdef OPEN_SEA
 #include <sea_blend>
 in vec2 v_share_away;
+#ifdef UNEVEN
+in vec2 v_unleaned_m;
+in vec2 v_shoreward;
+#endif
 uniform float u_haze_m;
 #endif
 #ifdef RIPPLES
@@ -145,8 +149,10 @@ void main() {
 #else
 #ifdef OPEN_SEA
 #ifdef UNEVEN
-  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_world.xz) / u_extent_m + 0.5) : vec4(0.0);
-  field *= unevenHeight(v_world.xz, field.r);
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_unleaned_m) / u_extent_m + 0.5) : vec4(0.0);
+  field *= unevenHeight(v_unleaned_m, field.r);
+  // The face of a crest that leans is steeper, and its back is flatter.
+  field.gb /= max(1.0 + leanPerRise(field.r) * dot(field.gb, v_shoreward), 0.25);
 #else
   vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
 #endif
@@ -314,7 +320,7 @@ void main() {
 #endif
 #ifndef SKIRT
 #ifdef UNEVEN
-  vec2 place = unevenAt(v_world.xz) / u_extent_m + 0.5;
+  vec2 place = unevenAt(v_unleaned_m) / u_extent_m + 0.5;
 #else
   vec2 place = v_world.xz / u_extent_m + 0.5;
 #endif
@@ -365,7 +371,7 @@ void main() {
     float fresh = smoothstep(0.45, 0.9, cover);
     float lace = laceAt(at, fresh);
     // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-    float thick = clamp((lace - 0.8 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+    float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
     float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
     // Bubbles below the surface reach further than the froth on it.
     float clouded = 0.55 * cover * (0.35 + 0.65 * lace);
