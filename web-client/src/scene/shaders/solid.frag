@@ -38,7 +38,8 @@ uniform sampler2D u_field;
 // Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
 const float kWetBandM = 0.11, kDarkBandM = 0.16;
 #endif
-const vec3 kScrub = vec3(0.20, 0.21, 0.10);
+const vec3 kScrub = vec3(0.17, 0.19, 0.08);
+const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -69,12 +70,12 @@ void main() {
 #ifndef INSTANCES
     if (u_haze_m > 0.0 && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
       // What grows on open land: scrub on dry sand, and woods and hedges on grass.
-      float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71).r;
-      float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19).r;
+      float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71, kSharper).r;
+      float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19, kSharper).r;
       bool is_grass = albedo.g > albedo.r;
       if (is_grass) albedo *= mix(vec3(1.25, 1.12, 0.85), vec3(0.36, 0.46, 0.42), smoothstep(0.5, 0.75, 0.65 * broad + 0.35 * middle));
       else if (grain < 0.75) {
-        float scrub = smoothstep(0.35, 0.8, v_world.y) * smoothstep(0.5, 0.72, 0.3 * broad + 0.35 * middle + 0.35 * (fine + 0.5));
+        float scrub = smoothstep(0.3, 0.6, v_world.y) * smoothstep(0.42, 0.56, 0.25 * broad + 0.35 * middle + 0.4 * (fine + 0.5));
         albedo = mix(albedo, kScrub, 0.75 * scrub);
       }
     }
