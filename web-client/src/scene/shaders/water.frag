@@ -273,7 +273,7 @@ void main() {
 #endif
 #ifndef SKIRT
   // The steep face of a breaker is thin: light from its back comes through whatever the sun's direction.
-  against_sun += 0.6 * sunlit_share * smoothstep(0.2, 0.8, length(field.gb));
+  against_sun += 0.85 * sunlit_share * smoothstep(0.2, 0.8, length(field.gb));
 #endif
   // A crest is thin, a mound of splashed water is not.
   scattered += u_crest * u_sun_light * against_sun * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m);
@@ -327,7 +327,7 @@ void main() {
 #if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
 #else
-  float foam = 0.8 * contact * sqrt(contact);
+  float foam = 0.62 * contact * sqrt(contact);
 #endif
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
