@@ -36,5 +36,5 @@ float leanM(float top_m) { return kLeanPerM * max(top_m, 0.0) * max(top_m, 0.0);
 float leanPerRise(float top_m) { return 2.0 * kLeanPerM * max(top_m, 0.0); }
 #endif
 
-// Foam of crests that curl over (curvature in 1/m), where the server sends none.
+// Foam of crests that curl over (curvature in 1/m).
 float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.45, 1.8, -curvature); }
