@@ -93,9 +93,10 @@ void main() {
       // With an edge that follows the sand's grain, not the cells.
       float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.9, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
       wet_film = inner * washed * smoothstep(0.4, 1.0, shore.g) * (is_sand ? 0.7 : 0.35);
-      // Under standing water, the water mirrors the sky, not the ground.
-      wet_film *= 1.0 - smoothstep(0.004, 0.03, shore.r);
-      foam = inner * shore.b;
+      // Under standing water, the water mirrors the sky and carries the lace, not the ground.
+      float bare = 1.0 - smoothstep(0.004, 0.03, shore.r);
+      wet_film *= bare;
+      foam = inner * bare * shore.b;
       // Stone near the still water is always wet; sand is where water was.
       wet = is_sand ? mix(wet, washed, inner) : max(wet, inner * washed);
     }
