@@ -374,7 +374,7 @@ void main() {
     float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
     float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
     // Bubbles below the surface reach further than the froth on it.
-    float clouded = 0.55 * cover * (0.35 + 0.65 * lace);
+    float clouded = 0.42 * cover * (0.35 + 0.65 * lace);
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif
