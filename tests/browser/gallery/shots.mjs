@@ -19,7 +19,7 @@ const kShots = {
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 102 },
-  breaking_wave_wave: { tick: 150 },
+  breaking_wave_wave: { tick: 105 },
   dam_break: { tick: 96 },
   flume: { tick: 894 },
   flotsam: { tick: 300 },
