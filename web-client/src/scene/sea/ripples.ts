@@ -8,7 +8,7 @@ import { makeRandom, type PlaneWave } from "./sea_state";
 const kSurfaceTension = 7.3e-5;
 const kSpreadRad = 1.25;
 /** Root mean square slope without wind, and what a full storm adds (half of what Cox & Munk 1954 give for 15 m/s: the rest is in the longer waves). */
-const kCalmSlope = 0.05;
+const kCalmSlope = 0.07;
 const kStormSlope = 0.11;
 /** Where a storm brings rain without wind, so that one sees the rings. */
 const kWindlessSlope = 0.012;

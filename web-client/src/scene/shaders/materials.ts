@@ -10,6 +10,7 @@ import causticsFrag from "./caustics.frag?raw";
 import causticsVert from "./caustics.vert?raw";
 import cellHash from "./cell_hash.glsl?raw";
 import farLand from "./far_land.glsl?raw";
+import foam from "./foam.glsl?raw";
 import drop from "./drop.glsl?raw";
 import dropFrag from "./drop.frag?raw";
 import edgesFrag from "./edges.frag?raw";
@@ -144,6 +145,7 @@ const kShared: Record<string, string> = {
   cell_hash: cellHash,
   drop,
   far_land: farLand,
+  foam,
   fluid_volume: fluidVolume,
   fluid_words: fluidWords,
   glitter,

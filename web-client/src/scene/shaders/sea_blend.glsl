@@ -28,7 +28,13 @@ vec2 unevenAt(vec2 at) {
 float unevenHeight(vec2 at, float top_m) {
   return 1.0 + 0.2 * smoothstep(0.03, 0.3, top_m) * (0.65 * sin(1.7 * at.y + 0.3 * at.x) + 0.35 * sin(4.3 * at.y + 1.3));
 }
+
+// A crest leans over toward the shore by so many metres per square metre of its height.
+const float kLeanPerM = 0.8;
+
+float leanM(float top_m) { return kLeanPerM * max(top_m, 0.0) * max(top_m, 0.0); }
+float leanPerRise(float top_m) { return 2.0 * kLeanPerM * max(top_m, 0.0); }
 #endif
 
-// Foam of crests that curl over (curvature in 1/m), where the server sends none.
+// Foam of crests that curl over (curvature in 1/m).
 float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.45, 1.8, -curvature); }

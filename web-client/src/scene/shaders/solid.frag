@@ -38,6 +38,8 @@ uniform sampler2D u_field;
 // Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
 const float kWetBandM = 0.11, kDarkBandM = 0.16;
 #endif
+const vec3 kScrub = vec3(0.17, 0.19, 0.08);
+const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -65,6 +67,19 @@ void main() {
     float fine = texture(u_noise, at / grain_m).r - 0.5;
     float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
+#ifndef INSTANCES
+    if (u_haze_m > 0.0 && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
+      // What grows on open land: scrub on dry sand, and woods and hedges on grass.
+      float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71, kSharper).r;
+      float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19, kSharper).r;
+      bool is_grass = albedo.g > albedo.r;
+      if (is_grass) albedo *= mix(vec3(1.25, 1.12, 0.85), vec3(0.36, 0.46, 0.42), smoothstep(0.5, 0.75, 0.65 * broad + 0.35 * middle));
+      else if (grain < 0.75) {
+        float scrub = smoothstep(0.3, 0.6, v_world.y) * smoothstep(0.42, 0.56, 0.25 * broad + 0.35 * middle + 0.4 * (fine + 0.5));
+        albedo = mix(albedo, kScrub, 0.75 * scrub);
+      }
+    }
+#endif
     float wet = 1.0 - smoothstep(0.0, 1.0, over_water_m / u_wet_m - 0.5 * coarse);
     // Spray and the last waves have left a damp band above.
     wet = max(wet, 0.45 * (1.0 - smoothstep(1.5, 5.0, over_water_m / u_wet_m - 4.0 * coarse)));
@@ -78,9 +93,10 @@ void main() {
       // With an edge that follows the sand's grain, not the cells.
       float washed = max(smoothstep(-0.004, 0.004, shore.r), smoothstep(0.0, 0.9, shore.g * (1.0 + 0.5 * fine + 0.6 * coarse)));
       wet_film = inner * washed * smoothstep(0.4, 1.0, shore.g) * (is_sand ? 0.7 : 0.35);
-      // Under standing water, the water mirrors the sky, not the ground.
-      wet_film *= 1.0 - smoothstep(0.004, 0.03, shore.r);
-      foam = inner * shore.b;
+      // Under standing water, the water mirrors the sky and carries the lace, not the ground.
+      float bare = 1.0 - smoothstep(0.004, 0.03, shore.r);
+      wet_film *= bare;
+      foam = inner * bare * shore.b;
       // Stone near the still water is always wet; sand is where water was.
       wet = is_sand ? mix(wet, washed, inner) : max(wet, inner * washed);
     }

@@ -38,6 +38,10 @@ uniform float u_lift_m;  // by which thin water may lie below the ground that is
 #ifdef OPEN_SEA
 #include <sea_blend>
 in vec2 v_share_away;
+#ifdef UNEVEN
+in vec2 v_unleaned_m;
+in vec2 v_shoreward;
+#endif
 uniform float u_haze_m;
 #endif
 #ifdef RIPPLES
@@ -64,6 +68,10 @@ uniform float u_lace_m;
 #endif
 layout(location = 0) out vec4 color;
 
+#ifndef SKIRT
+#include <foam>
+#endif
+
 // Variance of the slopes of waves finer than the ripples.
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
@@ -76,6 +84,7 @@ const float kSpillM = 0.34;
 #include <glitter>
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
 const float kSkyShare = 0.7;
+const float kCapillaryVariance = 0.012;
 #endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -143,8 +152,10 @@ void main() {
 #else
 #ifdef OPEN_SEA
 #ifdef UNEVEN
-  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_world.xz) / u_extent_m + 0.5) : vec4(0.0);
-  field *= unevenHeight(v_world.xz, field.r);
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_unleaned_m) / u_extent_m + 0.5) : vec4(0.0);
+  field *= unevenHeight(v_unleaned_m, field.r);
+  // The face of a crest that leans is steeper, and its back is flatter.
+  field.gb /= max(1.0 + leanPerRise(field.r) * dot(field.gb, v_shoreward), 0.25);
 #else
   vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
 #endif
@@ -173,8 +184,8 @@ void main() {
 #endif
 #ifdef GLITTER
   vec2 pixel_slopes = pixelSlopes(v_world.xz);
-  // Capillary waves ride on the ripples.
-  float lost_variance = variance + 0.5 * u_slope_variances.y;
+  // Capillary waves ride on the ripples: most of them in the lightest breeze.
+  float lost_variance = variance + min(3.0 * u_slope_variances.y, 0.5 * u_slope_variances.y + kCapillaryVariance);
   vec2 level_slopes = field.gb;
   field.gb += kSkyShare * sqrt(lost_variance) * pixel_slopes;
 #endif
@@ -268,7 +279,7 @@ void main() {
 #endif
 #ifndef SKIRT
   // The steep face of a breaker is thin: light from its back comes through whatever the sun's direction.
-  against_sun += 0.6 * sunlit_share * smoothstep(0.2, 0.8, length(field.gb));
+  against_sun += 0.85 * sunlit_share * smoothstep(0.2, 0.8, length(field.gb));
 #endif
   // A crest is thin, a mound of splashed water is not.
   scattered += u_crest * u_sun_light * against_sun * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m);
@@ -325,14 +336,14 @@ void main() {
 #endif
 #ifndef SKIRT
 #ifdef UNEVEN
-  vec2 place = unevenAt(v_world.xz) / u_extent_m + 0.5;
+  vec2 place = unevenAt(v_unleaned_m) / u_extent_m + 0.5;
 #else
   vec2 place = v_world.xz / u_extent_m + 0.5;
 #endif
 #if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
 #else
-  float foam = 0.8 * contact * sqrt(contact);
+  float foam = 0.62 * contact * sqrt(contact);
 #endif
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
@@ -370,25 +381,21 @@ void main() {
     // Far away the lace is finer than a pixel, and its edges would be dots.
     vec2 at_step = fwidth(at);
     float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
-    float wide = texture(u_noise, at / u_lace_m).r;
-    float lace = 0.5 * wide + 0.34 * texture(u_noise, at.yx / (0.31 * u_lace_m)).r + 0.16 * texture(u_noise, at / (0.11 * u_lace_m)).r;
     // Thinning foam comes apart in patches; fresh foam is one body.
     foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
     float cover = min(foam, 1.0);
+    float fresh = smoothstep(0.45, 0.9, cover);
+    float lace = laceAt(at, fresh);
     // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-    float thick = clamp((lace - 0.8 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+    float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
     float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
     // Bubbles below the surface reach further than the froth on it.
-    float clouded = 0.55 * cover * (0.35 + 0.65 * wide);
+    float clouded = 0.42 * cover * (0.35 + 0.65 * lace);
 #ifdef SHORE
     clouded *= smoothstep(0.0, 0.25, deep_m);
 #endif
     water = mix(water, u_bubbly * u_water_light, clouded);
-    // It shades itself where it lies thicker toward the sun.
-    float relief = (wide - texture(u_noise, at / u_lace_m + 0.02 * u_sun_direction.xz).r) * (1.0 - smoothstep(0.0, 0.2, blur));
-    float sunlit = sunlit_share * clamp(0.15 + 0.85 * dot(normal, u_sun_direction), 0.0, 1.0);
-    vec3 froth = vec3(0.91, 0.95, 0.97) * (u_sun_light * sunlit + u_ambient_up * vec3(1.0, 0.96, 0.9)) * (0.58 + 0.5 * lace + 0.9 * relief);
-    water = mix(water, froth, white);
+    water = mix(water, foamLight(at, lace, fresh, normal, sunlit_share, blur), white);
   }
 #endif
 #ifdef OPEN_SEA

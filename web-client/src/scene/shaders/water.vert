@@ -27,6 +27,10 @@ uniform float u_lowered_m;
 out vec2 v_share_away;  // of the simulated water; distance from the square (m)
 #endif
 
+#ifdef UNEVEN
+out vec2 v_unleaned_m;
+out vec2 v_shoreward;  // direction toward shallower water; 0 over a level bed
+#endif
 out vec3 v_world;
 out float v_view_z;
 out float v_top_m;
@@ -59,6 +63,17 @@ void main() {
   depth_m = bedDepth(position.xz * u_extent_m, u_extent_m, u_depth_m);
 #endif
   v_world = vec3(position.x * u_extent_m.x, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_extent_m.y);
+#ifdef UNEVEN
+  v_unleaned_m = v_world.xz;
+  v_shoreward = vec2(0.0);
+#ifdef BEACH
+  const vec2 kStepM = vec2(0.5, 0.0);
+  vec2 falling = vec2(bedDepth(at - kStepM, u_extent_m, u_depth_m) - bedDepth(at + kStepM, u_extent_m, u_depth_m),
+                      bedDepth(at - kStepM.yx, u_extent_m, u_depth_m) - bedDepth(at + kStepM.yx, u_extent_m, u_depth_m));
+  v_shoreward = falling / max(length(falling), 0.05);
+  v_world.xz += v_shoreward * leanM(v_top_m);
+#endif
+#endif
 #ifdef SKIRT
   v_side_normal = normal;
 #elif defined(VERTEX_LIT)

@@ -45,7 +45,8 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
 #ifdef FOAM
   foam_shade.r = max(foam_shade.r, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
-#elif defined(OPEN_SEA)
+#endif
+#ifdef OPEN_SEA
   foam_shade.r = max(foam_shade.r, crestFoam(v_top_m, curvature));
 #endif
 #ifdef OPEN_SEA
