@@ -22,11 +22,11 @@ const kGroundCells = 256;
 const kPlainGroundCells = 96;
 
 /** How much of the water a view has to show: where it continues beyond the picture, only a part. */
-const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "showsFloor">> = {
+const kSettingViews: Record<SettingName, Pick<ViewedBox, "focus" | "raised" | "sideRaised">> = {
   openSea: { focus: { wide: 0.72, tall: 0.5 }, raised: { wide: 1, tall: 1.45 } },
   pool: { focus: { wide: 0.78, tall: 0.52 }, raised: { wide: 1.7, tall: 3.2 }, sideRaised: 4 },
-  glassTank: { focus: { wide: 1.05, tall: 0.95 }, raised: { wide: 1.1, tall: 1.6 }, showsFloor: true },
-  flume: { focus: { wide: 1.02, tall: 0.9 }, raised: { wide: 0.8, tall: 1.2 }, showsFloor: true },
+  glassTank: { focus: { wide: 1.05, tall: 0.95 }, raised: { wide: 1.1, tall: 1.6 } },
+  flume: { focus: { wide: 1.02, tall: 0.9 }, raised: { wide: 0.8, tall: 1.2 } },
 };
 
 /** How far away from land, in sides of the square, the middle of a view is. Views look along z, so land there hides more of the water. */
@@ -40,7 +40,7 @@ const kTrayDepth = 0.2;
 const kTrayView = { ...kSettingViews.glassTank, raised: { wide: 1.8, tall: 2.6 } };
 
 /** Returns how a view frames the scene's water; in the open sea away from the land. */
-export function viewOf({ setting, wave, firstView }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "showsFloor" | "lean" | "seenFrom" | "first"> {
+export function viewOf({ setting, wave, firstView }: GreetingInfo): Pick<ViewedBox, "focus" | "raised" | "sideRaised" | "lean" | "seenFrom" | "first"> {
   const framed = setting === "glassTank" && wave && wave.depthM < kTrayDepth * Math.min(wave.sideM, wave.widthM) ? kTrayView : kSettingViews[setting];
   const view = firstView ? { ...framed, first: firstView } : framed;
   if (setting !== "openSea" || !wave) return view;
