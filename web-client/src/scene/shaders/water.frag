@@ -303,10 +303,10 @@ void main() {
   fresnel *= edge;
 #ifdef SKIRT
   // Where the surface meets the glass it climbs, and mirrors the light from above in a line over a darker one.
-  float under_top = (v_top_m - v_world.y) / max(0.012 * u_depth_m, 1.2 * fwidth(v_world.y));
+  float under_top = (v_top_m - v_world.y) / max(0.006 * u_depth_m, fwidth(v_world.y));
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.2 * fresnel);
   water *= 1.0 - 0.35 * smoothstep(3.0, 1.0, under_top);
-  water = mix(water, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.85 * smoothstep(1.3, 0.7, under_top));
+  water = mix(water, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.6 * smoothstep(1.3, 0.7, under_top));
 #else
 #ifndef OPEN_SEA
   // What a steep slope mirrors downward is water again.
