@@ -148,7 +148,7 @@ const encode = (film, folder, options, path) => {
 /** Makes the animated picture of the README. @returns {Promise<string>} its path and size */
 export async function shootAnimation(context, qualities) {
   const folder = await shoot(context, kAnimation, qualities.at(-1));
-  return encode(kAnimation, folder, ["-c:v", "libwebp_anim", "-quality", "55", "-compression_level", "6", "-loop", "0"], join(repository, "web-client/screenshots/harbor.webp"));
+  return encode(kAnimation, folder, ["-c:v", "libwebp_anim", "-quality", "40", "-compression_level", "6", "-loop", "0"], join(repository, "web-client/screenshots/harbor.webp"));
 }
 
 /** Makes the tour, 20 s of video. @returns {Promise<string>} its path and size */
