@@ -14,6 +14,8 @@ const kRungs: readonly Rung[] = kTierNames.flatMap((tier) => [0.75, 1].map((reso
 /** Time between pictures that is too slow: at least 28 pictures per second where hardware can be expected, 20 elsewhere; for less sharpness than `minimal` has, 10. */
 const kSlowMs: Record<TierName, number> = { minimal: 100, low: 50, medium: 36, high: 36, highest: 36 };
 const kFastMs = 20;
+/** The same on the last rung, with nine sixteenths of the pixels of the one above. */
+const kLastFastMs = 60;
 const kSlowForMs = 1500;
 const kFastForMs = 10_000;
 /** The same below the tier "medium" before the first fall: a page without graphics hardware begins with the cheapest tier. */
@@ -88,7 +90,7 @@ export class QualityGovernor {
     const isSlow = frameMs > kSlowMs[this.tier];
     this.slowMs = isSlow ? this.slowMs + frameMs : 0;
     this.slowCount = isSlow ? this.slowCount + 1 : 0;
-    this.fastMs = frameMs < kFastMs ? this.fastMs + frameMs : 0;
+    this.fastMs = frameMs < (this.rung === 0 ? kLastFastMs : kFastMs) ? this.fastMs + frameMs : 0;
     return this.fallIfSlow() || this.riseIfFast();
   }
 
