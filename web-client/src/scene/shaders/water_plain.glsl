@@ -98,5 +98,6 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   v_under.a += 0.6 * min(focus, 0.0);
 #endif
   float foam = foam_shade.r;
-  v_foam_light = vec2(min(1.3 * foam * foam + 0.35 * foam, 0.92), 1.0 - 0.6 * foam_shade.g);
+  // Thin foam is lace that a pixel of these tiers cannot show.
+  v_foam_light = vec2(min(1.65 * foam * foam, 0.92), 1.0 - 0.6 * foam_shade.g);
 }
