@@ -29,7 +29,7 @@ layout(binding = DISPERSION_COEFFICIENTS) uniform samplerBuffer coefficients;
 #else
 // Two halves in each number.
 layout(binding = DISPERSION_COEFFICIENTS) uniform usamplerBuffer coefficients;
-// Numbers of the strip along x (15 bits), DISPERSION_SIDES_WITHOUT_SPREAD and along z (16 bits); those beyond the grid are none.
+// Numbers of the strip along x (15 bits), DISPERSION_SIDES_WITHOUT_SPREAD and along z (16 bits); padding lies outside the grid.
 layout(binding = DISPERSION_STRIPS) uniform usamplerBuffer strips;
 #endif
 

@@ -98,7 +98,7 @@ export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { acro
   const rightM = tall * first.subjectRightM;
   const centreM = { x: first.xM - rightM * Math.sin(headingRad), z: first.zM + rightM * Math.cos(headingRad) };
   const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.slope - 1) * tall));
-  // A part of wide water is seen without its floor.
+  // Deep water is seen without its floor.
   const minYM = Math.max(box.minYM, -kFirstDepth * acrossM);
   const { maxYM } = box;
   return {

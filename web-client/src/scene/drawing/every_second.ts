@@ -22,6 +22,10 @@ export class EverySecond implements Pass {
     ++this.picturesCount;
   }
 
+  remember(picture: Picture): void {
+    this.pass.remember?.(picture);
+  }
+
   dispose(): void {
     this.pass.dispose();
   }

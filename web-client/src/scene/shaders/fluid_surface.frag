@@ -330,8 +330,7 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
-  // Where the water's level meets the glass it climbs, and mirrors the light from above.
-  if (is_pane) under = mix(under, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.45 * smoothstep(0.1, 0.02, liquid.x) * (1.0 - white));
+  if (is_pane) under = mix(under, meniscusLight(), 0.45 * smoothstep(0.1, 0.02, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE

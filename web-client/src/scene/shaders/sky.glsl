@@ -11,6 +11,9 @@ uniform float u_sun_sharp;     // share of it that comes from the disc: 0 under 
 uniform float u_exposure;
 uniform bool u_is_displayed;      // solids are drawn for the display instead of as linear light; in the plain tiers
 
+// Light that water mirrors where it climbs the glass of a tank: that from above.
+vec3 meniscusLight() { return vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light; }
+
 vec3 skyLight(vec3 direction) { return texture(u_sky, direction).rgb; }
 
 // Linear light → display: a shoulder that reaches white at 1.6, then gamma 2 (docs/light.md). Divisions and a square root only:

@@ -68,10 +68,6 @@ uniform float u_lace_m;
 #endif
 layout(location = 0) out vec4 color;
 
-#ifndef SKIRT
-#include <foam>
-#endif
-
 // Variance of the slopes of waves finer than the ripples.
 const float kFinestVariance = 0.0006;
 // Foam and shade beside what stands in the water reach this far from it along the ray, m.
@@ -84,7 +80,7 @@ const float kSpillM = 0.34;
 #include <glitter>
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
 const float kSkyShare = 0.7;
-const float kCapillaryVariance = 0.012;
+const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 #endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -112,6 +108,8 @@ float wayOut(vec3 from, vec3 direction) {
 #include <mirror>
 #ifdef SKIRT
 #include <side>
+#else
+#include <foam>
 #endif
 
 void main() {
@@ -302,23 +300,18 @@ void main() {
 #endif
   fresnel *= edge;
 #ifdef SKIRT
-  // Where the surface meets the glass it climbs, and mirrors the light from above in a line over a darker one.
-  float under_top = (v_top_m - v_world.y) / max(0.006 * u_depth_m, fwidth(v_world.y));
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.2 * fresnel);
-  water *= 1.0 - 0.35 * smoothstep(3.0, 1.0, under_top);
-  water = mix(water, vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_light, 0.6 * smoothstep(1.3, 0.7, under_top));
+  water = withMeniscus(water, v_top_m - v_world.y);
 #else
-#ifndef OPEN_SEA
-  // What a steep slope mirrors downward is water again.
-  float again = 1.0 - smoothstep(-0.07, 0.03, mirrored.y);
-#endif
-  mirrored.y = abs(mirrored.y);
+  float upward = mirrored.y;
+  mirrored.y = abs(upward);
   vec3 over = mirroredSky(mirrored, variance);
 #ifdef MIRROR
   if (fresnel > 0.03) over = mirroredLight(v_world, mirrored, over);
 #endif
 #ifndef OPEN_SEA
-  over = mix(over, under, 0.9 * again);
+  // What a steep slope mirrors downward is water again.
+  over = mix(over, under, 0.9 - 0.9 * smoothstep(-0.07, 0.03, upward));
 #endif
   vec3 water = mix(under, over, fresnel);
   // Less of the sky lights the water beside what stands in it.
