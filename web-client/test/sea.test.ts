@@ -158,15 +158,40 @@ describe("the coast", () => {
   });
 
   it("is made of finite triangles, with land on the closed sides only", () => {
-    const geometry = makeCoastGeometry(coast, 24, true);
+    const geometry = makeCoastGeometry(coast, 24, false);
     const position = geometry.getAttribute("position");
     const normal = geometry.getAttribute("normal");
     for (let n = 0; n < position.count; ++n) {
       for (const value of [position.getX(n), position.getY(n), position.getZ(n), normal.getX(n), normal.getY(n), normal.getZ(n)]) expect(Number.isFinite(value)).toBe(true);
       if (position.getX(n) < 8.9 && Math.abs(position.getZ(n)) < 15.9) expect(position.getY(n)).toBeLessThan(-1.1);
     }
-    const withoutBed = makeCoastGeometry(coast, 24, false);
-    expect(withoutBed.index!.count).toBeLessThan(0.8 * geometry.index!.count);
     geometry.dispose();
+  });
+
+  it("leaves out the level bed in the plain tiers", () => {
+    const levelCount = (plain: boolean): number => {
+      const geometry = makeCoastGeometry(coast, 24, plain);
+      const { position } = geometry.attributes;
+      return Array.from(geometry.index!.array).filter((n) => position!.getY(n) <= -0.9999 * bed.depthM).length;
+    };
+    expect(levelCount(false)).toBeGreaterThan(1000);
+    expect(levelCount(true)).toBeLessThan(0.2 * levelCount(false));
+  });
+
+  it("has houses and trees on the land, and pines on an island, never in the water", () => {
+    // What stands on the ground is above it; a grid of the ground alone has nothing there.
+    const highest = (coastWith: Parameters<typeof makeCoastGeometry>[0], isAt: (xM: number, zM: number) => boolean): number => {
+      const { position } = makeCoastGeometry(coastWith, 24, true).attributes;
+      let overM = 0;
+      for (let n = 0; n < position!.count; ++n)
+        if (isAt(position!.getX(n), position!.getZ(n))) overM = Math.max(overM, position!.getY(n) - coastHeightM(coastWith, position!.getX(n), position!.getZ(n)));
+      return overM;
+    };
+    expect(highest(coast, (xM) => xM > 20 && xM < 40)).toBeGreaterThan(1);
+    expect(highest(coast, (xM, zM) => xM < 14 && zM < 15)).toBeLessThan(0.01);
+    const riseM = Float32Array.from({ length: 25 }, (_, n) => (n === 12 ? 1.2 : -1.2));
+    const island = { bed: { ...bed, beaches: [], ground: { countX: 5, countZ: 5, lengthM: 32, widthM: 32, riseM } }, sides: sidesOf("open", "open", "open", "open") };
+    expect(highest(island, (xM, zM) => Math.hypot(xM, zM) < 6)).toBeGreaterThan(1);
+    expect(highest(island, (xM, zM) => Math.hypot(xM, zM) > 12)).toBeLessThan(0.01);
   });
 });

@@ -13,7 +13,7 @@ import { repository } from "../server.mjs";
 const kDefault = { tick: 180 };
 /** Ticks at which something is to be seen: a crown, a crest about to break, a wake. @type {Record<string, Shot>} */
 const kShots = {
-  beach: { tick: 552, historyTicks: 300 },
+  beach: { tick: 516, historyTicks: 300 },
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
@@ -26,11 +26,11 @@ const kShots = {
   harbor: { tick: 330 },
   island: { tick: 540, historyTicks: 300 },
   kelvin: { tick: 840 },
-  open_water: { tick: 240 },
+  open_water: { tick: 300 },
   particles_only: { tick: 60 },
   pool: { tick: 138 },
   regatta: { tick: 300 },
-  river_mouth: { tick: 780, historyTicks: 300 },
+  river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 198 },
   splash: { tick: 66 },

@@ -4,8 +4,10 @@ import type { BufferGeometry } from "three";
 
 import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../../client/codec/scene_info";
 import { clamp, smoothstep } from "../maths/interpolate";
+import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { bedPaint, mixPaint } from "./paints";
+import { addPine, addVillage, type Land } from "./village";
 import { depthAtM, insideM, isShoreDepth, longSideM, type Bed } from "./terrain";
 
 interface Coast {
@@ -35,6 +37,11 @@ const kBedReachSides = 0.45;
 const kGrowth = 1.35;
 const kCoarseGrowth = 1.7;
 const kFewCells = 64;
+
+/** Pines grow where the bed is higher over the water than this share of its depth: places to try, and the most of them. */
+const kPineDepths = 0.6;
+const kPinePlaces = 400;
+const kPinesMost = 9;
 
 const kGrass: Paint = [0.17, 0.185, 0.085, 1.0];
 const kFarGrass: Paint = [0.085, 0.125, 0.075, 0.6];
@@ -159,12 +166,30 @@ function bandsOf(coast: Coast, axis: "x" | "z", cellsCount: number, descending: 
   return descending ? bands.map(({ at, low, high }) => ({ at: [...at].reverse(), low: high, high: low })).reverse() : bands;
 }
 
-/** Returns the ground as coloured triangles. `hasFlatBed` false: without the bed at the scene's depth, for which the water has a colour. */
-export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: boolean): BufferGeometry {
+/** Returns the land behind a closed side. */
+function landOf(coast: Coast, side: SideName): Land {
+  const isX = side[1] === "x";
+  const sign = side[0] === "+" ? 1 : -1;
+  const halfM = (isX ? coast.bed.sideM : coast.bed.widthM) / 2;
+  const pointAt = (alongM: number, outM: number): [number, number] => (isX ? [sign * (halfM + outM), alongM] : [alongM, sign * (halfM + outM)]);
+  return {
+    sideM: longSideM(coast.bed),
+    seed: kSideNames.indexOf(side),
+    facingRad: isX ? (-sign * Math.PI) / 2 : sign > 0 ? Math.PI : 0,
+    groundAt(alongM, outM) {
+      const [x, z] = pointAt(alongM, outM - bendM(coast, side, ...pointAt(alongM, 0)));
+      const yM = coastHeightM(coast, x, z);
+      return yM > 0 && outOfM(coast, side, x, z) > 0 ? [x, yM, z] : undefined;
+    },
+  };
+}
+
+/** Returns the ground as coloured triangles, with what stands on it. `plain`: without the bed at the scene's depth, for which the water has a colour. */
+export function makeCoastGeometry(coast: Coast, cellsCount: number, plain: boolean): BufferGeometry {
   const { bed } = coast;
   const builder = new MeshBuilder();
   const [reachXM, reachZM] = [bed.sideM, bed.widthM].map((lengthM) => 0.5 * lengthM + kBedReachSides * longSideM(bed)) as [number, number];
-  const isNear = ([x, y, z]: Point): boolean => (hasFlatBed || y > -0.999 * bed.depthM) && Math.abs(x) <= reachXM && Math.abs(z) <= reachZM;
+  const isNear = ([x, y, z]: Point): boolean => (!plain || y > -0.999 * bed.depthM) && Math.abs(x) <= reachXM && Math.abs(z) <= reachZM;
   const isSeen = (points: readonly Point[]): boolean => points.some((point) => point[1] > -0.6 * bed.depthM || isNear(point));
   for (const zBand of bandsOf(coast, "z", cellsCount, true))
     for (const xBand of bandsOf(coast, "x", cellsCount, false)) {
@@ -173,7 +198,18 @@ export function makeCoastGeometry(coast: Coast, cellsCount: number, hasFlatBed: 
       builder.grid(rows, (row, column) => paintAt(coast, rows[row]![column]!), isSeen);
     }
   addQuayWalls(coast, builder, cellsCount);
+  for (const side of kSideNames) if (coast.sides[side] === "closed") addVillage(builder, landOf(coast, side), plain);
+  addPines(bed, builder, plain);
   return builder.build();
+}
+
+/** Adds pines where the ground inside the square is high above the waves: on islands and dunes. */
+function addPines(bed: Bed, builder: MeshBuilder, plain: boolean): void {
+  const high = Array.from({ length: kPinePlaces }, (_, n): Point => {
+    const [x, z] = [(hash(n, 1, 71) - 0.5) * bed.sideM, (hash(n, 2, 71) - 0.5) * bed.widthM];
+    return [x, -depthAtM(bed, x, z), z];
+  }).filter(([, y]) => y > kPineDepths * bed.depthM);
+  high.slice(0, kPinesMost).forEach((at, n) => addPine(builder, at, longSideM(bed) * (0.06 + 0.03 * hash(n, 3, 71)), n, plain));
 }
 
 function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): void {

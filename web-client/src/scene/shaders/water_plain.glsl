@@ -75,8 +75,10 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   vec3 shore = shoreAt(at, u_extent_m);
   deep_m = mix(deep_m, shore.r, inner);
   still_foam = max(inner * shore.b, 0.4 * (1.0 - smoothstep(0.0, 0.07, deep_m)));
+  // None on dry ground, which is drawn at nearly the same height.
+  still_foam *= smoothstep(-0.03, 0.0, deep_m);
 #endif
-  v_shares.x *= smoothstep(0.0, 0.6, deep_m);
+  v_shares.x *= smoothstep(0.0, 0.2, deep_m);
   foam_shade.r = max(foam_shade.r, still_foam);
 #endif
   deep_m = max(deep_m, 0.0);

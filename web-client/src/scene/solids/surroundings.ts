@@ -91,7 +91,7 @@ export class Surroundings {
     const cellsCount = bed.ground ? Math.min(Math.max(bed.ground.countX, bed.ground.countZ), plain ? kPlainGroundCells : kGroundCells) : plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave && this.sea) {
       this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
-      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, !plain), obstacles, context.solid, plain);
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, plain), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
       return;
     }

@@ -4,10 +4,13 @@ import { BackSide, Matrix4, Vector3, type PerspectiveCamera, type RawShaderMater
 
 import type { SurfaceFrame } from "../../net/messages";
 import { elevationAtM } from "../frames/height_field";
+import { depthAtM, type Bed } from "../landscape/terrain";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 
 /** The surface may divide the picture where the camera is over the water, by less than this many near planes. */
 const kCloseNears = 4;
+/** Shallower water is a film on dry ground, m. */
+const kDryM = 0.01;
 
 export class BelowSurface {
   /** Of the water's meshes, seen from below. */
@@ -28,6 +31,7 @@ export class BelowSurface {
     uniforms: Uniforms,
     defines: Record<string, number>,
     private readonly newest: () => SurfaceFrame | undefined,
+    private readonly bed: Bed,
   ) {
     this.isPlain = "PLAIN" in defines;
     this.uniforms = {
@@ -49,7 +53,10 @@ export class BelowSurface {
     const isBeside = this.isCut && Math.max(Math.abs(x) - extentM.x / 2, Math.abs(z) - extentM.y / 2) > camera.near;
     // The sides show the surface from below themselves (side.glsl).
     if (isBeside && !this.isPlain) return false;
-    if (y > (frame ? elevationAtM(frame, x, z) : 0) + (isBeside ? 0 : kCloseNears * camera.near)) return false;
+    const elevationM = frame ? elevationAtM(frame, x, z) : 0;
+    if (y > elevationM + (isBeside ? 0 : kCloseNears * camera.near)) return false;
+    // Over dry ground the elevation is that of the ground.
+    if (elevationM + depthAtM(this.bed, x, z) < kDryM) return false;
     (this.uniforms["u_inverse_projection"]!.value as Matrix4).copy(camera.projectionMatrixInverse);
     (this.uniforms["u_camera_world"]!.value as Matrix4).copy(camera.matrixWorld);
     camera.getWorldDirection(this.ahead);

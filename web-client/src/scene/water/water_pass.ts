@@ -118,7 +118,7 @@ export class WaterPass implements Pass {
         : makeMaterial("water", this.uniforms, { side, defines: { ...defines, ...more } });
     this.grid = new Mesh(top, surface(DoubleSide));
     if (quality.plain) this.plain = { surface: this.grid.material, dived: surface(FrontSide, { DIVED: 1 }) };
-    this.below = new BelowSurface(solids.floorAlbedo, isIndoors(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest);
+    this.below = new BelowSurface(solids.floorAlbedo, isIndoors(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest, bed);
     this.underside = new Mesh(top, this.below.surface);
     this.meshes = [this.grid, this.underside];
     if (sides) this.meshes.push(new Mesh(sides, surface(FrontSide, { SKIRT: 1 })));
