@@ -27,6 +27,8 @@ const kWhite: Paint = [0.85, 0.85, 0.82, 0];
 const kRed: Paint = [0.62, 0.05, 0.035, 0];
 const kGreen: Paint = [0.03, 0.30, 0.13, 0];
 const kGlass: Paint = [0.10, 0.13, 0.14, 0];
+const kLantern: Paint = [0.16, 0.13, 0.08, -1];
+const kCrates: readonly Paint[] = [[0.05, 0.16, 0.36, 0.3], [0.62, 0.19, 0.03, 0.3], [0.30, 0.20, 0.10, 0.8], [0.50, 0.50, 0.46, 0.3]];
 const kLampPaints: Record<LightKind, Paint> = { lighthouse: [0.95, 0.85, 0.60, -1], beacon: [0.10, 0.75, 0.30, -1] };
 
 /** Weed grows up to this share of the wall's height. */
@@ -49,6 +51,8 @@ export function makeBreakwater(wall: BreakwaterInfo, depthM: number, light: Ligh
     builder.block(0, side * (halfZ - edge - kerb), low, { ...low, yM: heightM + kerb, halfZ: 0.8 * kerb }, kConcrete);
   }
   addBollards(builder, wall, plain);
+  addLampPosts(builder, wall, plain);
+  addCrates(builder, wall);
   addArmour(builder, wall, bottomM, plain ? kStonesMax.plain : kStonesMax.full);
   const xM = halfX - 0.55 * widthM;
   const yM = (light === "lighthouse" ? addLighthouse : addBeacon)(builder, xM, heightM, widthM, plain);
@@ -92,6 +96,35 @@ function addBollards(builder: MeshBuilder, { lengthM, widthM, heightM }: Breakwa
       { yM: 2.8 * size, radiusM: 1.3 * size, paint: kIron },
       { yM: 3 * size, radiusM: 0, paint: kIron },
     ], plain ? 5 : 8);
+  }
+}
+
+/** Lamps on curved posts along the middle, but not where the light at the end stands. */
+function addLampPosts(builder: MeshBuilder, { lengthM, widthM, heightM }: BreakwaterInfo, plain: boolean): void {
+  const count = Math.min(Math.floor(lengthM / (2 * widthM)) - 1, 12);
+  const high = Math.min(0.85 * widthM, 3);
+  for (let n = 0; n < count; ++n) {
+    const x = lengthM * ((n + 0.6) / (count + 1) - 0.5);
+    const z = -0.3 * widthM;
+    const neck: Point = [x, heightM + 0.93 * high, z];
+    addRod(builder, [x, heightM, z], neck, 0.02 * high, kIron, plain ? 3 : 6, 0.013 * high);
+    addRod(builder, neck, [x, heightM + high, z + 0.16 * high], 0.013 * high, kIron, plain ? 3 : 6);
+    builder.block(x, z + 0.2 * high, { yM: heightM + 0.975 * high, halfX: 0.03 * high, halfZ: 0.07 * high }, { yM: heightM + 1.01 * high, halfX: 0.03 * high, halfZ: 0.07 * high }, kLantern, kIron);
+  }
+}
+
+/** Fish boxes in small heaps. */
+function addCrates(builder: MeshBuilder, { lengthM, widthM, heightM }: BreakwaterInfo): void {
+  const size = Math.min(0.075 * widthM, 0.3);
+  const heaps = Math.min(Math.floor(lengthM / (2.5 * widthM)), 8);
+  for (let n = 0; n < 4 * heaps; ++n) {
+    const heap = Math.floor(n / 4);
+    const isUpper = n % 4 === 3;
+    const x = lengthM * ((heap + 0.3 + 0.3 * hash(heap, 1, 36)) / heaps - 0.5) + 2.6 * size * (isUpper ? 0.6 : n % 4);
+    const z = widthM * (0.1 + 0.14 * hash(heap, 2, 36));
+    if (x > lengthM / 2 - 1.4 * widthM) continue;
+    const yM = heightM + (isUpper ? 1.25 * size : 0);
+    builder.block(x, z, { yM, halfX: 1.1 * size, halfZ: 0.75 * size }, { yM: yM + 1.2 * size, halfX: 1.15 * size, halfZ: 0.8 * size }, kCrates[Math.floor(hash(n, 3, 36) * kCrates.length)]!);
   }
 }
 

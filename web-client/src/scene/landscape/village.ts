@@ -32,13 +32,13 @@ const kHouseSides = 0.068;
 
 export function addVillage(builder: MeshBuilder, land: Land, plain: boolean): void {
   const { sideM, seed } = land;
-  const middleM = (hash(seed, 1, 80) - 0.5) * 0.5 * sideM;
+  const middleM = 1.9 * (hash(seed, 1, 222) - 0.5) * sideM;
   const housesCount = plain ? kHousesCount.plain : kHousesCount.full;
   for (let n = 0; n < housesCount; ++n) {
     // In three lanes along the water, each less dense toward its ends.
     const lane = n % 3;
     const spread = (n + 0.25 + 0.5 * hash(n, seed, 42)) / housesCount - 0.5;
-    const at = land.groundAt(middleM + spread * (1 + 1.4 * Math.abs(spread)) * 1.8 * sideM, (0.34 + 0.19 * lane + 0.06 * hash(n, seed, 43)) * sideM);
+    const at = land.groundAt(middleM + spread * (1 + 1.8 * Math.abs(spread)) * 1.2 * sideM, (0.34 + 0.19 * lane + 0.06 * hash(n, seed, 43)) * sideM);
     if (at) addHouse(builder, land, at, n, plain);
   }
   const church = land.groundAt(middleM + 0.12 * sideM, 0.78 * sideM);
