@@ -142,23 +142,29 @@ part_page() {
 for part in ${parts//,/ }; do
   declare -F "part_$part" >/dev/null || fail "there is no part '$part'; see --help"
 done
-failed=()
+failed=() cut=()
 begin_s=$SECONDS
 for part in ${parts//,/ }; do
   printf '\n== %s\n' "$part"
-  part_begin_s=$SECONDS
+  part_begin_s=$SECONDS code=0
   limit_s=$((all_limit_s - SECONDS + begin_s))
-  ((limit_s > 0)) || { printf 'skipped: the ten minutes are over\n' | tee "$logs/$part.log" && continue; }
+  ((limit_s > 0)) || { printf 'skipped: the ten minutes are over\n' | tee "$logs/$part.log" && cut+=("$part") && continue; }
   export -f "part_$part" fail
-  timeout $((limit_s < part_limit_s ? limit_s : part_limit_s)) bash -c "set -euo pipefail; device='$device'; part_$part" 2>&1 | tee "$logs/$part.log" || failed+=("$part")
+  timeout $((limit_s < part_limit_s ? limit_s : part_limit_s)) bash -c "set -euo pipefail; device='$device'; part_$part" 2>&1 | tee "$logs/$part.log" || code=$?
+  case $code in
+    0) ;;
+    124) cut+=("$part") ;;
+    *) failed+=("$part") ;;
+  esac
   printf '== %s took %d s\n' "$part" $((SECONDS - part_begin_s))
 done
 
-python3 - "$logs" "$output" "${failed[*]}" <<'PYTHON'
+python3 - "$logs" "$output" "${failed[*]}" "${cut[*]}" <<'PYTHON'
 """Joins what the parts wrote into one JSON file and one table."""
 import datetime, json, os, pathlib, platform, re, sys
 
-logs, output, failed = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2]), sys.argv[3].split()
+logs, output = map(pathlib.Path, sys.argv[1:3])
+failed, cut = (text.split() for text in sys.argv[3:])
 parts = {file.stem: json.loads(file.read_text()) for file in sorted(logs.glob("*.json"))}
 steps = {name[5:]: value["step"] for name, value in parts.items() if name.startswith("step-")}
 chosen = parts.get("info", {}).get("chosen", {})
@@ -173,7 +179,7 @@ name = f"{day}-{re.sub('[^a-z0-9]+', '-', device.lower()).strip('-')[:40]}"
 info = (logs / "info.log").read_text() if (logs / "info.log").exists() else ""
 processor = "".join(re.findall(r"^model name\s*: (.*)$", info, re.M)[:1]) or platform.machine()
 rows = [f"# {device}, {day}", "", f"Driver {driver}; {os.cpu_count()} threads of {processor}, Linux {platform.release()}; "
-        f"failed parts: {', '.join(failed) or 'none'}", ""]
+        f"failed parts: {', '.join(failed) or 'none'}; cut at the end of their time: {', '.join(cut) or 'none'}", ""]
 if tests:
     count = lambda what: sum(int(n) for line in tests for n in re.findall(rf"(\d+) {what}", line))
     rows += [f"Tests of the device: {count('passed')} passed, {count('failed')} failed, {count('skipped')} skipped.", ""]
@@ -190,7 +196,7 @@ for part, pattern in (("hash", r"\S+ [0-9a-f]{16} .*|  tick .*"), ("rooms", r"de
     log = logs / f"{part}.log"
     found = [line for line in (log.read_text().splitlines() if log.exists() else []) if re.fullmatch(pattern, line)]
     rows += ["", f"{part}:", ""] + [f"    {line}" for line in found] if found else []
-(output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "driver": driver, "processor": processor, "failed": failed, "tests": tests, "parts": parts}, indent=1))
+(output / f"{name}.json").write_text(json.dumps({"date": day, "device": device, "driver": driver, "processor": processor, "failed": failed, "cut": cut, "tests": tests, "parts": parts}, indent=1))
 (output / f"{name}.md").write_text("\n".join(rows) + "\n")
 print(f"\n{output / name}.json and .md")
 PYTHON
