@@ -13,6 +13,13 @@ export interface BoatLamp {
 const kWhiteLamp: Paint = [0.95, 0.92, 0.80, -1];
 const kLampPaints: Record<BoatLamp["kind"], Paint> = { port: [0.75, 0.05, 0.04, -1], starboard: [0.04, 0.55, 0.20, -1], masthead: kWhiteLamp, stern: kWhiteLamp, allRound: kWhiteLamp };
 
+const kLifeJacket: Paint = [0.72, 0.20, 0.02, 0.6];
+const kTrousers: Paint = [0.05, 0.06, 0.09, 0.8];
+const kSkin: Paint = [0.48, 0.29, 0.20, 0.6];
+const kCap: Paint = [0.06, 0.07, 0.11, 0.6];
+/** Height of a person, in beams of the boat. */
+const kPersonBeams = 0.62;
+
 export interface Detail {
   /** Sides of round things. */
   sidesCount: number;
@@ -51,6 +58,20 @@ function addMotor(builder: MeshBuilder, lines: HullLines, livery: Livery): void 
   addRod(builder, [x, top + 0.1 * heightM, 0], [x + 4.2 * size, top + 0.2 * heightM, 0.6 * size], 0.12 * size, kBlack);
 }
 
+/** Somebody on board, in a life jacket: standing, or seated with the legs out of sight. `foot`: under the feet, or of the seat. */
+function addPerson(builder: MeshBuilder, [x, y, z]: Point, tallM: number, isSeated: boolean): void {
+  const turn = (up: number, radius: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: (up - (isSeated ? 0.45 : 0)) * tallM, radiusM: radius * tallM, paint });
+  const legs = isSeated ? [] : [turn(0, 0.085, kTrousers), turn(0.47, 0.1, kTrousers)];
+  addTurned(builder, [x, y, z], [
+    ...legs, turn(0.47, 0.12, kLifeJacket), turn(0.62, 0.145, kLifeJacket), turn(0.78, 0.135, kLifeJacket), turn(0.83, 0.05, kSkin),
+    turn(0.86, 0.075, kSkin), turn(0.93, 0.085, kCap), turn(0.99, 0.06, kCap), turn(1.01, 0, kCap),
+  ], 7);
+  for (const side of [-1, 1]) {
+    const at = (out: number, up: number, ahead: number): Point => [x + ahead * tallM, y + (up - (isSeated ? 0.45 : 0)) * tallM, z + side * out * tallM];
+    addRod(builder, at(0.15, 0.77, 0), at(0.1, 0.6, 0.19), 0.035 * tallM, kLifeJacket, 5);
+  }
+}
+
 /** A flag on a staff at the stern, both sides of it. */
 function addFlag(builder: MeshBuilder, foot: Point, highM: number, paint: Paint): void {
   const [x, y] = foot;
@@ -75,6 +96,7 @@ function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery): Boat
     addRod(builder, [lines.xM(0.2, y), y, z], [lines.xM(0.72, y), y, 0.86 * z], 0.016 * beamM, kCanvas);
     addPlate(builder, [[lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z - 0.05 * beamM], [lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z + 0.05 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z + 0.04 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z - 0.04 * beamM]], 0.02 * heightM, kCanvas);
   }
+  addPerson(builder, [lines.xM(0.15, seatM), seatM + 0.035 * heightM, 0], kPersonBeams * beamM, true);
   const bowM = lines.sheerM(0.93);
   const half = lines.halfM(0.93, bowM);
   const staff: Point = [lines.xM(0.04, heightM), lines.sheerM(0.04), 0.3 * beamM];
@@ -164,6 +186,7 @@ function fitLaunch(builder: MeshBuilder, lines: HullLines, livery: Livery, { sid
   addRod(builder, [consoleX - 0.03 * lengthM, deckM - 0.02 * heightM, 0.15 * beamM], [consoleX - 0.055 * lengthM, deckM + 0.02 * heightM, 0.15 * beamM], 0.085 * beamM, kBlack, sidesCount);
   builder.block(lines.xM(0.3, 0), 0.15 * beamM, { yM: soleM, halfX: 0.03 * lengthM, halfZ: 0.09 * beamM }, { yM: 0.12 * heightM, halfX: 0.035 * lengthM, halfZ: 0.11 * beamM }, kCanvas);
   addThwart(builder, lines, 0.12, 0.12, 0.14 * heightM, kCanvas);
+  addPerson(builder, [consoleX - 0.085 * lengthM, soleM, 0.13 * beamM], kPersonBeams * beamM, false);
   addMotor(builder, lines, livery);
   const sternM = lines.sheerM(0.03);
   addFlag(builder, [lines.xM(0.03, sternM) + 0.02 * lengthM, sternM, 0], 0.85 * heightM, livery.side);
@@ -232,6 +255,7 @@ function fitCutter(builder: MeshBuilder, lines: HullLines, livery: Livery, { sid
     for (const z of [-wide, wide]) addRod(builder, [x, yM - 0.03 * heightM, z], [x, yM + 0.2 * heightM, z], 0.026 * beamM, kBlack, Math.min(sidesCount, 8));
     addRod(builder, [x, yM + 0.12 * heightM, -1.8 * wide], [x, yM + 0.12 * heightM, 1.8 * wide], 0.018 * beamM, kBlack);
   }
+  addPerson(builder, [lines.xM(0.24, deckM), lines.deckM(0.24), 0.2 * beamM], kPersonBeams * beamM, false);
   // A hatch before the house.
   const hatchX = lines.xM(0.73, deckM);
   const hatchM = lines.deckM(0.73);
