@@ -29,8 +29,9 @@ export class MeshBuilder {
     const columnsCount = rows[0]!.length;
     rows.forEach((row, r) =>
       row.forEach((point, c) => {
-        this.positions.push(...point);
-        this.colors.push(...(typeof paint === "function" ? paint(r, c) : paint));
+        const [red, green, blue, grain] = typeof paint === "function" ? paint(r, c) : paint;
+        this.positions.push(point[0], point[1], point[2]);
+        this.colors.push(red, green, blue, grain);
       }),
     );
     for (let r = 0; r + 1 < rows.length; ++r)
@@ -96,7 +97,7 @@ export class MeshBuilder {
 
   private isSame(a: number, b: number): boolean {
     const { positions } = this;
-    return [0, 1, 2].every((k) => positions[3 * a + k] === positions[3 * b + k]);
+    return positions[3 * a] === positions[3 * b] && positions[3 * a + 1] === positions[3 * b + 1] && positions[3 * a + 2] === positions[3 * b + 2];
   }
 
   private weld(normals: BufferAttribute): void {
