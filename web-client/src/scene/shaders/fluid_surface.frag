@@ -65,9 +65,7 @@ const float kWhiteness = 0.1;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
-// The glass around a tank's water sends back light that it scattered.
-const float kTankScatter = 1.6;
-const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
+const vec3 kFroth = vec3(0.90, 0.98, 1.03);
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
@@ -317,9 +315,6 @@ void main() {
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
-#if !defined(WAVE) && !defined(OUTDOORS)
-  scattered *= kTankScatter;
-#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);

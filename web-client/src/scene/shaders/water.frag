@@ -260,7 +260,7 @@ void main() {
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
+  vec3 scattered = waterScattered(lifted) * u_water_light;
   float sunlit_share = 1.0;
 #ifdef SHADOWS
   sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.3);
