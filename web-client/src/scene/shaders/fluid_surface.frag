@@ -66,6 +66,9 @@ const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
 const vec3 kFroth = vec3(0.90, 0.98, 1.03);
+const float kShadeRadii = 30.0;
+// Light of the lamps over a tank in its water, and the least that comes from its sides.
+const float kFromAbove = 1.9, kFromSides = 0.5;
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
@@ -152,6 +155,15 @@ float densityAt(vec3 at_m) {
   return liquidAt(at_m).x;
 #endif
 }
+
+#if !defined(WAVE) && !defined(OUTDOORS)
+// Length of the liquid over a position, up to kShadeRadii.
+float shadeAbove(vec3 at_m) {
+  float length_radii = 0.0;
+  for (float radii = 2.0; radii < kShadeRadii; radii *= 1.6) length_radii += 0.6 * radii * smoothstep(0.2, 0.8, volumeAt(at_m + vec3(0.0, radii * u_radius_m, 0.0)).r);
+  return length_radii * u_radius_m;
+}
+#endif
 
 vec3 normalAt(vec3 at_m) {
   vec2 apart_m = vec2(kSlopeRadii * u_radius_m, 0.0);
@@ -315,6 +327,10 @@ void main() {
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+#if !defined(WAVE) && !defined(OUTDOORS)
+  vec3 from_above = exp(-u_loss_per_m * u_colour_ratio * shadeAbove(surface + bent * min(0.4 * length_m, 4.0 * u_radius_m)));
+  scattered *= kFromSides + kFromAbove * from_above;
+#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
@@ -325,7 +341,7 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (is_pane) under = mix(under, meniscusLight(), 0.45 * smoothstep(0.1, 0.02, liquid.x) * (1.0 - white));
+  if (is_pane) under = mix(under, meniscusLight(), 0.5 * smoothstep(0.04, 0.01, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE
