@@ -19,7 +19,7 @@ const kProperties: Record<WaterTypeName | "dyed", Properties> = {
   ocean: { absorption: [0.350, 0.068, 0.030], backscattering: [0.0016, 0.0028, 0.0052], realPerModelLength: 20 },
   coast: { absorption: [0.375, 0.090, 0.082], backscattering: [0.0045, 0.0070, 0.0078] },
   // With a green-blue dye and a little milk, as in experiments: bright before a dark room.
-  dyed: { absorption: [0.90, 0.085, 0.034], backscattering: [0.010, 0.060, 0.066] },
+  dyed: { absorption: [0.90, 0.10, 0.034], backscattering: [0.008, 0.055, 0.075] },
   harbor: { absorption: [0.460, 0.140, 0.165], backscattering: [0.0080, 0.0155, 0.0165] },
 };
 
@@ -37,7 +37,7 @@ const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
 /** Way through a tank, for its colour (m). */
-const kTankWayM = 1.5;
+const kTankWayM = 0.9;
 
 /** Returns by which factor lengths in a tank count as longer for its water's colour: tanks of all sizes look alike from the side. */
 export function tankColourRatio({ sideM, widthM }: { sideM: number; widthM: number }): number {

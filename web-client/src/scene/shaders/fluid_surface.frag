@@ -67,10 +67,16 @@ const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 const float kWhiteness = 0.25;
 const vec3 kFroth = vec3(0.90, 0.98, 1.03);
 const float kShadeRadii = 30.0;
-// Light of the lamps over a tank in its water, and the least that comes from its sides.
-const float kFromAbove = 1.9, kFromSides = 0.5;
+// Light in a tank's water from behind it, which is lost per particle radius, and from all sides.
+const float kFromBehind = 3.0;
+const float kAwayLit = 0.3, kTowardLit = 1.15;
+const vec3 kLossPerRadius = vec3(0.15, 0.065, 0.05), kFromSides = vec3(0.25, 0.32, 0.45);
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
+#endif
+
+#if defined(WAVE) || defined(OUTDOORS)
+const float kAwayLit = 0.5, kTowardLit = 1.1;
 #endif
 
 // Mip level of what is mirrored: clouds are blurred, windows are not.
@@ -157,11 +163,11 @@ float densityAt(vec3 at_m) {
 }
 
 #if !defined(WAVE) && !defined(OUTDOORS)
-// Length of the liquid over a position, up to kShadeRadii.
-float shadeAbove(vec3 at_m) {
+// Length of the liquid between a position and the light, in particle radii, up to kShadeRadii.
+float shadeAt(vec3 at_m) {
   float length_radii = 0.0;
-  for (float radii = 2.0; radii < kShadeRadii; radii *= 1.6) length_radii += 0.6 * radii * smoothstep(0.2, 0.8, volumeAt(at_m + vec3(0.0, radii * u_radius_m, 0.0)).r);
-  return length_radii * u_radius_m;
+  for (float radii = 1.5; radii < kShadeRadii; radii *= 1.6) length_radii += 0.6 * radii * smoothstep(0.2, 0.7, volumeAt(at_m + radii * u_radius_m * u_sun_direction).r);
+  return length_radii;
 }
 #endif
 
@@ -326,10 +332,9 @@ void main() {
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
-  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * mix(kAwayLit, kTowardLit, sun);
 #if !defined(WAVE) && !defined(OUTDOORS)
-  vec3 from_above = exp(-u_loss_per_m * u_colour_ratio * shadeAbove(surface + bent * min(0.4 * length_m, 4.0 * u_radius_m)));
-  scattered *= kFromSides + kFromAbove * from_above;
+  scattered *= kFromSides + kFromBehind * exp(-kLossPerRadius * shadeAt(surface + bent * min(0.5 * length_m, 4.0 * u_radius_m)));
 #endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));

@@ -18,5 +18,8 @@ void main() {
   // What is behind is on the screen in display values already, whose squares are about linear: a dim reflection adds little to them.
   vec3 mirrored = toDisplay(skyLight(reflect(ray, normal)) * fresnel);
   color = vec4(mirrored * mirrored, 0.99 * (1.0 - fresnel));
-  if (v_color.a > 0.5) color = vec4(0.5 * toDisplay(vec3(0.22, 0.44, 0.42) * (u_ambient_up + 0.4 * u_sun_light)), 0.5);
+  if (v_color.a > 0.5) {
+    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.35 * textureLod(u_sky, reflect(ray, normal), 4.0).rgb);
+    color = vec4(0.7 * edge, 0.3);
+  }
 }

@@ -9,14 +9,14 @@ import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
 
 /** Thickness of the glass and of the base: a share of the tank's size. */
-const kGlassThickness = 0.008;
+const kGlassThickness = 0.006;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
 /** The size of a long channel is this many of its shorter sides: its glass is not those of a wide tank. */
 const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
-const kPlinth = 2.5;
+const kPlinth = 3.5;
 
 /** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
 const kTileShare = 1 / 24;
@@ -24,7 +24,7 @@ const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
-export const kTankTile = [0.10, 0.27, 0.32] as const;
+export const kTankTile = [0.06, 0.17, 0.21] as const;
 /** Grain 0 is paint. */
 const kBase: Paint = [0.10, 0.13, 0.16, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
