@@ -250,6 +250,7 @@ void main() {
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
 #ifdef SKIRT
   behind = throughSide(v_world, ray, normal, path_m);
+  float lit_side = 0.7 + 1.5 * exp((v_world.y - v_top_m) / (0.16 * u_depth_m));
 #endif
 #ifdef SHORE
   // In thin water the way follows from the depth and the refracted ray: the distance between two meshes says little, and a straight ray at
@@ -261,6 +262,10 @@ void main() {
   vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light;
+#ifdef SKIRT
+  // A tank is lit from above.
+  scattered *= lit_side;
+#endif
   float sunlit_share = 1.0;
 #ifdef SHADOWS
   sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.3);
