@@ -35,7 +35,8 @@ void main() {
   vec3 lit = kConcrete * (1.0 + 0.25 * stains) * (1.0 - 0.6 * joint) * (pool * pool) * (sun + u_ambient_up);
   vec3 ray = normalize(v_world - u_camera_m);
   float past = 1.0 + ray.y;
-  float mirror = 0.012 + 0.4 * past * past * past * past;
+  // Rough, it mirrors little but the walls.
+  float mirror = (0.01 + 0.45 * past * past * past * past) * smoothstep(0.5, 0.2, -ray.y);
   lit += mirror * (1.0 - 0.6 * joint + 0.15 * stains) * textureLod(u_sky, vec3(ray.x, -ray.y, ray.z), 3.0).rgb;
 #endif
   color = vec4(lit, 1.0);

@@ -20,14 +20,14 @@ void main() {
   vec3 at = up * away;
   vec3 light = kCeiling;
   if (away == reach.y) {
-    light += kLamp * within(abs(at.x), -1.0, 1.5, 0.02) * within(abs(fract(at.z / 0.5) - 0.5), -1.0, 0.12, 0.02);
+    light += kLamp * within(abs(at.x), -1.0, 1.5, 0.02) * within(abs(fract(at.z / 0.36) - 0.5), -1.0, 0.12, 0.02);
   } else {
     bool is_long = away == reach.z;
     float along = is_long ? at.x : at.z;
     float half_m = is_long ? kRoom.x : kRoom.z;
     light = kWall + kWash * exp(-3.2 * at.y) * mix(0.25, 1.0, exp(-1.6 * along * along));
     if (is_long) light += 0.8 * kLamp * within(at.y, 0.80, 0.86, 0.006) * within(abs(fract(along / 0.7) - 0.5), -1.0, 0.42, 0.01) * within(abs(along), -1.0, 1.4, 0.01);
-    else light += 0.5 * kLamp * within(abs(along), 0.5, 1.0, 0.01) * within(at.y, 0.75, 1.15, 0.01);
+    else light += 0.2 * kLamp * within(abs(along), 0.5, 1.0, 0.01) * within(at.y, 0.75, 1.15, 0.01);
   }
   if (to.y < 0.0) light *= 0.25 + 0.35 * exp(-8.0 * up.y);
   color = vec4(light * u_room_light, 1.0);

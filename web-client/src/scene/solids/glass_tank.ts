@@ -24,7 +24,7 @@ const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
-export const kTankTile = [0.06, 0.17, 0.21] as const;
+export const kTankTile = [0.04, 0.13, 0.17] as const;
 /** Grain 0 is paint. */
 const kBase: Paint = [0.10, 0.13, 0.16, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
