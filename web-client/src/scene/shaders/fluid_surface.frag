@@ -68,7 +68,7 @@ const float kWhiteness = 0.25;
 const vec3 kFroth = vec3(0.90, 0.98, 1.03);
 const float kShadeRadii = 30.0;
 // Light in a tank's water from behind it, which is lost per particle radius, and from all sides.
-const float kFromBehind = 2.0;
+const float kFromBehind = 2.5;
 const float kAwayLit = 0.3, kTowardLit = 1.15;
 const vec3 kLossPerRadius = vec3(0.15, 0.065, 0.05), kFromSides = vec3(0.18, 0.24, 0.36);
 #endif
