@@ -19,7 +19,7 @@ void main() {
   vec3 mirrored = toDisplay(skyLight(reflect(ray, normal)) * fresnel);
   color = vec4(mirrored * mirrored, 0.99 * (1.0 - fresnel));
   if (v_color.a > 0.5) {
-    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.35 * textureLod(u_sky, reflect(ray, normal), 4.0).rgb);
+    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.2 * textureLod(u_sky, reflect(ray, normal), 4.0).rgb);
     color = vec4(0.7 * edge, 0.3);
   }
 }

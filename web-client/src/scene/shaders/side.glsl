@@ -61,6 +61,9 @@ vec3 throughSide(vec3 from, vec3 ray, vec3 side, out float length_m) {
   return solidsAt(from);
 }
 
+// Light in the water of a tank `under_m` below its surface: lamps hang over it.
+float litFromAbove(float under_m) { return 0.7 + 1.5 * exp(-under_m / (0.16 * u_depth_m)); }
+
 // `under_m`: below the surface. The bright line where it meets the glass, over a darker one.
 vec3 withMeniscus(vec3 water, float under_m) {
   float lines = under_m / max(0.004 * u_depth_m, 0.8 * fwidth(v_world.y));

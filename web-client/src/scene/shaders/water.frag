@@ -250,7 +250,6 @@ void main() {
   float path_m = clamp(behind_m, 0.0, way_m) + 9.0 * sunk;
 #ifdef SKIRT
   behind = throughSide(v_world, ray, normal, path_m);
-  float lit_side = 0.7 + 1.5 * exp((v_world.y - v_top_m) / (0.16 * u_depth_m));
 #endif
 #ifdef SHORE
   // In thin water the way follows from the depth and the refracted ray: the distance between two meshes says little, and a straight ray at
@@ -263,8 +262,7 @@ void main() {
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
   vec3 scattered = waterScattered(lifted) * u_water_light;
 #ifdef SKIRT
-  // A tank is lit from above.
-  scattered *= lit_side;
+  scattered *= litFromAbove(v_top_m - v_world.y);
 #endif
   float sunlit_share = 1.0;
 #ifdef SHADOWS
@@ -350,9 +348,7 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    float streamed = mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix);
-    // Old foam is a network; only what has just begun is a body.
-    foam = max(foam, streamed * (0.65 + 0.35 * streamed * streamed));
+    foam = max(foam, shownFoam(mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix)));
 #endif
 #ifdef OPEN_SEA
     // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.
