@@ -350,7 +350,7 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (is_pane) under = mix(under, meniscusLight(), 0.5 * smoothstep(0.04, 0.01, liquid.x) * (1.0 - white));
+  if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE

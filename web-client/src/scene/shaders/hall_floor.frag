@@ -21,7 +21,7 @@ void main() {
   float pool = 1.0 / (1.0 + away);
   vec3 sun = u_sun_light * (1.25 * u_sun_direction.y);
 #ifdef PLAIN
-  vec3 lit = kConcrete * (pool * pool) * sun + kConcrete * max(pool * pool, 0.07) * u_ambient_up;
+  vec3 lit = kConcrete * (pool * pool) * sun + kConcrete * max(pool * pool, 0.4) * u_ambient_up;
   if (u_is_displayed) lit = toDisplay(lit);
 #else
 #ifdef SHADOWS
