@@ -166,7 +166,7 @@ float densityAt(vec3 at_m) {
 // Length of the liquid between a position and the light, in particle radii, up to kShadeRadii.
 float shadeAt(vec3 at_m) {
   float length_radii = 0.0;
-  for (float radii = 1.5; radii < kShadeRadii; radii *= 1.6) length_radii += 0.6 * radii * smoothstep(0.2, 0.7, volumeAt(at_m + radii * u_radius_m * u_sun_direction).r);
+  for (float radii = 2.5; radii < kShadeRadii; radii *= 1.9) length_radii += 0.65 * radii * smoothstep(0.2, 0.7, volumeAt(at_m + radii * u_radius_m * u_sun_direction).r);
   return length_radii;
 }
 #endif

@@ -1,5 +1,5 @@
-// Bakes the dark laboratory around a tank into one face of the cube: walls that lamps at their foot wash with light, a soft box overhead, a row of
-// tubes on each long wall and an upright light box in each corner. The lights have sharp edges: mirrored in water and glass they model its surface.
+// Bakes the dark laboratory around a tank into one face of the cube: walls that lamps at their foot wash with light, rows of tubes overhead, and a
+// row on each long wall. The tubes have sharp edges: mirrored in water and glass they show the shape of a surface.
 
 in vec3 v_direction;
 uniform vec3 u_room_light;  // relative to noon
@@ -24,10 +24,8 @@ void main() {
   } else {
     bool is_long = away == reach.z;
     float along = is_long ? at.x : at.z;
-    float half_m = is_long ? kRoom.x : kRoom.z;
     light = kWall + kWash * exp(-3.2 * at.y) * mix(0.25, 1.0, exp(-1.6 * along * along));
     if (is_long) light += 0.8 * kLamp * within(at.y, 0.80, 0.86, 0.006) * within(abs(fract(along / 0.7) - 0.5), -1.0, 0.42, 0.01) * within(abs(along), -1.0, 1.4, 0.01);
-    else light += 0.2 * kLamp * within(abs(along), 0.5, 1.0, 0.01) * within(at.y, 0.75, 1.15, 0.01);
   }
   if (to.y < 0.0) light *= 0.25 + 0.35 * exp(-8.0 * up.y);
   color = vec4(light * u_room_light, 1.0);

@@ -1,4 +1,4 @@
-// A glass tank or flume on the floor of a hall, whose walls are the cube map that stands for the sky (room_bake.frag).
+// A glass tank or flume on the floor of a dark laboratory, whose walls are the cube map that stands for the sky (room_bake.frag).
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
