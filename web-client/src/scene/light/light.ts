@@ -73,7 +73,7 @@ const kStudioKey: Rgb = [1.22, 1.25, 1.30];
 /** Light from all sides in a room over that under the sky: dark walls send little back. */
 const kStudioAmbient = 0.65;
 /** A room by day is shown brighter than its light, as photographs of rooms are. */
-const kStudioExposure = 1.12;
+const kStudioExposure = 1.25;
 /** Light of lamps in a room, which adds to the daylight. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
