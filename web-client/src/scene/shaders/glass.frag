@@ -21,7 +21,7 @@ void main() {
   vec3 mirrored = toDisplay(min(skyLight(reflect(ray, normal)), vec3(kBrightest)) * fresnel);
   color = vec4(mirrored * mirrored, 0.99 * (1.0 - fresnel));
   if (v_color.a > 0.5) {
-    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.2 * min(textureLod(u_sky, reflect(ray, normal), 4.0).rgb, vec3(kBrightest)));
+    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.12 * min(textureLod(u_sky, reflect(ray, normal), 4.0).rgb, vec3(kBrightest)));
     color = vec4(0.7 * edge, 0.3);
   }
 }
