@@ -95,7 +95,15 @@ describe("the light", () => {
 
   it("in a room does not get darker than its lamps", () => {
     expect(Math.min(...kHours.map((hour) => lightOnWhite(indoors(lightAt(hour, 0)))))).toBeGreaterThan(0.3);
-    expect(indoors(lightAt(12, 0)).ambientUp).toEqual(lightAt(12, 0).ambientUp);
+  });
+
+  it("in a room comes less from all sides than under the open sky, and more from one", () => {
+    const noon = lightAt(12, 0);
+    const room = indoors(noon);
+    for (const channel of [0, 1, 2] as const) {
+      expect(room.ambientUp[channel]).toBeLessThan(0.8 * noon.ambientUp[channel]);
+      expect(room.key[channel]).toBeGreaterThan(noon.key[channel]);
+    }
   });
 });
 

@@ -250,7 +250,7 @@ export class WaterScene {
     const frame = this.frames.particles.newest();
     if (!frame) return undefined;
     const minYM = this.floorM()!;
-    return { ...view, sideM, widthM, minYM, maxYM: firstView ? minYM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
+    return { ...view, sideM, widthM, withFloor: isIndoors(this.greeting), minYM, maxYM: firstView ? minYM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
   }
 
   /** Returns the level of the floor: that of the wave, or below the lowest of the newest particles. */

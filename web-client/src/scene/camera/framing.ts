@@ -29,6 +29,8 @@ export interface ViewedBox {
   turnRad?: number;
   /** What the scene shows first, instead of what suits its setting. */
   first?: FirstViewInfo;
+  /** The scene's first view shows the water down to its floor. */
+  withFloor?: boolean;
   /** How much higher than usual the first view looks down in a wide and in a tall free part; the framing's own limits if left out. */
   raised?: { wide: number; tall: number };
   /** How much higher than usual the view from the side looks down, because a rim hides the water from below; 1 if left out. */
@@ -99,7 +101,7 @@ export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { acro
   const centreM = { x: first.xM - rightM * Math.sin(headingRad), z: first.zM + rightM * Math.cos(headingRad) };
   const pitchRad = Math.atan(Math.tan(first.pitchRad) * (1 + (kFirstTall.slope - 1) * tall));
   // Deep water is seen without its floor.
-  const minYM = Math.max(box.minYM, -kFirstDepth * acrossM);
+  const minYM = box.withFloor ? box.minYM : Math.max(box.minYM, -kFirstDepth * acrossM);
   const { maxYM } = box;
   return {
     box: { sideM: first.awayM || acrossM, widthM: acrossM, minYM, maxYM, centreM, turnRad: headingRad },

@@ -11,7 +11,7 @@ import type { Pass } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import type { Sky } from "../light/sky";
-import { kTankColourRatio } from "../light/water_optics";
+import { tankColourRatio } from "../light/water_optics";
 import type { SolidsPass } from "../solids/solids_pass";
 import { FluidDropsPass } from "./fluid_drops_pass";
 import { FluidParticles } from "./fluid_particles";
@@ -37,13 +37,13 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const particles = new FluidParticles(frames.particles, frames.clock, field, size);
   // The wave shows most of the water.
   if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount, true)] };
-  if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, kTankColourRatio)] };
+  if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, tankColourRatio(size))] };
   const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   // A wave has no floor of its own.
   const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, size, { ...quality, texelType, plain });
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
-  const surface = new FluidSurfacePass(inputs, field ? 1 : kTankColourRatio, quality, plain);
+  const surface = new FluidSurfacePass(inputs, field ? 1 : tankColourRatio(size), quality, plain);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };

@@ -6,7 +6,7 @@ import { FullscreenPass } from "../drawing/fullscreen";
 import type { Pass, Picture } from "../drawing/pass";
 import type { FluidQuality, Quality } from "../drawing/quality";
 import type { Sky } from "../light/sky";
-import { kTankColourRatio } from "../light/water_optics";
+import { tankColourRatio } from "../light/water_optics";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
@@ -52,7 +52,7 @@ export class FluidShadowPass implements Pass {
     const [x, z] = [0.5 * sideM, 0.5 * widthM].map((half) => half / place.u_shaded_m.value) as [number, number];
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([-x, 0, -z, -x, 0, z, x, 0, -z, x, 0, z]), 3));
     geometry.setIndex([0, 1, 2, 2, 1, 3]);
-    const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: kTankColourRatio } };
+    const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: tankColourRatio({ sideM, widthM }) } };
     this.floor = new Mesh(
       geometry,
       makeMaterial("fluidShadow", uniforms, {

@@ -69,9 +69,11 @@ const kNoonSky = kSkies.at(-1)!;
 const kFairStorm = 0.3;
 
 /** Direct light in a room at noon: white, so that white water is. */
-const kStudioKey: Rgb = [0.92, 0.94, 0.97];
+const kStudioKey: Rgb = [1.22, 1.25, 1.30];
+/** Light from all sides in a room over that under the sky: dark walls send little back. */
+const kStudioAmbient = 0.65;
 /** A room by day is shown brighter than its light, as photographs of rooms are. */
-const kStudioExposure = 1.12;
+const kStudioExposure = 1.25;
 /** Light of lamps in a room, which adds to the daylight. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
@@ -167,8 +169,8 @@ export function indoors(light: Light): Light {
     sharp: mix(light.sharp, 1, lamps),
     stars: 0,
     key: from(kStudioKey, kLampKey),
-    ambientUp: from(kNoonSky.ambientUp, kLampAmbientUp),
-    ambientDown: from(kNoonSky.ambientDown, kLampAmbientDown),
+    ambientUp: from(scale(kNoonSky.ambientUp, kStudioAmbient), kLampAmbientUp),
+    ambientDown: from(scale(kNoonSky.ambientDown, kStudioAmbient), kLampAmbientDown),
     exposure: mix(kStudioExposure * light.exposure, 1, lamps),
   };
 }

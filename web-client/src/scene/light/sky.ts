@@ -122,7 +122,7 @@ export class Sky {
   /** Chooses the open sky or a room, which is baked, and the water; needed again after the WebGL context was restored. */
   enter(isRoom: boolean, waterType: WaterTypeName): void {
     this.isRoom = isRoom;
-    const { lossPerM, scattered, bubbly, crest } = waterOpticsOf(waterType);
+    const { lossPerM, scattered, bubbly, crest } = waterOpticsOf(isRoom && waterType === "pool" ? "dyed" : waterType);
     Object.entries({ u_loss_per_m: lossPerM, u_scattered: scattered, u_bubbly: bubbly, u_crest: crest }).forEach(([name, rgb]) => (this.uniforms[name]!.value as Vector3).set(...rgb));
     this.box.material = isRoom ? this.room : this.outdoors;
     this.bakedS = Number.NEGATIVE_INFINITY;

@@ -32,7 +32,7 @@ void main() {
   vec3 loss = u_loss_per_m * (a_length_white.x * u_colour_ratio);
   vec3 passed = 1.0 / (1.0 + loss * (1.0 + loss * (0.5 + loss * 0.1667)));
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
-  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (1.0 + 1.2 * sun);
+  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (1.2 + 2.2 * sun);
   float against_sun = max(dot(v_ray, u_sun_direction), 0.0);
   scattered += u_crest * u_sun_light * (0.35 * against_sun * against_sun);
   // Blending has one share for all colours: the light of a room that is lit evenly makes up for the difference.

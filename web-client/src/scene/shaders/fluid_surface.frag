@@ -65,11 +65,18 @@ const float kWhiteness = 0.1;
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 #else
 const float kWhiteness = 0.25;
-// The glass around a tank's water sends back light that it scattered.
-const float kTankScatter = 1.6;
-const vec3 kFroth = vec3(0.82, 1.01, 1.22);  // bluish, so that it is seen before bright windows
+const vec3 kFroth = vec3(0.90, 0.98, 1.03);
+const float kShadeRadii = 30.0;
+// Light in a tank's water from behind it, which is lost per particle radius, and from all sides.
+const float kFromBehind = 2.5;
+const float kAwayLit = 0.3, kTowardLit = 1.15;
+const vec3 kLossPerRadius = vec3(0.15, 0.065, 0.05), kFromSides = vec3(0.18, 0.24, 0.36);
 #endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
+#endif
+
+#if defined(WAVE) || defined(OUTDOORS)
+const float kAwayLit = 0.5, kTowardLit = 1.1;
 #endif
 
 // Mip level of what is mirrored: clouds are blurred, windows are not.
@@ -154,6 +161,15 @@ float densityAt(vec3 at_m) {
   return liquidAt(at_m).x;
 #endif
 }
+
+#if !defined(WAVE) && !defined(OUTDOORS)
+// Length of the liquid between a position and the light, in particle radii, up to kShadeRadii.
+float shadeAt(vec3 at_m) {
+  float length_radii = 0.0;
+  for (float radii = 2.5; radii < kShadeRadii; radii *= 1.9) length_radii += 0.65 * radii * smoothstep(0.2, 0.7, volumeAt(at_m + radii * u_radius_m * u_sun_direction).r);
+  return length_radii;
+}
+#endif
 
 vec3 normalAt(vec3 at_m) {
   vec2 apart_m = vec2(kSlopeRadii * u_radius_m, 0.0);
@@ -316,12 +332,16 @@ void main() {
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
-  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (0.5 + 0.6 * sun);
+  vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * mix(kAwayLit, kTowardLit, sun);
 #if !defined(WAVE) && !defined(OUTDOORS)
-  scattered *= kTankScatter;
+  scattered *= kFromSides + kFromBehind * exp(-kLossPerRadius * shadeAt(surface + bent * min(0.5 * length_m, 4.0 * u_radius_m)));
 #endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
+#if !defined(WAVE) && !defined(OUTDOORS)
+  // Through glass its bubbles are seen from near.
+  white_m *= clamp(2.4 * lumps(4.0 * surface / u_radius_m) - 0.3, 0.0, 2.0);
+#endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 
@@ -330,7 +350,7 @@ void main() {
   vec3 mirrored = reflect(ray, normal);
   vec3 mirrored_light = mirroredAlong(mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
-  if (is_pane) under = mix(under, meniscusLight(), 0.45 * smoothstep(0.1, 0.02, liquid.x) * (1.0 - white));
+  if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE

@@ -13,6 +13,16 @@ float laceAt(vec2 at, float fresh) {
   return mix(0.5 * wide + 0.34 * middle + 0.16 * fine, 1.0 - (0.3 * broad + 0.34 * wide + 0.24 * middle + 0.12 * fine), fresh);
 }
 
+// Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
+float shownFoam(float streamed) {
+#if defined(OPEN_SEA) || defined(RIPPLES) || defined(WALLS)
+  return streamed * (0.65 + 0.35 * streamed * streamed);
+#else
+  // The low waves of a tank are seen from near.
+  return min(1.25 * streamed, 1.0);
+#endif
+}
+
 // Light of foam of this `lace` on water with this `normal`. `blur`: width of a pixel in tiles of the lace.
 vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share, float blur) {
   vec2 toward_sun = u_sun_direction.xz * inversesqrt(dot(u_sun_direction.xz, u_sun_direction.xz) + 1e-4);

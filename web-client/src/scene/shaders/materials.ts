@@ -42,6 +42,7 @@ import fluidWords from "./fluid_words.glsl?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
+import hallFloorFrag from "./hall_floor.frag?raw";
 import glitter from "./glitter.glsl?raw";
 import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
@@ -108,6 +109,7 @@ const kPrograms = {
   fluidVolume: [fluidVolumeVert, fluidVolumeFrag],
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
+  hallFloor: [solidVert, hallFloorFrag],
   lamp: [lampVert, lampFrag],
   level: [fullscreenVert, levelFrag],
   lookParticle: [lookParticleVert, lookParticleFrag],

@@ -61,8 +61,11 @@ vec3 throughSide(vec3 from, vec3 ray, vec3 side, out float length_m) {
   return solidsAt(from);
 }
 
+// Light in the water of a tank `under_m` below its surface: lamps hang over it.
+float litFromAbove(float under_m) { return 0.7 + 1.5 * exp(-under_m / (0.16 * u_depth_m)); }
+
 // `under_m`: below the surface. The bright line where it meets the glass, over a darker one.
 vec3 withMeniscus(vec3 water, float under_m) {
-  float lines = under_m / max(0.006 * u_depth_m, fwidth(v_world.y));
-  return mix(water * (1.0 - 0.35 * smoothstep(3.0, 1.0, lines)), meniscusLight(), 0.6 * smoothstep(1.3, 0.7, lines));
+  float lines = under_m / max(0.004 * u_depth_m, 0.8 * fwidth(v_world.y));
+  return mix(water * (1.0 - 0.35 * smoothstep(3.0, 1.0, lines)), meniscusLight(), 0.4 * smoothstep(1.3, 0.5, lines));
 }

@@ -260,7 +260,10 @@ void main() {
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
   float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = waterScattered(lifted) * u_water_light * min(u_colour_ratio, 1.8);
+  vec3 scattered = waterScattered(lifted) * u_water_light;
+#ifdef SKIRT
+  scattered *= litFromAbove(v_top_m - v_world.y);
+#endif
   float sunlit_share = 1.0;
 #ifdef SHADOWS
   sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.3);
@@ -345,9 +348,7 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    float streamed = mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix);
-    // Old foam is a network; only what has just begun is a body.
-    foam = max(foam, streamed * (0.65 + 0.35 * streamed * streamed));
+    foam = max(foam, shownFoam(mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix)));
 #endif
 #ifdef OPEN_SEA
     // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.

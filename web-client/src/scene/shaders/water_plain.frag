@@ -54,7 +54,7 @@ void main() {
   vec3 loss = u_loss_per_m * (u_colour_ratio * wayOut(v_world, ray) * (1.0 + max(-ray.y, 0.25)));
   vec3 passed = 1.0 / (1.0 + loss * (1.0 + loss * (0.5 + loss * 0.1667)));
   float seen = (passed.r + passed.g + passed.b) / 3.0;
-  vec3 scattered = waterScattered(smoothstep(-0.5, 0.9, v_top_m)) * u_water_light * min(u_colour_ratio, 1.8);
+  vec3 scattered = waterScattered(smoothstep(-0.5, 0.9, v_top_m)) * u_water_light;
   float fresnel = 0.8 * waterFresnel(clamp(-dot(v_side_normal, ray), 0.0, 1.0));
   float rim = smoothstep(min(0.07, 0.1 * u_depth_m), 0.0, v_top_m - v_world.y);
   vec3 mirrored = reflect(ray, v_side_normal);

@@ -85,7 +85,7 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   // The light is absorbed twice: down to the bed and, along the refracted ray, up to the eye.
   float path_m = deep_m * inversesqrt(1.0 - 0.5625 * (1.0 - v_ray.y * v_ray.y));
   vec3 passed = fading(u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-v_ray.y, 0.25))));
-  vec3 scattered = waterScattered(smoothstep(-0.5, 0.9, v_top_m)) * u_water_light * min(u_colour_ratio, 1.8);
+  vec3 scattered = waterScattered(smoothstep(-0.5, 0.9, v_top_m)) * u_water_light;
   float against_sun = max(dot(v_ray, u_sun_direction), 0.0);
   float crest_m = min(max(v_top_m, 0.0), deep_m);
   scattered += u_crest * u_sun_light * ((against_sun * against_sun + 0.6 * smoothstep(0.2, 0.8, length(slope))) * 1.6 * crest_m / (1.0 + 0.8 * crest_m * crest_m));

@@ -1,4 +1,4 @@
-// A glass tank or flume on the floor of a hall, whose walls are the cube map that stands for the sky (room_bake.frag).
+// A glass tank or flume on the floor of a dark laboratory, whose walls are the cube map that stands for the sky (room_bake.frag).
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
@@ -9,14 +9,14 @@ import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
 
 /** Thickness of the glass and of the base: a share of the tank's size. */
-const kGlassThickness = 0.008;
+const kGlassThickness = 0.006;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
 /** The size of a long channel is this many of its shorter sides: its glass is not those of a wide tank. */
 const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
-const kPlinth = 2.5;
+const kPlinth = 3.5;
 
 /** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
 const kTileShare = 1 / 24;
@@ -24,8 +24,7 @@ const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
-export const kTankTile = [0.40, 0.48, 0.50] as const;
-const kSlab = [0.34, 0.28, 0.215] as const;
+export const kTankTile = [0.04, 0.13, 0.17] as const;
 /** Grain 0 is paint. */
 const kBase: Paint = [0.10, 0.13, 0.16, 0];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
@@ -80,16 +79,10 @@ export function makeBaseGeometry({ sideM, widthM }: TankSize): BufferGeometry {
   return builder.build();
 }
 
-/** The tiles on the plate, and the floor of the hall. */
-function makeFloorGeometry({ sideM, widthM }: TankSize): BufferGeometry {
-  const size = sizeM({ sideM, widthM });
-  const longM = Math.max(sideM, widthM);
-  const thickM = kGlassThickness * size;
+/** A level rectangle around the middle. */
+function level(xM: number, yM: number, zM: number, paint: Paint): BufferGeometry {
   const builder = new MeshBuilder();
-  const level = (x: number, yM: number, z: number, paint: Paint): void => void builder.quad([-x, yM, z], [x, yM, z], [x, yM, -z], [-x, yM, -z], paint);
-  level(sideM / 2, -0.06 * thickM, widthM / 2, [...kTankTile, (kTileShare * size) / longM]);
-  const hallM = kHallSides * longM;
-  level(hallM, -kPlinth * thickM, hallM, [...kSlab, (kSlabShare * size) / longM]);
+  builder.quad([-xM, yM, zM], [xM, yM, zM], [xM, yM, -zM], [-xM, yM, -zM], paint);
   return builder.build();
 }
 
@@ -97,14 +90,18 @@ export class GlassTank {
   /** What the tank stands on. */
   readonly group = new Group();
   readonly glass: Mesh<BufferGeometry, RawShaderMaterial>;
-  private readonly floor: Mesh<BufferGeometry, RawShaderMaterial>;
+  /** The tiles on the plate, and the floor of the hall. */
+  private readonly floors: readonly Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly base: Mesh;
   private readonly uniforms: Uniforms;
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
-    const { sky, solid, quality } = context;
+    const { sky, solid, quality, noise, shadow } = context;
     const size = tankSize(greeting);
-    this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() }, u_half_m: { value: new Vector2(size.sideM / 2, size.widthM / 2) } };
+    const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
+    const thickM = kGlassThickness * sizeM(size);
+    const longM = Math.max(size.sideM, size.widthM);
+    this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() }, u_half_m: { value: new Vector2(halfX, halfZ) } };
     this.glass = new Mesh(
       makeGlassGeometry(size),
       makeMaterial("glass", this.uniforms, {
@@ -118,10 +115,15 @@ export class GlassTank {
       }),
     );
     this.base = new Mesh(makeBaseGeometry(size), solid);
-    this.floor = new Mesh(makeFloorGeometry(size), makeTiles(greeting, context));
-    for (const mesh of [this.glass, this.base, this.floor]) mesh.frustumCulled = false;
+    const hall = { ...this.uniforms, ...shadow, u_noise: { value: noise }, u_slab_m: { value: kSlabShare * sizeM(size) } };
+    const hallM = kHallSides * longM;
+    this.floors = [
+      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, (kTileShare * sizeM(size)) / longM]), makeTiles(greeting, context)),
+      new Mesh(level(hallM, -kPlinth * thickM, hallM, kBase), makeMaterial("hallFloor", hall, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(shadow && { SHADOWS: 1 }) } })),
+    ];
+    for (const mesh of [this.glass, this.base, ...this.floors]) mesh.frustumCulled = false;
     castsShadow(this.base);
-    this.group.add(this.base, this.floor);
+    this.group.add(this.base, ...this.floors);
     this.setFloorM(greeting.wave ? -greeting.waterExtents.depthM : 0);
   }
 
@@ -138,7 +140,9 @@ export class GlassTank {
     this.glass.geometry.dispose();
     this.glass.material.dispose();
     this.base.geometry.dispose();
-    this.floor.geometry.dispose();
-    this.floor.material.dispose();
+    for (const { geometry, material } of this.floors) {
+      geometry.dispose();
+      material.dispose();
+    }
   }
 }

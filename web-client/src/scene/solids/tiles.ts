@@ -1,4 +1,4 @@
-// Tiles and slabs with joints (tiles.frag): floor, walls and deck of a pool, floor of a tank and of the hall around it.
+// Tiles and slabs with joints (tiles.frag): floor, walls and deck of a pool, floor of a tank.
 import { Vector2, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
