@@ -19,6 +19,7 @@ const kAwayLimitsM = [3.6, 8.5] as const;
 const kTreeM = 5.2;
 const kLawnReachM = 600;
 const kStripeM = 1.1;
+const kSmallM = 8;
 
 const kLawns: readonly [Paint, Paint] = [[0.15, 0.25, 0.062, 0.9], [0.20, 0.31, 0.085, 0.9]];
 const kMeadow: Paint = [0.17, 0.26, 0.08, 1.4];
@@ -162,7 +163,9 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
       const highM = treeM * plants.between(0.7, 1.5);
       plants.clump(at((n / 7) * (half + 4 * awayM) + plants.between(-1, 1), lawnM + 0.4 * highM, 3.4 * awayM + plants.between(0, 1) * awayM), [0.8 * highM, 0.65 * highM, 0.8 * highM], 70, 0.055 * highM, kWood);
     }
-    if (side === 0 || (isOpen && sideM > 8)) addLadder(builder, at, 0.5 * half, size);
+    if (side === 0 || (isOpen && sideM > kSmallM)) addLadder(builder, at, 0.5 * half, size);
+    // Beside a small pool, nothing stands where the first views come from.
+    if (sideM < kSmallM && side >= 2) return;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
     addParasol(builder, at(groupM, deckM, seat + 0.9));
     for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);

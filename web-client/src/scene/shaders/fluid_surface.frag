@@ -61,7 +61,7 @@ const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
 #ifdef AGAIN
-const float kWhiteness = 0.06;  // of two sheets
+const float kWhiteness = 0.035;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif

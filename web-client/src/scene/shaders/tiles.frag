@@ -29,14 +29,14 @@ const float kWetM = 1.0, kCloudsM = 3.1, kGrainM = 0.7;
 layout(location = 0) out vec4 color;
 
 // Brightness factor about 1. Detail finer than a pixel fades to its mean, so that distant tiles neither flicker nor show as blocks.
-float tiles(vec2 at, float tile_m) {
+float tiles(vec2 at, float tile_m, float joint_tiles) {
   vec2 cell = at / tile_m;
   vec2 step_cells = fwidth(cell);
   float blur = max(step_cells.x, step_cells.y);
   float fine = 1.0 - smoothstep(0.2, 0.7, blur);
   if (fine <= 0.0) return 0.97;
   vec2 edge = 0.5 - abs(fract(cell) - 0.5);
-  float joint = 1.0 - smoothstep(0.03 - 0.5 * blur, 0.03 + 0.6 * blur, min(edge.x, edge.y));
+  float joint = 1.0 - smoothstep(joint_tiles - 0.5 * blur, joint_tiles + 0.6 * blur, min(edge.x, edge.y));
   float seen = fine * min(0.14 / blur, 1.0);
   return 1.0 + fine * 0.14 * (cellHash(floor(cell)) - 0.5) - seen * 0.46 * joint;
 }
@@ -68,16 +68,19 @@ void main() {
   vec3 steep = abs(normal);
   vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
   float tile_m = v_color.a * max(u_extent_m.x, u_extent_m.y);
-  vec3 albedo = v_color.rgb * tiles(at, tile_m);
 #ifdef DECK
   vec2 outside_m = abs(v_world.xz) - u_half_m;
   float out_m = max(outside_m.x, outside_m.y);
+  bool is_stone = out_m > 0.0 && normal.y > 0.5;
+  vec3 albedo = v_color.rgb * tiles(at, tile_m, is_stone ? 0.016 : 0.03);
   float wet = 0.0;
-  if (out_m > 0.0 && normal.y > 0.5) {
+  if (is_stone) {
     vec4 stone = stoneAt(albedo, at, tile_m, out_m);
     albedo = stone.rgb;
     wet = stone.a;
   }
+#else
+  vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.03);
 #endif
   float deep_m = u_level_m - v_world.y;
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));

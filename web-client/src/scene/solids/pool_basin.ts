@@ -10,6 +10,7 @@ import { makeTiles } from "./tiles";
 
 /** Shares of the side: rim over the water, and its width. */
 const kRimHeight = 0.026;
+const kRimMostM = 0.4;
 const kRimWidth = 0.028;
 /** Width of the deck as a share of the garden's border, and at least. */
 const kDeckShare = 0.5;
@@ -63,7 +64,7 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   const half: [number, number] = [lengthM / 2, widthM / 2];
   const sideM = Math.max(lengthM, widthM);  // what tiles, rim and deck are shares of
   const grown = (byM: number): [number, number] => [half[0] + byM, half[1] + byM];
-  const rimM = depthM + kRimHeight * sideM;
+  const rimM = depthM + Math.min(kRimHeight * sideM, kRimMostM);
   const bandM = depthM - 0.012 * sideM;
   const tiled = new MeshBuilder();
   // Floor in strips along x: tiles and lane lines in turn.
