@@ -119,9 +119,9 @@ function addLawn(builder: MeshBuilder, yM: number, inner: readonly [number, numb
   let x = -reachM;
   for (let n = 0; x < reachM; ++n, x += kStripeM) {
     const [toX, paint] = [Math.min(x + kStripeM, reachM), kLawns[n % 2]!];
-    const isBeside = toX <= -ix || x >= ix;
-    strip(x, toX, -reachM, isBeside ? reachM : -iz, paint);
-    if (!isBeside) strip(x, toX, iz, reachM, paint);
+    strip(x, Math.min(toX, -ix), -reachM, reachM, paint);
+    strip(Math.max(x, ix), toX, -reachM, reachM, paint);
+    for (const [z0, z1] of [[-reachM, -iz], [iz, reachM]] as const) strip(Math.max(x, -ix), Math.min(toX, ix), z0, z1, paint);
   }
   const far = kLawnReachM;
   strip(-far, far, reachM, far, kMeadow);
@@ -169,6 +169,7 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
     addParasol(builder, at(groupM, deckM, seat + 0.9));
     for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
-    for (const alongM of [-0.62 * half, 0.78 * half]) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
+    const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
+    for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
   });
 }

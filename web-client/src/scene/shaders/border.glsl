@@ -1,4 +1,5 @@
-// Include: the garden around a pool, as water mirrors it. The limits are those of gardenReach() in landscape/garden.ts.
+// Include: what a pool's water meets. The garden around it, as the water mirrors it: the limits are those of gardenReach() in
+// landscape/garden.ts. And what stands in the water, at which it climbs.
 
 // Colour of shrubs and trees that are not on the screen, and the heights of directions in which they give way to the sky.
 const vec3 kShrubs = vec3(0.09, 0.15, 0.05);
@@ -10,4 +11,13 @@ vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
   vec2 safe = mix(vec2(1e-6), direction.xz, step(1e-6, abs(direction.xz)));
   vec2 along_m = max((half_m - from.xz) / safe, (-half_m - from.xz) / safe);
   return from + direction * min(along_m.x, along_m.y);
+}
+
+// Reach of the bright line where the water climbs a solid, along the ray, m, and the most of its light.
+const float kClimbingM = 0.025, kClimbingLight = 0.45;
+
+// Share of the line's light, where the solid is `solid_m` behind the surface. Not at outlines, where that jumps.
+float climbingShare(float solid_m) {
+  float step_m = fwidth(solid_m);
+  return kClimbingLight * (1.0 - smoothstep(0.4, 1.0, solid_m / (kClimbingM + 0.7 * step_m))) * (1.0 - smoothstep(0.1, 0.5, step_m));
 }
