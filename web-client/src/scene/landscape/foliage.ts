@@ -11,16 +11,14 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 /** The lumpy core of a clump: its size relative to the clump, its brightness relative to the leaves, and its rows and columns. */
 const kCoreSizes = [0.7, 1.0] as const;
 const kCoreBright = 0.62;
-const kCoreCells = { full: [8, 12], plain: [4, 7] } as const;
-/** Plain: so many leaves of this size, relative to the others. */
-const kPlain = { count: 0.3, size: 1.7 };
+const kCoreCells = { full: [7, 11], plain: [4, 7] } as const;
 const kGoldenAngleRad = 2.39996323;
 
 export class Foliage {
   private readonly random = makeFastRandom(20_261);
 
-  /** `plain`: with fewer and larger leaves. */
-  constructor(private readonly builder: MeshBuilder, private readonly plain: boolean) {}
+  /** `plain`: cores alone, and fewer of them. */
+  constructor(private readonly builder: MeshBuilder, readonly plain: boolean) {}
 
   /** Returns a number of the range, other ones with each call. */
   between(low: number, high: number): number {
@@ -37,11 +35,10 @@ export class Foliage {
     });
     const green: Leaves = [leaves[0], leaves[0]];
     builder.grid(rows, (row) => this.paint(green, kCoreBright * (0.8 - 0.5 * Math.cos((Math.PI * row) / rowsCount))));
-    const [leavesCount, sizeM] = plain ? [kPlain.count * count, kPlain.size * leafM] : [count, leafM];
-    for (let i = 0; i < leavesCount; ++i) {
-      const up = 1 - (1.7 * (i + 0.5)) / leavesCount;
+    for (let i = 0; i < (plain ? 0 : count); ++i) {
+      const up = 1 - (1.7 * (i + 0.5)) / count;
       const at = this.onClump(middle, half, up, kGoldenAngleRad * i + this.between(-0.5, 0.5), this.between(0.84, 1.08));
-      this.leaf(at, middle, sizeM * this.between(0.7, 1.3), this.paint(leaves, 0.8 + 0.5 * up));
+      this.leaf(at, middle, leafM * this.between(0.7, 1.3), this.paint(leaves, 0.8 + 0.5 * up));
     }
   }
 
@@ -50,7 +47,7 @@ export class Foliage {
     const crownM = 0.27 * highM;
     const leanM = this.between(-0.05, 0.05) * highM;
     addRod(this.builder, [xM, yM - 0.2, zM], [xM + leanM, yM + 0.6 * highM, zM], 0.028 * highM, kBark, 6, 0.014 * highM);
-    const clumpsCount = this.plain ? 4 : 6;
+    const clumpsCount = this.plain ? 3 : 6;
     for (let i = 0; i < clumpsCount; ++i) {
       const round = (2 * Math.PI * (i + this.between(-0.3, 0.3))) / (clumpsCount - 1);
       const outM = i === 0 ? 0 : this.between(0.55, 0.8) * crownM;

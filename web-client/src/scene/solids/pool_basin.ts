@@ -106,9 +106,12 @@ export class PoolBasin {
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM, context.quality.plain);
     this.material = makeTiles(greeting, context);
-    for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, context.solid)]) {
+    const [tiled, planted] = [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, context.solid)];
+    castsShadow(tiled);
+    // Without a map of shadows, those on the water are drawn, which plants do not reach at noon.
+    if (context.shadow) castsShadow(planted);
+    for (const mesh of [tiled, planted]) {
       mesh.frustumCulled = false;
-      castsShadow(mesh);
       this.group.add(mesh);
     }
     this.setFloorM(-depthM);
