@@ -1,7 +1,7 @@
 // Plants of leaves: shrubs, trees, cypresses. A clump is a lumpy core with flat leaves around it, turned at random.
 import { mix } from "../maths/interpolate";
 import { makeFastRandom } from "../maths/random";
-import type { MeshBuilder, Paint, Point } from "../meshes/mesh_builder";
+import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addRod } from "../meshes/shapes";
 
 /** Colours of the leaves, of which each takes a mixture. */
@@ -11,11 +11,14 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 /** The lumpy core of a clump: its size relative to the clump, its brightness relative to the leaves, and its rows and columns. */
 const kCoreSizes = [0.7, 1.0] as const;
 const kCoreBright = 0.62;
-const kCoreCells = { full: [7, 11], plain: [4, 7] } as const;
+const kCoreCells = { full: [5, 9], plain: [4, 7] } as const;
 const kGoldenAngleRad = 2.39996323;
 
 export class Foliage {
   private readonly random = makeFastRandom(20_261);
+
+  /** Adds leaves to a mesh of their own, which casts no shadow: that of the cores is enough. */
+  leaves = new MeshBuilder();
 
   /** `plain`: cores alone, and fewer of them. */
   constructor(private readonly builder: MeshBuilder, readonly plain: boolean) {}
@@ -30,7 +33,9 @@ export class Foliage {
     const { builder, plain } = this;
     const [rowsCount, columnsCount] = kCoreCells[plain ? "plain" : "full"];
     const rows = Array.from({ length: rowsCount + 1 }, (_, r) => {
-      const row = Array.from({ length: columnsCount }, (_unused, c): Point => this.onClump(middle, half, -Math.cos((Math.PI * r) / rowsCount), (-2 * Math.PI * c) / columnsCount, this.between(...kCoreSizes)));
+      const up = -Math.cos((Math.PI * r) / rowsCount);
+      const at = (round: number): Point => this.onClump(middle, half, up, round, this.between(...kCoreSizes));
+      const row = Array.from({ length: columnsCount }, (_unused, c) => at((-2 * Math.PI * c) / columnsCount));
       return [...row, row[0]!];
     });
     const green: Leaves = [leaves[0], leaves[0]];
@@ -53,18 +58,20 @@ export class Foliage {
       const outM = i === 0 ? 0 : this.between(0.55, 0.8) * crownM;
       const sizeM = (i === 0 ? 0.85 : this.between(0.55, 0.8)) * crownM;
       const upM = i === 0 ? 0.8 * highM : this.between(0.5, 0.75) * highM;
-      this.clump([xM + leanM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)], [sizeM, 0.85 * sizeM, sizeM], 60, 0.022 * highM, leaves);
+      const middle: Point = [xM + leanM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)];
+      this.clump(middle, [sizeM, 0.85 * sizeM, sizeM], 30, 0.03 * highM, leaves);
     }
   }
 
   /** Adds a tall slender tree. */
   cypress([xM, yM, zM]: Point, highM: number, leaves: Leaves): void {
-    this.clump([xM, yM + 0.48 * highM, zM], [0.11 * highM, 0.53 * highM, 0.11 * highM], 150, 0.022 * highM, leaves);
+    this.clump([xM, yM + 0.48 * highM, zM], [0.11 * highM, 0.53 * highM, 0.11 * highM], 60, 0.03 * highM, leaves);
   }
 
   private onClump(middle: Point, half: Point, up: number, roundRad: number, size: number): Point {
     const level = Math.sqrt(Math.max(1 - up * up, 0));
-    return [middle[0] + size * half[0] * level * Math.cos(roundRad), middle[1] + size * half[1] * up, middle[2] + size * half[2] * level * Math.sin(roundRad)];
+    const outward = [level * Math.cos(roundRad), up, level * Math.sin(roundRad)];
+    return outward.map((each, k) => middle[k]! + size * half[k]! * each) as unknown as Point;
   }
 
   private paint([first, second]: Leaves, bright: number): Paint {
@@ -83,7 +90,8 @@ export class Foliage {
     const other: Point = [(ny * side[2]) / norm, (nz * side[0] - nx * side[2]) / norm, (-ny * side[0]) / norm];
     const turn = this.between(0, 2 * Math.PI);
     const [c, s] = [Math.cos(turn), Math.sin(turn)];
-    const corner = (long: number, wide: number): Point => [0, 1, 2].map((k) => at[k]! + halfM * (long * (c * side[k]! + s * other[k]!) + wide * (c * other[k]! - s * side[k]!))) as unknown as Point;
-    this.builder.quad(corner(1, 0), corner(0, 0.62), corner(-1, 0), corner(0, -0.62), paint);
+    const along = (k: number, long: number, wide: number): number => long * (c * side[k]! + s * other[k]!) + wide * (c * other[k]! - s * side[k]!);
+    const corner = (long: number, wide: number): Point => [0, 1, 2].map((k) => at[k]! + halfM * along(k, long, wide)) as unknown as Point;
+    this.leaves.quad(corner(1, 0), corner(-0.7, 0.7), corner(-0.7, -0.7), corner(-0.7, -0.7), paint);
   }
 }

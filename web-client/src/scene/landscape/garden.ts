@@ -1,4 +1,4 @@
-// The garden around a pool: a mown lawn, a border of shrubs and flowers, trees with sky between them, and what people leave beside the water.
+// The garden around a pool: a mown lawn, a border of shrubs and flowers, trees with sky between them, and furniture beside the water.
 import { clamp } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addPlate, addRod, addTurned } from "../meshes/shapes";
@@ -51,8 +51,10 @@ type Beside = (alongM: number, yM: number, outM: number) => Point;
 
 /** A sun bed whose head is outward, with a towel. */
 function addSunBed(builder: MeshBuilder, at: Beside, alongM: number, deckM: number, outM: number, towel: Paint): void {
-  const plate = (from: number, to: number, half: number, low: number, high: number, thickM: number, paint: Paint): void =>
-    addPlate(builder, [at(alongM - half, deckM + low, outM + from), at(alongM + half, deckM + low, outM + from), at(alongM + half, deckM + high, outM + to), at(alongM - half, deckM + high, outM + to)], thickM, paint);
+  const plate = (from: number, to: number, half: number, low: number, high: number, thickM: number, paint: Paint): void => {
+    const corner = (side: number, yM: number, awayM: number): Point => at(alongM + side * half, deckM + yM, outM + awayM);
+    addPlate(builder, [corner(-1, low, from), corner(1, low, from), corner(1, high, to), corner(-1, high, to)], thickM, paint);
+  };
   for (const [along, out] of [[-0.26, 0.1], [0.26, 0.1], [-0.26, 1.6], [0.26, 1.6]] as const)
     addRod(builder, at(alongM + along, deckM, outM + out), at(alongM + along, deckM + 0.3, outM + out), 0.035, kTeak);
   plate(0, 1.9, 0.34, 0.32, 0.32, 0.07, kTeak);
@@ -65,20 +67,24 @@ function addSunBed(builder: MeshBuilder, at: Beside, alongM: number, deckM: numb
 function addParasol(builder: MeshBuilder, [xM, deckM, zM]: Point): void {
   const sidesCount = 8;
   addRod(builder, [xM, deckM, zM], [xM, deckM + 2.5, zM], 0.03, kTeak, 6);
-  addTurned(builder, [xM, deckM, zM], [{ yM: 0, radiusM: 0.28, paint: kCushion }, { yM: 0.1, radiusM: 0.26, paint: kCushion }, { yM: 0.1, radiusM: 0, paint: kCushion }], 10);
+  addRod(builder, [xM, deckM, zM], [xM, deckM + 0.1, zM], 0.28, kCushion, 10, 0.26);
   const top: Point = [xM, deckM + 2.62, zM];
-  const rim = (n: number, downM = 0): Point => [xM + 1.45 * Math.cos((-2 * Math.PI * n) / sidesCount), deckM + 2.08 - downM, zM + 1.45 * Math.sin((-2 * Math.PI * n) / sidesCount)];
+  const rim = (n: number, downM = 0): Point => {
+    const round = (-2 * Math.PI * n) / sidesCount;
+    return [xM + 1.45 * Math.cos(round), deckM + 2.08 - downM, zM + 1.45 * Math.sin(round)];
+  };
   for (let n = 0; n < sidesCount; ++n) {
     const paint = kCanvas[n % 2]!;
     builder.quad(rim(n), rim(n + 1), top, top, paint).quad(rim(n + 1), rim(n), top, top, paint);
-    builder.quad(rim(n, 0.16), rim(n + 1, 0.16), rim(n + 1), rim(n), paint).quad(rim(n + 1, 0.16), rim(n, 0.16), rim(n), rim(n + 1), paint);
+    builder.quad(rim(n, 0.16), rim(n + 1, 0.16), rim(n + 1), rim(n), paint);
+    builder.quad(rim(n + 1, 0.16), rim(n, 0.16), rim(n), rim(n + 1), paint);
   }
 }
 
 function addPot(builder: MeshBuilder, plants: Foliage, [xM, deckM, zM]: Point, leaves: Leaves): void {
   const turn = (yM: number, radiusM: number): { yM: number; radiusM: number; paint: Paint } => ({ yM, radiusM, paint: kClay });
   addTurned(builder, [xM, deckM, zM], [turn(0, 0.2), turn(0.42, 0.31), turn(0.42, 0.35), turn(0.52, 0.35), turn(0.52, 0.28), turn(0.48, 0)], 12);
-  plants.clump([xM, deckM + 0.8, zM], [0.4, 0.42, 0.4], 80, 0.06, leaves);
+  plants.clump([xM, deckM + 0.8, zM], [0.4, 0.42, 0.4], 60, 0.07, leaves);
 }
 
 /** A ladder of steel at the water's edge: two bent rails and three steps. */
@@ -86,27 +92,31 @@ function addLadder(builder: MeshBuilder, at: Beside, alongM: number, { waterM, d
   const footM = Math.max(waterM - 1, 0.1 * waterM);
   const handM = deckM + 0.82;
   for (const across of [-0.27, 0.27]) {
-    const rail = ([[-0.16, footM], [-0.16, handM - 0.12], [-0.1, handM], [0.02, handM + 0.04], [0.4, handM - 0.02], [0.5, handM - 0.14], [0.52, deckM]] as const).map(([outM, yM]) => at(alongM + across, yM, outM));
+    const bends = [[-0.16, footM], [-0.16, handM - 0.12], [-0.1, handM], [0.02, handM + 0.04], [0.4, handM - 0.02], [0.5, handM - 0.14], [0.52, deckM]];
+    const rail = bends.map(([outM, yM]) => at(alongM + across, yM!, outM!));
     for (let n = 0; n + 1 < rail.length; ++n) addRod(builder, rail[n]!, rail[n + 1]!, 0.026, kSteel, 8);
   }
   for (const yM of [0.25, -0.1, -0.45, -0.8]) {
     const y = waterM + yM;
-    if (y > footM && y < deckM + 0.1) addPlate(builder, [at(alongM - 0.27, y, -0.23), at(alongM + 0.27, y, -0.23), at(alongM + 0.27, y, -0.1), at(alongM - 0.27, y, -0.1)], 0.035, kSteel);
+    const corner = (across: number, outM: number): Point => at(alongM + 0.27 * across, y, outM);
+    if (y > footM && y < deckM + 0.1) addPlate(builder, [corner(-1, -0.23), corner(1, -0.23), corner(1, -0.1), corner(-1, -0.1)], 0.035, kSteel);
   }
 }
 
 /** A border of shrubs with flowers before it; its length is that of the side with the corners. */
 function addBorder(plants: Foliage, at: Beside, longM: number, deckM: number, awayM: number, treeM: number): void {
-  const stepM = (plants.plain ? 0.32 : 0.19) * treeM;
+  const stepM = (plants.plain ? 0.32 : 0.22) * treeM;
   let flower = 0;
   for (let alongM = -longM; alongM < longM; alongM += stepM * plants.between(0.8, 1.2)) {
     const sizeM = stepM * plants.between(0.6, 1.05);
     const highM = sizeM * plants.between(0.8, 1.25);
     const kind = plants.between(0, 1);
-    plants.clump(at(alongM, deckM + 0.7 * highM, awayM + plants.between(0, 0.6) * stepM), [sizeM, highM, sizeM], 44, 0.12 * sizeM, kind < 0.6 ? kBox : kind < 0.85 ? kOlive : kRose);
+    const leaves = kind < 0.6 ? kBox : kind < 0.85 ? kOlive : kRose;
+    plants.clump(at(alongM, deckM + 0.7 * highM, awayM + plants.between(0, 0.6) * stepM), [sizeM, highM, sizeM], 22, 0.17 * sizeM, leaves);
     if (plants.between(0, 1) < 0.2) ++flower;
     const lowM = 0.42 * stepM * plants.between(0.7, 1.2);
-    plants.clump(at(alongM + 0.3 * stepM, deckM + 0.6 * lowM, awayM - 0.95 * stepM), [1.3 * lowM, lowM, lowM], 60, 0.2 * lowM, kFlowers[flower % kFlowers.length]!);
+    const before = at(alongM + 0.3 * stepM, deckM + 0.6 * lowM, awayM - 0.95 * stepM);
+    plants.clump(before, [1.3 * lowM, lowM, lowM], 26, 0.28 * lowM, kFlowers[flower % kFlowers.length]!);
   }
 }
 
@@ -130,8 +140,8 @@ function addLawn(builder: MeshBuilder, yM: number, inner: readonly [number, numb
   strip(reachM, far, -reachM, reachM, kMeadow);
 }
 
-/** Adds everything that stands on the deck and on the lawn. `deckWidthM`: of the deck around the water. */
-export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): void {
+/** Adds everything that stands on the deck and on the lawn, and returns the leaves, by side. `deckWidthM`: of the deck around the water. */
+export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): MeshBuilder[] {
   const { deckM, halfM } = size;
   const [halfX, halfZ] = halfM;
   const sideM = 2 * Math.max(halfX, halfZ);
@@ -146,7 +156,8 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     return { at, halfM: Math.abs(ax) * halfX + Math.abs(az) * halfZ };
   });
   const seat = Math.max(1.1, 0.5 * deckWidthM);
-  sides.forEach(({ at, halfM: half }, side) => {
+  return sides.map(({ at, halfM: half }, side) => {
+    const leaves = (plants.leaves = new MeshBuilder());
     // The usual view comes from +z: nothing high stands there.
     const isOpen = side === 2;
     if (!isOpen) addBorder(plants, at, half + awayM, lawnM, awayM, treeM);
@@ -161,15 +172,17 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     // Woods beyond.
     for (let n = -7; n <= 7; ++n) {
       const highM = treeM * plants.between(0.7, 1.5);
-      plants.clump(at((n / 7) * (half + 4 * awayM) + plants.between(-1, 1), lawnM + 0.4 * highM, 3.4 * awayM + plants.between(0, 1) * awayM), [0.8 * highM, 0.65 * highM, 0.8 * highM], 70, 0.055 * highM, kWood);
+      const middle = at((n / 7) * (half + 4 * awayM) + plants.between(-1, 1), lawnM + 0.4 * highM, 3.4 * awayM + plants.between(0, 1) * awayM);
+      plants.clump(middle, [0.8 * highM, 0.65 * highM, 0.8 * highM], 26, 0.085 * highM, kWood);
     }
     if (side === 0 || (isOpen && sideM > kSmallM)) addLadder(builder, at, 0.5 * half, size);
     // Beside a small pool, nothing stands where the first views come from.
-    if (sideM < kSmallM && side >= 2) return;
+    if (sideM < kSmallM && side >= 2) return leaves;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
     addParasol(builder, at(groupM, deckM, seat + 0.9));
     for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
     const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
     for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
+    return leaves;
   });
 }

@@ -16,6 +16,7 @@ void main() {
   }
   if (left <= 0.0 || texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
   vec2 to_glint = at - vec2(-0.25, 0.4);
+  float solid = mix(0.9, 0.6, left) * smoothstep(0.0, 0.4, left);
   float lens = 0.9 - 0.3 * at.y * dot(at, at) + 0.6 * smoothstep(0.12, 0.0, dot(to_glint, to_glint));
-  color = vec4(v_light.rgb * mix(1.0, lens, v_round), v_light.a * mix(left * left, mix(0.9, 0.6, left) * smoothstep(0.0, 0.4, left), v_round));
+  color = vec4(v_light.rgb * mix(1.0, lens, v_round), v_light.a * mix(left * left, solid, v_round));
 }

@@ -1,6 +1,7 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// PLAIN: also for the display. DECK: around a pool, slabs of natural stone that are wet near the water. CAUSTICS: from a photon grid; otherwise from the surface's curvature.
+// PLAIN: also for the display. DECK: around a pool, slabs of natural stone that are wet near the water.
+// CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
 #ifdef CAUSTICS
@@ -71,19 +72,17 @@ void main() {
 #ifdef DECK
   vec2 outside_m = abs(v_world.xz) - u_half_m;
   float out_m = max(outside_m.x, outside_m.y);
-  bool is_stone = out_m > 0.0 && normal.y > 0.5;
-  vec3 albedo = v_color.rgb * tiles(at, tile_m, is_stone ? 0.016 : 0.03);
-  float wet = 0.0;
-  if (is_stone) {
-    vec4 stone = stoneAt(albedo, at, tile_m, out_m);
-    albedo = stone.rgb;
-    wet = stone.a;
-  }
+  vec4 stone = stoneAt(v_color.rgb * tiles(at, tile_m, 0.016), at, tile_m, out_m);
+  vec3 albedo = stone.rgb;
 #else
   vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.03);
 #endif
   float deep_m = u_level_m - v_world.y;
+#ifdef DECK
+  const bool below = false;
+#else
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));
+#endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   vec3 toward_sun = u_sun_direction;
   vec3 sun_light = u_sun_light;
@@ -112,12 +111,10 @@ void main() {
   }
   vec3 lit = albedo * (sun_light * 1.25 * sun + ambient);
 #ifdef DECK
-  if (wet > 0.0) {
-    vec3 ray = normalize(v_world - cameraPosition);
-    float past = 1.0 - clamp(-ray.y, 0.0, 1.0);
-    vec3 over = vec3(ray.x, abs(ray.y), ray.z);
-    lit = mix(lit, skyLight(over), wet * (0.03 + 0.55 * past * past * past * past));
-  }
+  vec3 ray = normalize(v_world - cameraPosition);
+  float past = 1.0 - clamp(-ray.y, 0.0, 1.0);
+  float mirror = stone.a * max(normal.y, 0.0) * (0.03 + 0.55 * past * past * past * past);
+  lit = mix(lit, skyLight(vec3(ray.x, abs(ray.y), ray.z)), mirror);
 #endif
 #ifdef PLAIN
   if (u_is_displayed) lit = toDisplay(lit);

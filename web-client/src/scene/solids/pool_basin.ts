@@ -32,7 +32,10 @@ const kCopingProfile = [[-1, -1], [-1, 0.3], [-0.8, 0.75], [-0.35, 1]] as const;
 
 interface BasinGeometries {
   tiled: BufferGeometry;
+  deck: BufferGeometry;
   planted: BufferGeometry;
+  /** By side. */
+  leaves: BufferGeometry[];
 }
 
 /** A level ring of four strips between two rectangles. */
@@ -79,41 +82,45 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   }
   addWalls(tiled, half, 0, bandM, true, kWallTile);
   addWalls(tiled, half, bandM, rimM, true, kBandTile);
+  const deck = new MeshBuilder();
   const liftM = 0.006 * sideM;
   const rows = kCopingProfile.map(([out, up]) => {
     const [x, z] = grown(out * liftM);
     const yM = rimM + up * liftM;
     return [[x, yM, z], [-x, yM, z], [-x, yM, -z], [x, yM, -z], [x, yM, z]] as const;
   });
-  for (let side = 0; side < 4; ++side) tiled.grid(rows.map((row) => [row[side]!, row[side + 1]!]), kRim);
+  for (let side = 0; side < 4; ++side) deck.grid(rows.map((row) => [row[side]!, row[side + 1]!]), kRim);
   const outerM = kRimWidth * sideM;
-  addRing(tiled, rimM + liftM, grown(-0.35 * liftM), grown(outerM), kRim);
-  addWalls(tiled, grown(outerM), rimM, rimM + liftM, false, kRim);
+  addRing(deck, rimM + liftM, grown(-0.35 * liftM), grown(outerM), kRim);
+  addWalls(deck, grown(outerM), rimM, rimM + liftM, false, kRim);
   const deckM = Math.max(kDeckShare * gardenReach(sideM).awayM, kDeckLeastM);
-  addRing(tiled, rimM, grown(outerM), grown(deckM), [...kDeck, Math.min(kSlabM / sideM, 1 / 8)]);
+  addRing(deck, rimM, grown(outerM), grown(deckM), [...kDeck, Math.min(kSlabM / sideM, 1 / 8)]);
   const planted = new MeshBuilder();
-  addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
-  return { tiled: tiled.build(), planted: planted.build() };
+  const leaves = addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
+  return { tiled: tiled.build(), deck: deck.build(), planted: planted.build(), leaves: plain ? [] : leaves.map((each) => each.build()) };
 }
 
 export class PoolBasin {
   readonly group = new Group();
   private readonly geometries: BasinGeometries;
-  private readonly material: RawShaderMaterial;
+  private readonly materials: readonly [tiles: RawShaderMaterial, stone: RawShaderMaterial];
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM, context.quality.plain);
-    this.material = makeTiles(greeting, context);
-    const [tiled, planted] = [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, context.solid)];
+    this.materials = [makeTiles(greeting, context), makeTiles(greeting, context, true)];
+    const [tiled, deck] = [new Mesh(this.geometries.tiled, this.materials[0]), new Mesh(this.geometries.deck, this.materials[1])];
+    const planted = new Mesh(this.geometries.planted, context.solid);
     castsShadow(tiled);
+    castsShadow(deck);
     // Without a map of shadows, those on the water are drawn, which plants do not reach at noon.
     if (context.shadow) castsShadow(planted);
-    for (const mesh of [tiled, planted]) {
+    for (const mesh of [tiled, deck, planted]) {
       mesh.frustumCulled = false;
       this.group.add(mesh);
     }
+    for (const leaves of this.geometries.leaves) this.group.add(new Mesh(leaves, context.solid));
     this.setFloorM(-depthM);
   }
 
@@ -122,8 +129,7 @@ export class PoolBasin {
   }
 
   dispose(): void {
-    this.geometries.tiled.dispose();
-    this.geometries.planted.dispose();
-    this.material.dispose();
+    const { tiled, deck, planted, leaves } = this.geometries;
+    for (const each of [tiled, deck, planted, ...leaves, ...this.materials]) each.dispose();
   }
 }
