@@ -15,7 +15,7 @@ const kCoreCells = { full: [5, 9], plain: [4, 7] } as const;
 const kGoldenAngleRad = 2.39996323;
 
 export class Foliage {
-  private readonly random = makeFastRandom(20_261);
+  private readonly random = makeFastRandom(4242);
 
   /** Adds leaves to a mesh of their own, which casts no shadow: that of the cores is enough. */
   leaves = new MeshBuilder();
