@@ -16,8 +16,9 @@ vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
 // Reach of the bright line where the water climbs a solid, along the ray, m, and the most of its light.
 const float kClimbingM = 0.025, kClimbingLight = 0.45;
 
-// Share of the line's light, where the solid is `solid_m` behind the surface. Not at outlines, where that jumps.
+// Share of the line's light, where the solid is `solid_m` behind the surface. None where that jumps from pixel to pixel: the line would be
+// a row of dashes.
 float climbingShare(float solid_m) {
   float step_m = fwidth(solid_m);
-  return kClimbingLight * (1.0 - smoothstep(0.4, 1.0, solid_m / (kClimbingM + 0.7 * step_m))) * (1.0 - smoothstep(0.1, 0.5, step_m));
+  return kClimbingLight * (1.0 - smoothstep(0.4, 1.0, solid_m / (kClimbingM + 0.7 * step_m))) * (1.0 - smoothstep(0.02, 0.08, step_m));
 }
