@@ -114,4 +114,14 @@ describe("a pool", () => {
     for (let n = 0; n < position.count; ++n)
       if (Math.abs(position.getX(n)) < 7.8 && Math.abs(position.getZ(n)) < 7.8) expect(position.getY(n)).toBe(0);
   });
+
+  it("has a garden that leaves the water free but for ladders, with less of it in the plain tiers", () => {
+    const verticesCount = [false, true].map((plain) => {
+      const { planted, leaves } = makeBasinGeometries(16, 16, 1.5, plain);
+      const position = planted.getAttribute("position");
+      for (let n = 0; n < position.count; ++n) expect(Math.max(Math.abs(position.getX(n)), Math.abs(position.getZ(n)))).toBeGreaterThan(7.7);
+      return leaves.reduce((sum, each) => sum + each.getAttribute("position").count, position.count);
+    });
+    expect(verticesCount[1]).toBeLessThan(0.5 * verticesCount[0]!);
+  });
 });

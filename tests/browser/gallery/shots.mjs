@@ -15,7 +15,7 @@ const kDefault = { tick: 180 };
 const kShots = {
   beach: { tick: 516, historyTicks: 300 },
   boat_wake: { tick: 300 },
-  boat_wake_particles: { tick: 240 },
+  boat_wake_particles: { tick: 150 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 90 },
@@ -27,18 +27,18 @@ const kShots = {
   island: { tick: 540, historyTicks: 300 },
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
-  particles_only: { tick: 60 },
-  pool: { tick: 138 },
+  particles_only: { tick: 24 },
+  pool: { tick: 105 },
   regatta: { tick: 300 },
   river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 198 },
-  splash: { tick: 66 },
+  splash: { tick: 70 },
   splash_particles: { tick: 78 },
-  splash_wave: { tick: 120 },
+  splash_wave: { tick: 88 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },
-  wave_only: { tick: 180 },
+  wave_only: { tick: 72 },
 };
 
 /** Pictures of both qualities have this size. */

@@ -4,13 +4,17 @@ uniform float u_caustic_depth_m;    // of the floor
 uniform vec2 u_caustic_extent_m;
 
 const float kUpperLayer = 0.4;
+const float kSoftLevel = 2.2;   // mip level
+const float kLeastLight = 0.2;
 
 // Light at `deep_m` below the still water, whose way through level water began at `crossed`. Mean 1.
 float focusedLight(vec2 crossed, float deep_m) {
   vec2 uv = crossed / u_caustic_extent_m + 0.5;
-  vec2 layers = texture(u_caustics, uv).rg;
-  // The grid is coarser than the filaments of light: what is bright is narrower and brighter in truth.
-  layers = min(layers * (0.72 + 0.28 * layers), 4.0);
+  // The sun's disc softens the edges of light under high waves, where the grid's triangles would show.
+  vec2 layers = mix(texture(u_caustics, uv).rg, textureLod(u_caustics, uv, kSoftLevel).rg, 0.5);
+  // The grid is coarser than the filaments of light: what is bright is narrower and brighter in truth. Other waves fill the shade between them.
+  layers = kLeastLight + (1.0 - kLeastLight) * layers * (0.72 + 0.28 * layers);
+  layers = 1.35 * layers / (1.0 + 0.35 * layers);
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));

@@ -1,6 +1,8 @@
-// A drop or a puff of mist: an ellipse along its flight, bright in its middle. Hidden behind solids.
+// A drop or a puff of mist: an ellipse along its flight, bright in its middle. A large drop is a lens, which shows the bright sky below and
+// what is dark above. Hidden behind solids.
 flat in vec3 v_flight;
 flat in vec4 v_light;
+flat in float v_round;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
 layout(location = 0) out vec4 color;
@@ -13,5 +15,8 @@ void main() {
     left = 1.0 - dot(in_drop, in_drop);
   }
   if (left <= 0.0 || texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
-  color = vec4(v_light.rgb, v_light.a * left * left);
+  vec2 to_glint = at - vec2(-0.25, 0.4);
+  float solid = mix(0.9, 0.6, left) * smoothstep(0.0, 0.4, left);
+  float lens = 0.9 - 0.3 * at.y * dot(at, at) + 0.6 * smoothstep(0.12, 0.0, dot(to_glint, to_glint));
+  color = vec4(v_light.rgb * mix(1.0, lens, v_round), v_light.a * mix(left * left, solid, v_round));
 }

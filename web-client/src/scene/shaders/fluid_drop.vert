@@ -16,7 +16,7 @@ const float kAlone = 0.30, kAmongOthers = 0.55, kAmongWhite = 0.9;
 // Density (as streamed) of particles that are never apart from it.
 const float kDense = 0.7;
 // A drop is drawn as long as it flies in this time.
-const float kExposureS = 0.02;
+const float kExposureS = 0.008;
 const float kLeastPx = 1.6;
 const float kLargeM = 0.07;
 // Share of what is behind it that the mist around a white particle hides.

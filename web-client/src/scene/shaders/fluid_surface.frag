@@ -11,6 +11,9 @@
 #ifdef RIPPLES
 #include <ripples>
 #endif
+#ifdef OUTDOORS
+#include <border>
+#endif
 
 in vec2 v_uv;
 uniform sampler2D u_behind;
@@ -58,7 +61,7 @@ const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
 #ifdef AGAIN
-const float kWhiteness = 0.06;  // of two sheets
+const float kWhiteness = 0.035;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif
@@ -202,6 +205,17 @@ vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
   float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z > 0.0 ? rim.x * rim.y : 0.0));
   return mix(texture(u_behind, shown).rgb, textureLod(u_sky, ray, 1.0).rgb, is_sky);
 }
+
+#ifdef OUTDOORS
+// The garden, and the sky over it, that a ray from the surface meets: as far as they are on the screen.
+vec3 gardenLight(vec3 from, vec3 ray) {
+  vec3 sky = mirroredAlong(ray);
+  sky = mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, abs(ray.y))));
+  vec3 at = shownAt(atBorder(from, vec3(ray.x, abs(ray.y), ray.z), u_volume_max_m.xz - u_volume_min_m.xz));
+  vec2 edge = smoothstep(0.5, 0.46, abs(at.xy - 0.5)) * step(0.0, at.z);
+  return distanceAt(clamp(at.xy, 0.0, 1.0)) < 0.5 * at.z ? sky : mix(sky, texture(u_behind, at.xy).rgb, edge.x * edge.y);
+}
+#endif
 
 void main() {
   vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
@@ -348,7 +362,11 @@ void main() {
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
+#ifdef OUTDOORS
+  vec3 mirrored_light = gardenLight(surface, mirrored);
+#else
   vec3 mirrored_light = mirroredAlong(mirrored);
+#endif
   float at_sun = dot(mirrored, u_sun_direction);
   if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);

@@ -4,6 +4,7 @@ import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters 
 import bed from "./bed.glsl?raw";
 import below from "./below.glsl?raw";
 import bicubic from "./bicubic.glsl?raw";
+import border from "./border.glsl?raw";
 import bubblesFrag from "./bubbles.frag?raw";
 import caustics from "./caustics.glsl?raw";
 import causticsFrag from "./caustics.frag?raw";
@@ -143,6 +144,7 @@ const kShared: Record<string, string> = {
   bed,
   below,
   bicubic,
+  border,
   caustics,
   cell_hash: cellHash,
   drop,

@@ -1,4 +1,7 @@
 // Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, SKIRT, MIRROR as there.
+#if defined(RIPPLES) || defined(WALLS)
+#include <border>
+#endif
 #if defined(OPEN_SEA) || defined(RIPPLES)
 uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
 uniform vec3 u_glow;
@@ -7,7 +10,6 @@ uniform vec3 u_glow;
 const float kVeiledShare = 0.7;
 #else
 const float kVeiledShare = 0.85;
-const vec3 kHedge = vec3(0.06, 0.11, 0.05);
 #endif
 
 // The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
@@ -18,8 +20,7 @@ vec3 veiledSky(vec3 direction) {
   toward_sun *= toward_sun;
   sky += 0.08 * u_glow * toward_sun * toward_sun;
 #ifndef OPEN_SEA
-  // The hedge around a pool, above its pale deck.
-  sky = mix(kHedge * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(0.04, 0.10, direction.y)));
+  sky = mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, direction.y)));
 #endif
   return sky;
 }
@@ -51,10 +52,22 @@ float behindScreen(vec3 at, out vec2 uv) {
   return viewZ(texture(u_behind_depth, uv).r) - view.z;
 }
 
+#if defined(RIPPLES) || defined(WALLS)
+// The same of the garden and the sky over it: what the screen shows where the ray meets the border, unless something stands before it.
+vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
+  vec3 at = atBorder(from, direction, u_extent_m);
+  vec2 uv;
+  float behind_m = behindScreen(at, uv);
+  vec2 edge = smoothstep(0.5, 0.46, abs(uv - 0.5));
+  return behind_m < -1e5 || behind_m > 0.5 * distance(at, u_camera_m) ? sky : mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y);
+}
+#endif
+
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
 #if defined(RIPPLES) || defined(WALLS)
+  sky = gardenLight(from, direction, sky);
   // A ray that rises past a pool's walls does not meet the deck, of which the screen shows the upper side.
   reach_m = min(reach_m, 1.02 * wayOut(from, direction));
 #endif

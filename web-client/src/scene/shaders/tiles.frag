@@ -1,6 +1,7 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// PLAIN: also for the display. CAUSTICS: from a photon grid; otherwise from the surface's curvature.
+// PLAIN: also for the display. DECK: around a pool, slabs of natural stone that are wet near the water.
+// CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
 #ifdef CAUSTICS
@@ -20,20 +21,40 @@ uniform vec2 u_extent_m;  // length and width of the water
 uniform vec2 u_half_m;
 uniform float u_level_m;    // of the resting water
 uniform bool u_has_water;
+#ifdef DECK
+uniform sampler2D u_noise;
+uniform vec3 cameraPosition;
+// Reach of splashed water on the deck, m, and the sizes of the stone's clouds and grain.
+const float kWetM = 1.0, kCloudsM = 3.1, kGrainM = 0.7;
+#endif
 layout(location = 0) out vec4 color;
 
 // Brightness factor about 1. Detail finer than a pixel fades to its mean, so that distant tiles neither flicker nor show as blocks.
-float tiles(vec2 at, float tile_m) {
+float tiles(vec2 at, float tile_m, float joint_tiles) {
   vec2 cell = at / tile_m;
   vec2 step_cells = fwidth(cell);
   float blur = max(step_cells.x, step_cells.y);
   float fine = 1.0 - smoothstep(0.2, 0.7, blur);
   if (fine <= 0.0) return 0.97;
   vec2 edge = 0.5 - abs(fract(cell) - 0.5);
-  float joint = 1.0 - smoothstep(0.03 - 0.5 * blur, 0.03 + 0.6 * blur, min(edge.x, edge.y));
+  float joint = 1.0 - smoothstep(joint_tiles - 0.5 * blur, joint_tiles + 0.6 * blur, min(edge.x, edge.y));
   float seen = fine * min(0.14 / blur, 1.0);
   return 1.0 + fine * 0.14 * (cellHash(floor(cell)) - 0.5) - seen * 0.46 * joint;
 }
+
+#ifdef DECK
+// Albedo of the stone `out_m` from the water, and how wet it is there.
+vec4 stoneAt(vec3 albedo, vec2 at, float tile_m, float out_m) {
+  float clouds = texture(u_noise, at / kCloudsM).r - 0.5;
+  float grain = texture(u_noise, at.yx / kGrainM).r - 0.5;
+  vec2 slab = floor(at / tile_m);
+  // Slabs of one quarry are warmer, cooler, lighter and darker.
+  albedo *= mix(vec3(1.10, 1.0, 0.88), vec3(0.90, 0.97, 1.04), cellHash(slab + 41.0)) * (0.86 + 0.28 * cellHash(slab + 7.0));
+  albedo *= 1.0 + 0.22 * clouds + 0.30 * grain;
+  float wet = 1.0 - smoothstep(0.1, 0.75, out_m / kWetM + 1.1 * clouds + 0.3 * grain);
+  return vec4(albedo * (1.0 - 0.36 * wet), wet);
+}
+#endif
 
 #ifndef CAUSTICS
 // Sunlight gathered by the curvature of the surface at the point where the light came in, for a way of `deep_m` below it.
@@ -47,9 +68,21 @@ void main() {
   vec3 normal = normalize(v_normal);
   vec3 steep = abs(normal);
   vec2 at = steep.y > max(steep.x, steep.z) ? v_world.xz : steep.x > steep.z ? v_world.zy : v_world.xy;
-  vec3 albedo = v_color.rgb * tiles(at, v_color.a * max(u_extent_m.x, u_extent_m.y));
+  float tile_m = v_color.a * max(u_extent_m.x, u_extent_m.y);
+#ifdef DECK
+  vec2 outside_m = abs(v_world.xz) - u_half_m;
+  float out_m = max(outside_m.x, outside_m.y);
+  vec4 stone = stoneAt(v_color.rgb * tiles(at, tile_m, 0.016), at, tile_m, out_m);
+  vec3 albedo = stone.rgb;
+#else
+  vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.03);
+#endif
   float deep_m = u_level_m - v_world.y;
+#ifdef DECK
+  const bool below = false;
+#else
   bool below = u_has_water && deep_m > 0.0 && all(lessThanEqual(abs(v_world.xz), u_half_m * 1.001));
+#endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   vec3 toward_sun = u_sun_direction;
   vec3 sun_light = u_sun_light;
@@ -77,6 +110,12 @@ void main() {
     if (steep.y < 0.5) ambient *= 0.85;
   }
   vec3 lit = albedo * (sun_light * 1.25 * sun + ambient);
+#ifdef DECK
+  vec3 ray = normalize(v_world - cameraPosition);
+  float past = 1.0 - clamp(-ray.y, 0.0, 1.0);
+  float mirror = stone.a * max(normal.y, 0.0) * (0.03 + 0.55 * past * past * past * past);
+  lit = mix(lit, skyLight(vec3(ray.x, abs(ray.y), ray.z)), mirror);
+#endif
 #ifdef PLAIN
   if (u_is_displayed) lit = toDisplay(lit);
 #endif

@@ -338,6 +338,7 @@ void main() {
 #endif
 #if defined(RIPPLES) || defined(WALLS)
   float foam = 0.0;
+  water = mix(water, meniscusLight(), climbingShare(solid_m));
 #else
   float foam = 0.62 * contact * sqrt(contact);
 #endif

@@ -4,6 +4,7 @@ import { Camera, DepthTexture, DoubleSide, LessEqualCompare, LinearFilter, Matri
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
+import { gardenReach } from "../landscape/garden";
 import { bedOf } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
 import { kCasterLayers } from "../meshes/casters";
@@ -11,8 +12,10 @@ import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { shadowMatrix, toClip, type ShadowBox } from "./shadow_frame";
 
 /** Size of the box whose shadows are drawn, in sides of the square: half its length, with what stands around the water, and its height over the water. */
-const kHalfSides: Record<GreetingInfo["setting"], number> = { openSea: 0.64, pool: 1.35, glassTank: 0.92, flume: 0.7 };
+const kHalfSides: Record<Exclude<GreetingInfo["setting"], "pool">, number> = { openSea: 0.64, glassTank: 0.92, flume: 0.7 };
 const kHighSides = 0.17;
+/** The same of a pool's garden: distance from the water in those of its border, and height in those of its trees. */
+const kGarden = { away: 1.5, high: 1.4 };
 /** Direct light below which shadows cannot be seen. */
 const kLeastLight = 0.02;
 
@@ -41,7 +44,9 @@ export class ShadowPass implements Pass {
     const { sideM, widthM } = greeting;
     const { depthM } = bedOf(greeting);
     const longM = Math.max(sideM, widthM);
-    this.box = { halfM: kHalfSides[greeting.setting] * longM, lowM: -depthM, highM: (field ? 0 : depthM) + kHighSides * longM };
+    const { awayM, treeM } = gardenReach(longM);
+    const [halfM, highM] = greeting.setting === "pool" ? [longM / 2 + kGarden.away * awayM, kGarden.high * treeM] : [kHalfSides[greeting.setting] * longM, kHighSides * longM];
+    this.box = { halfM, lowM: -depthM, highM: (field ? 0 : depthM) + highM };
     this.light = sky.uniforms["u_sun_light"]!.value as Vector3;
     const depth = new DepthTexture(texelsCount, texelsCount, UnsignedIntType);
     depth.compareFunction = LessEqualCompare;

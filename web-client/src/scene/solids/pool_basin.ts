@@ -1,37 +1,41 @@
-// A swimming pool: tiled floor and walls, a rim of stone, a deck of slabs, and a lawn with a hedge.
+// A swimming pool: tiled floor and walls, a rounded coping, a deck of slabs, and a garden around it.
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
+import { addGarden, gardenReach } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
 
-/** Shares of the side: rim over the water, its width, the deck, and the lawn. */
+/** Shares of the side: rim over the water, and its width. */
 const kRimHeight = 0.026;
+const kRimMostM = 0.4;
 const kRimWidth = 0.028;
-const kDeckWidth = 0.42;
-const kLawnReach = 40;
-const kHedgeHeight = 0.13;
+/** Width of the deck as a share of the garden's border, and at least. */
+const kDeckShare = 0.5;
+const kDeckLeastM = 2.4;
 const kTilesPerSide = 36;
 /** Lane lines on the floor: their number, and width in sides. */
 const kLaneCount = 3;
 const kLaneWidth = 0.022;
-const kSlabsPerSide = 14;
+const kSlabM = 0.8;
 
 // The fourth number is the side of a tile, in sides of the water (tiles.frag).
 const kFloorTile: Paint = [0.36, 0.66, 0.72, 1 / kTilesPerSide];
 const kWallTile: Paint = [0.42, 0.70, 0.75, 1 / kTilesPerSide];
 const kBandTile: Paint = [0.05, 0.17, 0.36, 1 / kTilesPerSide];
-const kRim: Paint = [0.74, 0.70, 0.62, 1 / 20];
-const kDeck: Paint = [0.56, 0.47, 0.37, 1 / kSlabsPerSide];
-// Grain, as for other solids.
-const kLawn: Paint = [0.13, 0.21, 0.06, 1];
-const kHedge: Paint = [0.05, 0.1, 0.03, 1.6];
+const kRim: Paint = [0.80, 0.77, 0.70, 1 / 20];
+const kDeck = [0.60, 0.52, 0.42] as const;
+/** Rounded edge of the coping: outward and upward, in its height. */
+const kCopingProfile = [[-1, -1], [-1, 0.3], [-0.8, 0.75], [-0.35, 1]] as const;
 
 interface BasinGeometries {
   tiled: BufferGeometry;
+  deck: BufferGeometry;
   planted: BufferGeometry;
+  /** By side. */
+  leaves: BufferGeometry[];
 }
 
 /** A level ring of four strips between two rectangles. */
@@ -59,11 +63,11 @@ function addWalls(builder: MeshBuilder, half: readonly [number, number], lowM: n
 }
 
 /** Returns the basin with its floor at y = 0 and the water's rest level at `depthM`. */
-export function makeBasinGeometries(lengthM: number, widthM: number, depthM: number): BasinGeometries {
+export function makeBasinGeometries(lengthM: number, widthM: number, depthM: number, plain = false): BasinGeometries {
   const half: [number, number] = [lengthM / 2, widthM / 2];
   const sideM = Math.max(lengthM, widthM);  // what tiles, rim and deck are shares of
   const grown = (byM: number): [number, number] => [half[0] + byM, half[1] + byM];
-  const rimM = depthM + kRimHeight * sideM;
+  const rimM = depthM + Math.min(kRimHeight * sideM, kRimMostM);
   const bandM = depthM - 0.012 * sideM;
   const tiled = new MeshBuilder();
   // Floor in strips along x: tiles and lane lines in turn.
@@ -78,41 +82,45 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   }
   addWalls(tiled, half, 0, bandM, true, kWallTile);
   addWalls(tiled, half, bandM, rimM, true, kBandTile);
+  const deck = new MeshBuilder();
   const liftM = 0.006 * sideM;
-  const lipM = -0.006 * sideM;
-  addRing(tiled, rimM + liftM, grown(lipM), grown(kRimWidth * sideM), kRim);
-  addWalls(tiled, grown(lipM), rimM - liftM, rimM + liftM, true, kRim);
-  addWalls(tiled, grown(kRimWidth * sideM), rimM, rimM + liftM, false, kRim);
-  addRing(tiled, rimM, grown(kRimWidth * sideM), grown(kDeckWidth * sideM), kDeck);
+  const rows = kCopingProfile.map(([out, up]) => {
+    const [x, z] = grown(out * liftM);
+    const yM = rimM + up * liftM;
+    return [[x, yM, z], [-x, yM, z], [-x, yM, -z], [x, yM, -z], [x, yM, z]] as const;
+  });
+  for (let side = 0; side < 4; ++side) deck.grid(rows.map((row) => [row[side]!, row[side + 1]!]), kRim);
+  const outerM = kRimWidth * sideM;
+  addRing(deck, rimM + liftM, grown(-0.35 * liftM), grown(outerM), kRim);
+  addWalls(deck, grown(outerM), rimM, rimM + liftM, false, kRim);
+  const deckM = Math.max(kDeckShare * gardenReach(sideM).awayM, kDeckLeastM);
+  addRing(deck, rimM, grown(outerM), grown(deckM), [...kDeck, Math.min(kSlabM / sideM, 1 / 8)]);
   const planted = new MeshBuilder();
-  addRing(planted, rimM - 0.004 * sideM, grown(kDeckWidth * sideM), grown(kLawnReach * sideM), kLawn);
-  // A hedge on three sides; the fourth is where the usual view comes from.
-  const hedge = (xM: number, zM: number, halfX: number, halfZ: number): void => {
-    planted.block(xM, zM, { yM: rimM, halfX, halfZ }, { yM: rimM + kHedgeHeight * sideM, halfX: halfX * 0.995, halfZ: halfZ * 0.995 }, kHedge);
-  };
-  const [hx, hz] = grown(0.72 * sideM);
-  const thickM = 0.045 * sideM;
-  hedge(0, -hz, hx + thickM, thickM);
-  hedge(-hx, 0, thickM, hz);
-  hedge(hx, 0, thickM, hz);
-  return { tiled: tiled.build(), planted: planted.build() };
+  const leaves = addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
+  return { tiled: tiled.build(), deck: deck.build(), planted: planted.build(), leaves: plain ? [] : leaves.map((each) => each.build()) };
 }
 
 export class PoolBasin {
   readonly group = new Group();
   private readonly geometries: BasinGeometries;
-  private readonly material: RawShaderMaterial;
+  private readonly materials: readonly [tiles: RawShaderMaterial, stone: RawShaderMaterial];
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
-    this.geometries = makeBasinGeometries(sideM, widthM, depthM);
-    this.material = makeTiles(greeting, context);
-    for (const mesh of [new Mesh(this.geometries.tiled, this.material), new Mesh(this.geometries.planted, context.solid)]) {
+    this.geometries = makeBasinGeometries(sideM, widthM, depthM, context.quality.plain);
+    this.materials = [makeTiles(greeting, context), makeTiles(greeting, context, true)];
+    const [tiled, deck] = [new Mesh(this.geometries.tiled, this.materials[0]), new Mesh(this.geometries.deck, this.materials[1])];
+    const planted = new Mesh(this.geometries.planted, context.solid);
+    castsShadow(tiled);
+    castsShadow(deck);
+    // Without a map of shadows, those on the water are drawn, which plants do not reach at noon.
+    if (context.shadow) castsShadow(planted);
+    for (const mesh of [tiled, deck, planted]) {
       mesh.frustumCulled = false;
-      castsShadow(mesh);
       this.group.add(mesh);
     }
+    for (const leaves of this.geometries.leaves) this.group.add(new Mesh(leaves, context.solid));
     this.setFloorM(-depthM);
   }
 
@@ -121,8 +129,7 @@ export class PoolBasin {
   }
 
   dispose(): void {
-    this.geometries.tiled.dispose();
-    this.geometries.planted.dispose();
-    this.material.dispose();
+    const { tiled, deck, planted, leaves } = this.geometries;
+    for (const each of [tiled, deck, planted, ...leaves, ...this.materials]) each.dispose();
   }
 }

@@ -54,7 +54,7 @@ export function isIndoors({ setting }: GreetingInfo): boolean {
 }
 
 /** Root mean square slope of the ripples in a pool, and on water of particles alone. */
-const kPoolSlope = 0.02;
+const kPoolSlope = 0.016;
 const kParticlesSlope = 0.035;
 /** Particles alone carry no waves shorter than those of a grid with so many cells along x. */
 const kParticlesCells = 112;

@@ -5,17 +5,18 @@ import type { GreetingInfo } from "../../../client/codec/greeting";
 import { makeMaterial } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 
-/** Returns a material for geometries whose fourth number of a colour is the side of a tile, in sides of the water. The caller disposes it. */
-export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "widthM">, { sky, field, caustics, shadow, quality }: SurroundingsContext): RawShaderMaterial {
+/** `isDeck`: of natural stone. Returns a material for geometries whose fourth number of a colour is the side of a tile, in sides of the water. The caller disposes it. */
+export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "widthM">, { sky, noise, field, caustics, shadow, quality }: SurroundingsContext, isDeck = false): RawShaderMaterial {
   const uniforms = {
     ...sky.uniforms,
     ...caustics,
     ...shadow,
+    u_noise: { value: noise },
     u_field: { value: field ?? null },
     u_extent_m: { value: new Vector2(sideM, widthM) },
     u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
     u_level_m: { value: 0 },
     u_has_water: { value: field !== undefined },
   };
-  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
+  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : isDeck && { DECK: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
 }

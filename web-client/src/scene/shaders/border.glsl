@@ -1,0 +1,24 @@
+// Include: what a pool's water meets. The garden around it, as the water mirrors it: the limits are those of gardenReach() in
+// landscape/garden.ts. And what stands in the water, at which it climbs.
+
+// Colour of shrubs and trees that are not on the screen, and the heights of directions in which they give way to the sky.
+const vec3 kShrubs = vec3(0.09, 0.15, 0.05);
+const vec2 kShrubsTop = vec2(0.06, 0.20);
+
+// Where a ray that leaves a pool of this size meets the border of the garden.
+vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
+  vec2 half_m = 0.5 * extent_m + clamp(0.72 * max(extent_m.x, extent_m.y), 3.6, 8.5);
+  vec2 safe = mix(vec2(1e-6), direction.xz, step(1e-6, abs(direction.xz)));
+  vec2 along_m = max((half_m - from.xz) / safe, (-half_m - from.xz) / safe);
+  return from + direction * min(along_m.x, along_m.y);
+}
+
+// Reach of the bright line where the water climbs a solid, along the ray, m, and the most of its light.
+const float kClimbingM = 0.025, kClimbingLight = 0.45;
+
+// Share of the line's light, where the solid is `solid_m` behind the surface. None where that jumps from pixel to pixel: the line would be
+// a row of dashes.
+float climbingShare(float solid_m) {
+  float step_m = fwidth(solid_m);
+  return kClimbingLight * (1.0 - smoothstep(0.4, 1.0, solid_m / (kClimbingM + 0.7 * step_m))) * (1.0 - smoothstep(0.02, 0.08, step_m));
+}
