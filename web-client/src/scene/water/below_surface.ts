@@ -7,8 +7,9 @@ import { elevationAtM } from "../frames/height_field";
 import { depthAtM, type Bed } from "../landscape/terrain";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 
-/** The surface may divide the picture where the camera is over the water, by less than this many near planes. */
-const kCloseNears = 4;
+/** The surface may divide the picture where the camera is over the water by less than this many near planes: the lower edge of the near
+ * plane is half of one below the camera, and the water may rise by one toward it. */
+const kCloseNears = 2;
 /** Shallower water is a film on dry ground, m. */
 const kDryM = 0.01;
 
