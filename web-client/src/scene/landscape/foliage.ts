@@ -11,7 +11,7 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 /** The lumpy core of a clump: its size relative to the clump, its brightness relative to the leaves, and its rows and columns. */
 const kCoreSizes = [0.7, 1.0] as const;
 const kCoreBright = 0.62;
-const kCoreCells = { full: [5, 9], plain: [4, 7] } as const;
+const kCoreCells = { full: [5, 9], plain: [3, 6] } as const;
 const kGoldenAngleRad = 2.39996323;
 
 export class Foliage {

@@ -105,7 +105,7 @@ function addLadder(builder: MeshBuilder, at: Beside, alongM: number, { waterM, d
 
 /** A border of shrubs with flowers before it; its length is that of the side with the corners. */
 function addBorder(plants: Foliage, at: Beside, longM: number, deckM: number, awayM: number, treeM: number): void {
-  const stepM = (plants.plain ? 0.32 : 0.22) * treeM;
+  const stepM = (plants.plain ? 0.4 : 0.22) * treeM;
   let flower = 0;
   for (let alongM = -longM; alongM < longM; alongM += stepM * plants.between(0.8, 1.2)) {
     const sizeM = stepM * plants.between(0.6, 1.05);

@@ -25,8 +25,8 @@ const kLeaves: readonly Paint[] = [[0.078, 0.125, 0.040, 1], [0.105, 0.150, 0.05
 
 const kTrunk: Paint = [0.15, 0.095, 0.06, 1];
 
-const kHousesCount = { full: 46, plain: 24 };
-const kTreesCount = { full: 150, plain: 50 };
+const kHousesCount = { full: 46, plain: 20 };
+const kTreesCount = { full: 150, plain: 36 };
 /** Length of the usual house, in sides of the square. */
 const kHouseSides = 0.068;
 
