@@ -7,7 +7,12 @@ import { repository } from "../server.mjs";
  * @typedef {object} Shot
  * @property {number} tick the water shown
  * @property {number} [historyTicks] before it, for what the page keeps of them: kHistoryTicks unless it is longer
+ * @property {object[]} [visitors] commands at tick 0, where a scene shows what it is for only with somebody in it
  */
+
+const racer = (x_m, z_m, heading_deg) => ({
+  spawn_boat: { boat: { x_m, z_m, heading_deg, length_m: 2.6, beam_m: 0.95, density_ratio: 0.3, max_speed_mps: 4, throttle_ratio: 0.6 } },
+});
 
 /** @type {Shot} */
 const kDefault = { tick: 180 };
@@ -18,27 +23,27 @@ const kShots = {
   boat_wake_particles: { tick: 150 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
-  breaking_wave_particles: { tick: 90 },
+  breaking_wave_particles: { tick: 108 },
   breaking_wave_wave: { tick: 105 },
   dam_break: { tick: 104 },
-  flume: { tick: 918 },
+  flume: { tick: 894 },
   flotsam: { tick: 300 },
   harbor: { tick: 330 },
   island: { tick: 540, historyTicks: 300 },
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
-  particles_only: { tick: 24 },
-  pool: { tick: 105 },
-  regatta: { tick: 300 },
+  particles_only: { tick: 24, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
+  pool: { tick: 138 },
+  regatta: { tick: 150, visitors: [racer(-10.6, -1.6, -15), racer(-8, -8, -10), racer(-3, -8.5, -20)] },
   river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 198 },
   splash: { tick: 70 },
   splash_particles: { tick: 78 },
-  splash_wave: { tick: 88 },
+  splash_wave: { tick: 120 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },
-  wave_only: { tick: 72 },
+  wave_only: { tick: 66 },
 };
 
 /** Pictures of both qualities have this size. */
@@ -63,7 +68,8 @@ export function sceneOf(name) {
 export const shotOf = (scene) => kShots[scene] ?? kDefault;
 
 /** Brings a scene to the tick of its picture. @param {import("./driven_page.mjs").DrivenPage} page */
-export async function setUp(page, { tick, historyTicks = kHistoryTicks }) {
+export async function setUp(page, { tick, historyTicks = kHistoryTicks, visitors = [] }) {
+  for (const command of visitors) await page.command(command);
   await page.skipTo(tick % kStride);
   await page.skipTo(Math.max(tick - historyTicks, tick % kStride));
   await page.followTo(tick, kStride);
