@@ -20,7 +20,7 @@ const kDefault = { tick: 180 };
 const kShots = {
   beach: { tick: 516, historyTicks: 300 },
   boat_wake: { tick: 300 },
-  boat_wake_particles: { tick: 150 },
+  boat_wake_particles: { tick: 240 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 108 },
@@ -33,7 +33,7 @@ const kShots = {
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
   particles_only: { tick: 24, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
-  pool: { tick: 138 },
+  pool: { tick: 408 },
   regatta: { tick: 150, visitors: [racer(-10.6, -1.6, -15), racer(-8, -8, -10), racer(-3, -8.5, -20)] },
   river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
