@@ -10,9 +10,9 @@ import { repository } from "../server.mjs";
  * @property {object[]} [visitors] commands at tick 0, where a scene shows what it is for only with somebody in it
  */
 
-const racer = (x_m, z_m, heading_deg) => ({
+const kRacers = [[-10.6, -1.6, -15], [-8, -8, -10], [-3, -8.5, -20], [-11, 0.5, -20], [-9, -6, -10], [-5.5, -2, -35]].map(([x_m, z_m, heading_deg]) => ({
   spawn_boat: { boat: { x_m, z_m, heading_deg, length_m: 2.6, beam_m: 0.95, density_ratio: 0.3, max_speed_mps: 4, throttle_ratio: 0.6 } },
-});
+}));
 
 /** @type {Shot} */
 const kDefault = { tick: 180 };
@@ -34,7 +34,7 @@ const kShots = {
   open_water: { tick: 300 },
   particles_only: { tick: 24, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
   pool: { tick: 408 },
-  regatta: { tick: 150, visitors: [racer(-10.6, -1.6, -15), racer(-8, -8, -10), racer(-3, -8.5, -20)] },
+  regatta: { tick: 150, visitors: kRacers },
   river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 198 },

@@ -71,9 +71,9 @@ const kFairStorm = 0.3;
 /** Direct light in a room at noon: white, so that white water is. */
 const kStudioKey: Rgb = [1.22, 1.25, 1.30];
 /** Light from all sides in a room over that under the sky: dark walls send little back. */
-const kStudioAmbient = 0.65;
+const kStudioAmbient = 0.75;
 /** A room by day is shown brighter than its light, as photographs of rooms are. */
-const kStudioExposure = 1.25;
+const kStudioExposure = 1.5;
 /** Light of lamps in a room, which adds to the daylight. */
 const kLampKey: Rgb = [0.52, 0.43, 0.30];
 const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];

@@ -8,7 +8,7 @@ in vec4 v_color;
 uniform vec3 u_camera_m;
 layout(location = 0) out vec4 color;
 
-const float kBrightest = 1.2;  // of what a pane mirrors: brighter lamps would be bars across what is behind it
+const float kBrightest = 0.12;  // of what a pane mirrors: brighter lamps would be bars across what is behind it
 
 void main() {
   vec3 ray = normalize(v_world - u_camera_m);

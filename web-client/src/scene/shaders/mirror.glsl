@@ -58,7 +58,8 @@ vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
   vec3 at = atBorder(from, direction, u_extent_m);
   vec2 uv;
   float behind_m = behindScreen(at, uv);
-  vec2 edge = smoothstep(0.5, 0.46, abs(uv - 0.5));
+  // Toward the edges of the picture it fades slowly: what is beyond them has the colours of the sky, and a border between would be seen.
+  vec2 edge = smoothstep(0.5, 0.3, abs(uv - 0.5));
   return behind_m < -1e5 || behind_m > 0.5 * distance(at, u_camera_m) ? sky : mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y);
 }
 #endif
