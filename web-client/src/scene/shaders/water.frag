@@ -259,8 +259,7 @@ void main() {
 #endif
   // The light is absorbed twice: down to the object and up to the eye.
   vec3 passed = exp(-u_loss_per_m * (u_colour_ratio * path_m * (1.0 + max(-ray.y, 0.25))));
-  float lifted = smoothstep(-0.5, 0.9, v_top_m);
-  vec3 scattered = waterScattered(lifted) * u_water_light;
+  vec3 scattered = waterScattered(smoothstep(-0.5, 0.9, v_top_m)) * u_water_light;
 #ifdef SKIRT
   scattered *= litFromAbove(v_top_m - v_world.y);
 #endif
