@@ -59,15 +59,14 @@ function addMotor(builder: MeshBuilder, lines: HullLines, livery: Livery): void 
 }
 
 /** Somebody on board, in a life jacket: standing, or seated with the legs out of sight. `foot`: under the feet, or of the seat. */
-function addPerson(builder: MeshBuilder, [x, y, z]: Point, tallM: number, isSeated: boolean): void {
-  const turn = (up: number, radius: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: (up - (isSeated ? 0.45 : 0)) * tallM, radiusM: radius * tallM, paint });
-  const legs = isSeated ? [] : [turn(0, 0.085, kTrousers), turn(0.47, 0.1, kTrousers)];
-  addTurned(builder, [x, y, z], [
-    ...legs, turn(0.47, 0.12, kLifeJacket), turn(0.62, 0.145, kLifeJacket), turn(0.78, 0.135, kLifeJacket), turn(0.83, 0.05, kSkin),
-    turn(0.86, 0.075, kSkin), turn(0.93, 0.085, kCap), turn(0.99, 0.06, kCap), turn(1.01, 0, kCap),
-  ], 7);
-  for (const side of [-1, 1]) {
-    const at = (out: number, up: number, ahead: number): Point => [x + ahead * tallM, y + (up - (isSeated ? 0.45 : 0)) * tallM, z + side * out * tallM];
+function addPerson(builder: MeshBuilder, [x, y, z]: Point, tallM: number, isSeated: boolean, isFine: boolean): void {
+  const seatedM = isSeated ? 0.45 * tallM : 0;
+  const turn = (up: number, radius: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: up * tallM - seatedM, radiusM: radius * tallM, paint });
+  const legs = isSeated ? [] : [turn(0, 0.09, kTrousers)];
+  const [body, head] = [[turn(0.47, 0.12, kLifeJacket), turn(0.62, 0.145, kLifeJacket), turn(0.78, 0.135, kLifeJacket)], [turn(0.83, 0.05, kSkin), turn(0.86, 0.075, kSkin), turn(0.93, 0.085, kCap), turn(1.01, 0, kCap)]];
+  addTurned(builder, [x, y, z], [...legs, ...(isFine ? body.concat(head) : [body[0]!, turn(0.8, 0.11, kSkin), head[3]!])], isFine ? 7 : 3);
+  for (const side of isFine ? [-1, 1] : []) {
+    const at = (out: number, up: number, ahead: number): Point => [x + ahead * tallM, y + up * tallM - seatedM, z + side * out * tallM];
     addRod(builder, at(0.15, 0.77, 0), at(0.1, 0.6, 0.19), 0.035 * tallM, kLifeJacket, 5);
   }
 }
@@ -84,7 +83,7 @@ function addFlag(builder: MeshBuilder, foot: Point, highM: number, paint: Paint)
   builder.grid(rows.map((row) => [...row].reverse()), paint);
 }
 
-function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery): BoatLamp[] {
+function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery, { isFine }: Detail): BoatLamp[] {
   const { heightM, beamM } = lines.boat;
   const seatM = 0.2 * heightM;
   for (const [along, wide] of [[0.14, 0.13], [0.43, 0.09], [0.7, 0.09]] as const) addThwart(builder, lines, along, wide, seatM, livery.gunwale);
@@ -96,7 +95,7 @@ function fitDinghy(builder: MeshBuilder, lines: HullLines, livery: Livery): Boat
     addRod(builder, [lines.xM(0.2, y), y, z], [lines.xM(0.72, y), y, 0.86 * z], 0.016 * beamM, kCanvas);
     addPlate(builder, [[lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z - 0.05 * beamM], [lines.xM(0.68, y), y + 0.02 * heightM, 0.86 * z + 0.05 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z + 0.04 * beamM], [lines.xM(0.8, y), y + 0.02 * heightM, 0.86 * z - 0.04 * beamM]], 0.02 * heightM, kCanvas);
   }
-  addPerson(builder, [lines.xM(0.15, seatM), seatM + 0.035 * heightM, 0], kPersonBeams * beamM, true);
+  addPerson(builder, [lines.xM(0.15, seatM), seatM + 0.035 * heightM, 0], kPersonBeams * beamM, true, isFine);
   const bowM = lines.sheerM(0.93);
   const half = lines.halfM(0.93, bowM);
   const staff: Point = [lines.xM(0.04, heightM), lines.sheerM(0.04), 0.3 * beamM];
@@ -186,7 +185,7 @@ function fitLaunch(builder: MeshBuilder, lines: HullLines, livery: Livery, { sid
   addRod(builder, [consoleX - 0.03 * lengthM, deckM - 0.02 * heightM, 0.15 * beamM], [consoleX - 0.055 * lengthM, deckM + 0.02 * heightM, 0.15 * beamM], 0.085 * beamM, kBlack, sidesCount);
   builder.block(lines.xM(0.3, 0), 0.15 * beamM, { yM: soleM, halfX: 0.03 * lengthM, halfZ: 0.09 * beamM }, { yM: 0.12 * heightM, halfX: 0.035 * lengthM, halfZ: 0.11 * beamM }, kCanvas);
   addThwart(builder, lines, 0.12, 0.12, 0.14 * heightM, kCanvas);
-  addPerson(builder, [consoleX - 0.085 * lengthM, soleM, 0.13 * beamM], kPersonBeams * beamM, false);
+  addPerson(builder, [consoleX - 0.085 * lengthM, soleM, 0.13 * beamM], kPersonBeams * beamM, false, isFine);
   addMotor(builder, lines, livery);
   const sternM = lines.sheerM(0.03);
   addFlag(builder, [lines.xM(0.03, sternM) + 0.02 * lengthM, sternM, 0], 0.85 * heightM, livery.side);
@@ -255,7 +254,7 @@ function fitCutter(builder: MeshBuilder, lines: HullLines, livery: Livery, { sid
     for (const z of [-wide, wide]) addRod(builder, [x, yM - 0.03 * heightM, z], [x, yM + 0.2 * heightM, z], 0.026 * beamM, kBlack, Math.min(sidesCount, 8));
     addRod(builder, [x, yM + 0.12 * heightM, -1.8 * wide], [x, yM + 0.12 * heightM, 1.8 * wide], 0.018 * beamM, kBlack);
   }
-  addPerson(builder, [lines.xM(0.24, deckM), lines.deckM(0.24), 0.2 * beamM], kPersonBeams * beamM, false);
+  addPerson(builder, [lines.xM(0.24, deckM), lines.deckM(0.24), 0.2 * beamM], kPersonBeams * beamM, false, isFine);
   // A hatch before the house.
   const hatchX = lines.xM(0.73, deckM);
   const hatchM = lines.deckM(0.73);
