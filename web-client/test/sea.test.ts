@@ -189,6 +189,8 @@ describe("the coast", () => {
     };
     expect(highest(coast, (xM) => xM > 20 && xM < 40)).toBeGreaterThan(1);
     expect(highest(coast, (xM, zM) => xM < 14 && zM < 15)).toBeLessThan(0.01);
+    const steep = { ...coast, bed: { ...bed, beaches: [{ side: "+x" as const, widthM: 12, shoreDepthM: -1.2 }] } };
+    expect(highest(steep, (xM, zM) => xM < 15.9 && zM < 15)).toBeLessThan(0.01);
     const riseM = Float32Array.from({ length: 25 }, (_, n) => (n === 12 ? 1.2 : -1.2));
     const island = { bed: { ...bed, beaches: [], ground: { countX: 5, countZ: 5, lengthM: 32, widthM: 32, riseM } }, sides: sidesOf("open", "open", "open", "open") };
     expect(highest(island, (xM, zM) => Math.hypot(xM, zM) < 6)).toBeGreaterThan(1);

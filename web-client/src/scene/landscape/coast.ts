@@ -203,8 +203,9 @@ export function makeCoastGeometry(coast: Coast, cellsCount: number, plain: boole
   return builder.build();
 }
 
-/** Adds pines where the ground inside the square is high above the waves: on islands and dunes. */
+/** Adds pines where the ground inside the square is high above the waves: on islands and dunes, not on beaches. */
 function addPines(bed: Bed, builder: MeshBuilder, plain: boolean): void {
+  if (!bed.ground) return;
   const high = Array.from({ length: kPinePlaces }, (_, n): Point => {
     const [x, z] = [(hash(n, 1, 71) - 0.5) * bed.sideM, (hash(n, 2, 71) - 0.5) * bed.widthM];
     return [x, -depthAtM(bed, x, z), z];
