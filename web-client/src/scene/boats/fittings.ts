@@ -58,7 +58,7 @@ function addMotor(builder: MeshBuilder, lines: HullLines, livery: Livery): void 
   addRod(builder, [x, top + 0.1 * heightM, 0], [x + 4.2 * size, top + 0.2 * heightM, 0.6 * size], 0.12 * size, kBlack);
 }
 
-/** Somebody on board, in a life jacket: standing, or seated with the legs out of sight. `foot`: under the feet, or of the seat. */
+/** Adds somebody in a life jacket: standing on a point, or seated on it with the legs out of sight. */
 function addPerson(builder: MeshBuilder, [x, y, z]: Point, tallM: number, isSeated: boolean, isFine: boolean): void {
   const seatedM = isSeated ? 0.45 * tallM : 0;
   const turn = (up: number, radius: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: up * tallM - seatedM, radiusM: radius * tallM, paint });

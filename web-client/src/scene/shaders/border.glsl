@@ -1,9 +1,21 @@
-// Include: what a pool's water meets. The garden around it, as the water mirrors it: the limits are those of gardenReach() in
-// landscape/garden.ts. And what stands in the water, at which it climbs.
+// Include, after sky.glsl: what a pool's water meets. The garden around it, as the water mirrors it: the limits are those of gardenReach()
+// in landscape/garden.ts. And what stands in the water, at which it climbs.
 
 // Colour of shrubs and trees that are not on the screen, and the heights of directions in which they give way to the sky.
 const vec3 kShrubs = vec3(0.09, 0.15, 0.05);
 const vec2 kShrubsTop = vec2(0.06, 0.20);
+
+// The sky in a direction of this height, behind shrubs and trees that are not on the screen.
+vec3 behindShrubs(vec3 sky, float up) {
+  return mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, up)));
+}
+
+// Share of the picture in what is mirrored from this position on it. It falls slowly toward the edges: what is beyond them has the colours
+// of the sky, and a border between the two would be seen.
+float pictureShare(vec2 uv) {
+  vec2 edge = smoothstep(0.5, 0.3, abs(uv - 0.5));
+  return edge.x * edge.y;
+}
 
 // Where a ray that leaves a pool of this size meets the border of the garden.
 vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {

@@ -209,11 +209,9 @@ vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
 #ifdef OUTDOORS
 // The garden, and the sky over it, that a ray from the surface meets: as far as they are on the screen.
 vec3 gardenLight(vec3 from, vec3 ray) {
-  vec3 sky = mirroredAlong(ray);
-  sky = mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, abs(ray.y))));
+  vec3 sky = behindShrubs(mirroredAlong(ray), abs(ray.y));
   vec3 at = shownAt(atBorder(from, vec3(ray.x, abs(ray.y), ray.z), u_volume_max_m.xz - u_volume_min_m.xz));
-  vec2 edge = smoothstep(0.5, 0.46, abs(at.xy - 0.5)) * step(0.0, at.z);
-  return distanceAt(clamp(at.xy, 0.0, 1.0)) < 0.5 * at.z ? sky : mix(sky, texture(u_behind, at.xy).rgb, edge.x * edge.y);
+  return distanceAt(clamp(at.xy, 0.0, 1.0)) < 0.5 * at.z ? sky : mix(sky, texture(u_behind, at.xy).rgb, pictureShare(at.xy) * step(0.0, at.z));
 }
 #endif
 

@@ -20,7 +20,7 @@ vec3 veiledSky(vec3 direction) {
   toward_sun *= toward_sun;
   sky += 0.08 * u_glow * toward_sun * toward_sun;
 #ifndef OPEN_SEA
-  sky = mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, direction.y)));
+  sky = behindShrubs(sky, direction.y);
 #endif
   return sky;
 }
@@ -53,14 +53,12 @@ float behindScreen(vec3 at, out vec2 uv) {
 }
 
 #if defined(RIPPLES) || defined(WALLS)
-// The same of the garden and the sky over it: what the screen shows where the ray meets the border, unless something stands before it.
+// Light of the garden and of the sky over it: what the screen shows where the ray meets the border, unless something stands before it.
 vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
   vec3 at = atBorder(from, direction, u_extent_m);
   vec2 uv;
   float behind_m = behindScreen(at, uv);
-  // Toward the edges of the picture it fades slowly: what is beyond them has the colours of the sky, and a border between would be seen.
-  vec2 edge = smoothstep(0.5, 0.3, abs(uv - 0.5));
-  return behind_m < -1e5 || behind_m > 0.5 * distance(at, u_camera_m) ? sky : mix(sky, texture(u_behind, uv).rgb, edge.x * edge.y);
+  return behind_m < -1e5 || behind_m > 0.5 * distance(at, u_camera_m) ? sky : mix(sky, texture(u_behind, uv).rgb, pictureShare(uv));
 }
 #endif
 
