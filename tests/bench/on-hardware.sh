@@ -34,7 +34,7 @@ while (($# > 0)); do
   esac
   shift
 done
-[[ -x "$bundle/spindrift" ]] || fail "'$bundle' is no bundle: it has no program spindrift; make one with ./dev bundle --with-tests"
+[[ -x "$bundle/spindrift" ]] || fail "'$bundle' is not a bundle: it has no program spindrift; make one with ./dev bundle --with-tests"
 bundle="$(realpath -- "$bundle")"
 output="$(realpath -- "${output:-$(dirname -- "${BASH_SOURCE[0]}")/results}")"
 logs="$output/logs"
