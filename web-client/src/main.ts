@@ -35,9 +35,8 @@ async function openRoomOrFront(): Promise<void> {
   await inLanguage;
   // Also where nothing comes.
   setTimeout(showPanels, kMostHiddenMs);
-  const load = () => import("./app/water_page");
-  // Most rooms that are named exist: their page is loaded meanwhile.
-  const water = roomOf(location.search) ? load() : undefined;
+  // Most addresses lead to water, and whoever comes to the front page opens a room next.
+  const water = import("./app/water_page");
   const url = socketUrl(location.href);
   // Only looked at: the page that is opened takes it out of the address.
   const identity = new IdentityStore(sessionStorageIfAny(), url).peek(takeLinkToken(location, { replaceState: () => {} }));
@@ -53,6 +52,6 @@ async function openRoomOrFront(): Promise<void> {
   // The connection is there before the page is, which takes longer: frames, projectors and exhibits make their own.
   const isVisitor = ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location));
   prepareWorker(isVisitor ? { url, identity, wish } : undefined);
-  const { openWaterPage } = await (water ?? load());
+  const { openWaterPage } = await water;
   openWaterPage();
 }

@@ -3,7 +3,7 @@ import { describe, expect, it } from "vitest";
 import type { GreetingInfo } from "../client/codec/greeting";
 import type { ObstacleInfo } from "../client/codec/scene_info";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
-import { meansOver, obstacleRiseM, shoreCells, shoreOf, type ShoreCells } from "../src/scene/shore/shore_ground";
+import { meansOver, obstacleRise, shoreCells, shoreOf, shoreSamples, type ShoreCells } from "../src/scene/shore/shore_ground";
 import { frontFoam, kDryingS, kFilmM, ShoreWetness, wetnessAfter } from "../src/scene/shore/shore_wetness";
 import type { Bed } from "../src/scene/landscape/terrain";
 
@@ -15,20 +15,20 @@ const kCounts = { resolutionCount: 16, countZ: 4 };
 
 describe("the ground under the cells of a moving shore", () => {
   it("has rocks as domes on cones without a kink", () => {
-    expect(obstacleRiseM(kRock, 1, 0)).toBeCloseTo(0.8, 9);
-    expect(obstacleRiseM(kRock, 3, 0)).toBeCloseTo(0, 9);
-    expect(obstacleRiseM(kRock, 1, 4)).toBeCloseTo(-1.6, 9);
-    const slope = (at: number): number => (obstacleRiseM(kRock, at + 1e-6, 0) - obstacleRiseM(kRock, at - 1e-6, 0)) / 2e-6;
+    expect(obstacleRise(kRock)(1, 0)).toBeCloseTo(0.8, 9);
+    expect(obstacleRise(kRock)(3, 0)).toBeCloseTo(0, 9);
+    expect(obstacleRise(kRock)(1, 4)).toBeCloseTo(-1.6, 9);
+    const slope = (at: number): number => (obstacleRise(kRock)(at + 1e-6, 0) - obstacleRise(kRock)(at - 1e-6, 0)) / 2e-6;
     expect(slope(3 - 1e-4)).toBeCloseTo(slope(3 + 1e-4), 3);
   });
 
   it("has breakwaters as boxes along their heading", () => {
-    expect(obstacleRiseM(kWall, 0, 1.9)).toBe(0.5);
-    expect(obstacleRiseM(kWall, 0.6, 0)).toBe(-Infinity);
+    expect(obstacleRise(kWall)(0, 1.9)).toBe(0.5);
+    expect(obstacleRise(kWall)(0.6, 0)).toBe(-Infinity);
   });
 
   it("is the higher of bed and obstacles at the centres of cells", () => {
-    const { bedM, groundM } = shoreCells(kBed, [kRock], kCounts, kCounts);
+    const { bedM, groundM } = shoreCells(kBed, [kRock], kCounts);
     expect(bedM[0]).toBeCloseTo(-1, 6);
     expect(bedM[15]).toBeCloseTo(0.875, 6);
     // The centre (0.5, -0.5) is on the rock, 0.71 m from its middle.
@@ -42,7 +42,7 @@ describe("the ground under the cells of a moving shore", () => {
     expect([...meansOver(plane, { resolutionCount: 4, countZ: 2 }, { resolutionCount: 2, countZ: 1 })]).toEqual([5.5, 7.5]);
     const thirds = meansOver(Float32Array.from([0, 3, 6, 9]), { resolutionCount: 4, countZ: 1 }, { resolutionCount: 3, countZ: 1 });
     expect([...thirds].map((mean) => Math.round(1000 * mean) / 1000)).toEqual([0.75, 4.5, 8.25]);
-    const coarse = shoreCells(kBed, [], kCounts, { resolutionCount: 4, countZ: 2 });
+    const coarse = shoreSamples(shoreCells(kBed, [], kCounts), { resolutionCount: 4, countZ: 2 });
     expect(coarse.bedM[3]).toBeCloseTo(0.5, 6);
   });
 

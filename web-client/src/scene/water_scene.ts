@@ -138,10 +138,11 @@ export class WaterScene {
     camera.updateMatrixWorld();
     const light = this.daylight.update(nowS);
     if (light) this.setLight(light);
-    // Before a room is known nothing is drawn, and the light of its hour would be baked again.
-    if (this.base) this.sky.update(renderer, nowS);
+    // Nor is the canvas cleared before a room is known: the browser would show the page anew, which takes long without graphics hardware.
+    if (!this.base) return;
+    this.sky.update(renderer, nowS);
     renderer.setRenderTarget(null);
-    if (this.base) renderer.setClearColor(this.base.solids.backdrop, 1);
+    renderer.setClearColor(this.base.solids.backdrop, 1);
     renderer.clear();
     renderer.setClearColor(0x000000, 0);
     for (const pass of this.passes) {

@@ -23,7 +23,8 @@ function makeCellWalls(period: number, seed: number): (x: number, y: number) => 
     for (let dy = -1; dy <= 1; ++dy)
       for (let dx = -1; dx <= 1; ++dx) {
         const at = 2 * ((cy + dy + 2) * side + cx + dx + 2);
-        const [awayX, awayY] = [cx + dx + points[at]! - x, cy + dy + points[at + 1]! - y];
+        const awayX = cx + dx + points[at]! - x;
+        const awayY = cy + dy + points[at + 1]! - y;
         const away = awayX * awayX + awayY * awayY;
         if (away < nearest) {
           next = nearest;
@@ -34,22 +35,29 @@ function makeCellWalls(period: number, seed: number): (x: number, y: number) => 
   };
 }
 
-function cloud(x: number, y: number, period: number, seed: number): number {
-  const cx = Math.floor(x);
-  const cy = Math.floor(y);
-  const [fx, fy] = [smooth(x - cx), smooth(y - cy)];
-  const at = (dx: number, dy: number): number => hash((cx + dx) % period, (cy + dy) % period, seed);
-  return (at(0, 0) * (1 - fx) + at(1, 0) * fx) * (1 - fy) + (at(0, 1) * (1 - fx) + at(1, 1) * fx) * fy;
+/** Smooth noise between one random value per cell. Repeats after `period` cells; x and y not negative. */
+function makeCloud(period: number, seed: number): (x: number, y: number) => number {
+  const side = period + 1;
+  const values = Float64Array.from({ length: side * side }, (_, n) => hash((n % side) % period, Math.floor(n / side) % period, seed));
+  return (x, y) => {
+    const cx = Math.floor(x);
+    const cy = Math.floor(y);
+    const fx = smooth(x - cx);
+    const fy = smooth(y - cy);
+    const at = cx + side * cy;
+    return (values[at]! * (1 - fx) + values[at + 1]! * fx) * (1 - fy) + (values[at + side]! * (1 - fx) + values[at + side + 1]! * fx) * fy;
+  };
 }
 
 /** Returns one byte per sample, row by row; the square repeats. */
 export function makeLace(side: number): Uint8Array<ArrayBuffer> {
   const raw = new Float32Array(side * side);
   const [large, small] = [makeCellWalls(9, 20), makeCellWalls(24, 30)];
+  const [cloud6, cloud15, cloud40] = [makeCloud(6, 3), makeCloud(15, 4), makeCloud(40, 5)];
   for (let k = 0; k < side; ++k)
     for (let i = 0; i < side; ++i) {
       const [u, v] = [i / side, k / side];
-      const clouds = 0.5 * cloud(6 * u, 6 * v, 6, 3) + 0.3 * cloud(15 * u, 15 * v, 15, 4) + 0.2 * cloud(40 * u, 40 * v, 40, 5);
+      const clouds = 0.5 * cloud6(6 * u, 6 * v) + 0.3 * cloud15(15 * u, 15 * v) + 0.2 * cloud40(40 * u, 40 * v);
       const [wu, wv] = [u + 0.03 * clouds, v + 0.03 * (1 - clouds)];
       const walls = 0.62 * (1 - Math.min(large(9 * wu, 9 * wv), 0.7) / 0.7) + 0.38 * (1 - Math.min(small(24 * wu, 24 * wv), 0.7) / 0.7);
       raw[k * side + i] = 0.6 * walls + 0.55 * clouds;

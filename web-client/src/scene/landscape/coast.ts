@@ -75,8 +75,17 @@ function outOfM(coast: Coast, side: SideName, xM: number, zM: number): number {
   return bendM(coast, side, xM, zM) - insideM(side, coast.bed, xM, zM);
 }
 
+/** Asked for at every point of the ground. */
+const shores = new WeakMap<Coast, ReadonlySet<SideName>>();
+
+function isShore(coast: Coast, side: SideName): boolean {
+  const known = shores.get(coast) ?? new Set(kSideNames.filter((each) => isShallow(coast, each)));
+  shores.set(coast, known);
+  return known.has(side);
+}
+
 /** A closed side whose bed is shallow is a shore, otherwise a quay. */
-function isShore({ bed }: Coast, side: SideName): boolean {
+function isShallow({ bed }: Coast, side: SideName): boolean {
   if (!bed.ground) return bed.beaches.some((beach) => beach.side === side && isShoreDepth(bed, beach.shoreDepthM));
   const sign = side[0] === "+" ? 1 : -1;
   const { sideM, widthM } = bed;
@@ -122,8 +131,9 @@ function paintAt(coast: Coast, [xM, yM, zM]: Point): Paint {
   const sideM = longSideM(bed);
   let paint = bedPaint(yM, depthM);
   for (const side of kSideNames) {
+    if (sides[side] !== "closed") continue;
     const outM = outOfM(coast, side, xM, zM);
-    if (sides[side] !== "closed" || outM < -1e-9) continue;
+    if (outM < -1e-9) continue;
     const out = outM / sideM;
     const grass = mixPaint(kGrass, kFarGrass, smoothstep(0.5, 6, out));
     const patchy = 0.06 * rolling((23 * xM) / sideM, (23 * zM) / sideM);

@@ -1,6 +1,6 @@
 // The ground under the cells of a nonlinear wave, from which real depths follow. Pure.
 import type { GreetingInfo } from "../../../client/codec/greeting";
-import type { ObstacleInfo, WaveInfo } from "../../../client/codec/scene_info";
+import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import type { PlaneCounts } from "../frames/frame_textures";
 import { bedOf, depthAtM, type Bed } from "../landscape/terrain";
 
@@ -15,18 +15,16 @@ export interface ShoreCells extends PlaneCounts {
   bedM: Float32Array;
 }
 
-/** Returns the height of an obstacle as the server's ground, over the still water; -Infinity where it is not. */
-export function obstacleRiseM(obstacle: ObstacleInfo, xM: number, zM: number): number {
-  const [dx, dz] = [xM - obstacle.xM, zM - obstacle.zM];
-  const { heightM } = obstacle;
-  if (obstacle.shape === "rock") {
-    // A dome over the water; below it a cone with the dome's slope at the water line.
-    const share = Math.hypot(dx, dz) / obstacle.radiusM;
-    return share < 1 ? heightM * (1 - share * share) : 2 * heightM * (1 - share);
-  }
-  const [c, s] = [Math.cos(obstacle.headingRad), Math.sin(obstacle.headingRad)];
-  const isInside = Math.abs(dx * c + dz * s) <= obstacle.lengthM / 2 && Math.abs(dz * c - dx * s) <= obstacle.widthM / 2;
-  return isInside ? heightM : -Infinity;
+/** Returns the height of an obstacle over the still water as in the server's ground, by x and z; -Infinity where it is not. */
+export function obstacleRise({ xM, zM, heightM, ...form }: ObstacleInfo): (xM: number, zM: number) => number {
+  if (form.shape === "rock")
+    return (x, z) => {
+      // A dome over the water; below it a cone with the dome's slope at the water line.
+      const share = Math.sqrt((x - xM) ** 2 + (z - zM) ** 2) / form.radiusM;
+      return share < 1 ? heightM * (1 - share * share) : 2 * heightM * (1 - share);
+    };
+  const [c, s] = [Math.cos(form.headingRad), Math.sin(form.headingRad)];
+  return (x, z) => (Math.abs((x - xM) * c + (z - zM) * s) <= form.lengthM / 2 && Math.abs((z - zM) * c - (x - xM) * s) <= form.widthM / 2 ? heightM : -Infinity);
 }
 
 /** Returns means of `values` over `wanted` equal parts of each of `linesCount` lines; samples of a line are `stride` apart. */
@@ -52,30 +50,38 @@ export function meansOver(values: Float32Array, from: PlaneCounts, to: PlaneCoun
   return meansAlong(alongX, from.countZ, to.resolutionCount, to.resolutionCount, 1, to.countZ);
 }
 
-/** Returns the ground under the samples of frames with `counts`; the wave itself has `wave.resolutionCount` x `wave.countZ` cells. */
-export function shoreCells(bed: Bed, obstacles: readonly ObstacleInfo[], wave: Pick<WaveInfo, "resolutionCount" | "countZ">, counts: PlaneCounts): ShoreCells {
-  const { resolutionCount, countZ } = wave;
+/** Returns the ground under the cells of the wave. */
+export function shoreCells(bed: Bed, obstacles: readonly ObstacleInfo[], { resolutionCount, countZ }: PlaneCounts): ShoreCells {
   const groundM = new Float32Array(resolutionCount * countZ);
   const bedM = new Float32Array(resolutionCount * countZ);
+  const rises = obstacles.map(obstacleRise);
   for (let k = 0; k < countZ; ++k)
     for (let i = 0; i < resolutionCount; ++i) {
-      const [xM, zM] = [((i + 0.5) / resolutionCount - 0.5) * bed.sideM, ((k + 0.5) / countZ - 0.5) * bed.widthM];
+      const xM = ((i + 0.5) / resolutionCount - 0.5) * bed.sideM;
+      const zM = ((k + 0.5) / countZ - 0.5) * bed.widthM;
       const at = i + resolutionCount * k;
-      bedM[at] = -depthAtM(bed, xM, zM);
-      const riseM = obstacles.reduce((highest, obstacle) => Math.max(highest, obstacleRiseM(obstacle, xM, zM)), bedM[at]!);
-      groundM[at] = Math.min(riseM, kHighestLandM);
+      let highestM = (bedM[at] = -depthAtM(bed, xM, zM));
+      for (const rise of rises) highestM = Math.max(highestM, rise(xM, zM));
+      groundM[at] = Math.min(highestM, kHighestLandM);
     }
-  if (counts.resolutionCount === resolutionCount && counts.countZ === countZ) return { ...counts, groundM, bedM };
-  return { ...counts, groundM: meansOver(groundM, wave, counts), bedM: meansOver(bedM, wave, counts) };
+  return { resolutionCount, countZ, groundM, bedM };
 }
 
-/** Returns the cells by the counts of a frame, for a room whose water moves over its shore; undefined: the shore is fixed, or its ground not here yet. */
+/** Returns the ground under the samples of frames with `counts`. */
+export function shoreSamples(cells: ShoreCells, counts: PlaneCounts): ShoreCells {
+  if (counts.resolutionCount === cells.resolutionCount && counts.countZ === cells.countZ) return cells;
+  return { ...counts, groundM: meansOver(cells.groundM, cells, counts), bedM: meansOver(cells.bedM, cells, counts) };
+}
+
+/** Returns the ground by the counts of a frame, for a room whose water moves over its shore; undefined: the shore is fixed, or its ground not here yet. */
 export function shoreOf(greeting: GreetingInfo): ((counts: PlaneCounts) => ShoreCells) | undefined {
   const { wave, beaches, obstacles, hasBed, ground } = greeting;
   if (!wave?.isNonlinear || (hasBed ? !ground : beaches.length === 0 && obstacles.length === 0)) return undefined;
+  let cells: ShoreCells | undefined;
   let last: ShoreCells | undefined;
   return (counts) => {
-    if (last?.resolutionCount !== counts.resolutionCount || last.countZ !== counts.countZ) last = shoreCells(bedOf(greeting), obstacles, wave, counts);
+    cells ??= shoreCells(bedOf(greeting), obstacles, wave);
+    if (last?.resolutionCount !== counts.resolutionCount || last.countZ !== counts.countZ) last = shoreSamples(cells, counts);
     return last;
   };
 }
