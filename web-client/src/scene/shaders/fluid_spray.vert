@@ -6,7 +6,7 @@
 #include <fluid_volume>
 #endif
 #define EXPOSURE_S 0.005
-#define MOST_SHARE 0.006
+#define MOST_SHARE 0.0028
 #include <drop>
 
 uniform float u_drop;
@@ -59,5 +59,5 @@ void main() {
   const float sunlit = 0.6;
 #endif
   if (is_mist) drawDrop(center_m, particle.velocity_mps, kMistRadii * radius_m, true, strength * kMist * particle.foam, sunlit);
-  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.035, 0.3, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
+  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.035, 0.2, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
 }

@@ -79,7 +79,7 @@ const float kSpillM = 0.34;
 #define GLITTER
 #include <glitter>
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
-const float kSkyShare = 0.7;
+const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 #endif
 
@@ -180,19 +180,17 @@ void main() {
 #ifdef RAIN
   if (u_rain_share > 0.0) field.gb += texture(u_rain, v_world.xz / u_rain_tile_m).rg;
 #endif
+  vec2 level_slopes = field.gb;
 #ifdef GLITTER
   vec2 pixel_slopes = pixelSlopes(v_world.xz);
   // Capillary waves ride on the ripples: most of them in the lightest breeze.
   float lost_variance = variance + min(3.0 * u_slope_variances.y, 0.5 * u_slope_variances.y + kCapillaryVariance);
-  vec2 level_slopes = field.gb;
-  field.gb += kSkyShare * sqrt(lost_variance) * pixel_slopes;
+  // At grazing incidence half of them would be turned away, and be dots.
+  float facing_up = smoothstep(0.0, kGrazing, dot(vec3(field.g, -1.0, field.b), ray));
+  field.gb += kSkyShare * facing_up * sqrt(lost_variance) * pixel_slopes;
 #endif
   // What is below is refracted by the waves that are larger than a pixel: finer ones would tear its lines into dots.
-#ifdef GLITTER
   vec3 bending = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
-#else
-  vec3 bending = normalize(vec3(-field.g, 1.0, -field.b));
-#endif
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
