@@ -84,7 +84,7 @@ function addParasol(builder: MeshBuilder, [xM, deckM, zM]: Point): void {
 function addPot(builder: MeshBuilder, plants: Foliage, [xM, deckM, zM]: Point, leaves: Leaves): void {
   const turn = (yM: number, radiusM: number): { yM: number; radiusM: number; paint: Paint } => ({ yM, radiusM, paint: kClay });
   addTurned(builder, [xM, deckM, zM], [turn(0, 0.2), turn(0.42, 0.31), turn(0.42, 0.35), turn(0.52, 0.35), turn(0.52, 0.28), turn(0.48, 0)], 12);
-  plants.clump([xM, deckM + 0.8, zM], [0.4, 0.42, 0.4], 60, 0.07, leaves);
+  plants.clump([xM, deckM + 0.8, zM], [0.4, 0.42, 0.4], leaves);
 }
 
 /** A ladder of steel at the water's edge: two bent rails and three steps. */
@@ -112,11 +112,11 @@ function addBorder(plants: Foliage, at: Beside, longM: number, deckM: number, aw
     const highM = sizeM * plants.between(0.8, 1.25);
     const kind = plants.between(0, 1);
     const leaves = kind < 0.6 ? kBox : kind < 0.85 ? kOlive : kRose;
-    plants.clump(at(alongM, deckM + 0.7 * highM, awayM + plants.between(0, 0.6) * stepM), [sizeM, highM, sizeM], 22, 0.17 * sizeM, leaves);
+    plants.clump(at(alongM, deckM + 0.7 * highM, awayM + plants.between(0, 0.6) * stepM), [sizeM, highM, sizeM], leaves);
     if (plants.between(0, 1) < 0.2) ++flower;
     const lowM = 0.42 * stepM * plants.between(0.7, 1.2);
     const before = at(alongM + 0.3 * stepM, deckM + 0.6 * lowM, awayM - 0.95 * stepM);
-    plants.clump(before, [1.3 * lowM, lowM, lowM], 26, 0.28 * lowM, kFlowers[flower % kFlowers.length]!);
+    plants.clump(before, [1.3 * lowM, lowM, lowM], kFlowers[flower % kFlowers.length]!);
   }
 }
 
@@ -140,8 +140,8 @@ function addLawn(builder: MeshBuilder, yM: number, inner: readonly [number, numb
   strip(reachM, far, -reachM, reachM, kMeadow);
 }
 
-/** Adds everything that stands on the deck and on the lawn, and returns the leaves, by side. `deckWidthM`: of the deck around the water. */
-export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): MeshBuilder[] {
+/** Adds everything that stands on the deck and on the lawn. `deckWidthM`: of the deck around the water. */
+export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): void {
   const { deckM, halfM } = size;
   const [halfX, halfZ] = halfM;
   const sideM = 2 * Math.max(halfX, halfZ);
@@ -156,8 +156,7 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     return { at, halfM: Math.abs(ax) * halfX + Math.abs(az) * halfZ };
   });
   const seat = Math.max(1.1, 0.5 * deckWidthM);
-  return sides.map(({ at, halfM: half }, side) => {
-    const leaves = (plants.leaves = new MeshBuilder());
+  sides.forEach(({ at, halfM: half }, side) => {
     // The usual view comes from +z: nothing high stands there.
     const isOpen = side === 2;
     if (!isOpen) addBorder(plants, at, half + awayM, lawnM, awayM, treeM);
@@ -173,16 +172,16 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     for (let n = -7; n <= 7; ++n) {
       const highM = treeM * plants.between(0.7, 1.5);
       const middle = at((n / 7) * (half + 4 * awayM) + plants.between(-1, 1), lawnM + 0.4 * highM, 3.4 * awayM + plants.between(0, 1) * awayM);
-      plants.clump(middle, [0.8 * highM, 0.65 * highM, 0.8 * highM], 26, 0.085 * highM, kWood);
+      if (plain) plants.clump(middle, [0.8 * highM, 0.65 * highM, 0.8 * highM], kWood);
+      else plants.crown(middle, 0.6 * highM, kWood);
     }
     if (side === 0 || (isOpen && sideM > kSmallM)) addLadder(builder, at, 0.5 * half, size);
     // Beside a small pool, nothing stands where the first views come from.
-    if (sideM < kSmallM && side >= 2) return leaves;
+    if (sideM < kSmallM && side >= 2) return;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
     addParasol(builder, at(groupM, deckM, seat + 0.9));
     for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
     const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
     for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
-    return leaves;
   });
 }

@@ -34,8 +34,6 @@ interface BasinGeometries {
   tiled: BufferGeometry;
   deck: BufferGeometry;
   planted: BufferGeometry;
-  /** By side. */
-  leaves: BufferGeometry[];
 }
 
 /** A level ring of four strips between two rectangles. */
@@ -96,8 +94,8 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   const deckM = Math.max(kDeckShare * gardenReach(sideM).awayM, kDeckLeastM);
   addRing(deck, rimM, grown(outerM), grown(deckM), [...kDeck, Math.min(kSlabM / sideM, 1 / 8)]);
   const planted = new MeshBuilder();
-  const leaves = addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
-  return { tiled: tiled.build(), deck: deck.build(), planted: planted.build(), leaves: plain ? [] : leaves.map((each) => each.build()) };
+  addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
+  return { tiled: tiled.build(), deck: deck.build(), planted: planted.build() };
 }
 
 export class PoolBasin {
@@ -120,7 +118,6 @@ export class PoolBasin {
       mesh.frustumCulled = false;
       this.group.add(mesh);
     }
-    for (const leaves of this.geometries.leaves) this.group.add(new Mesh(leaves, context.solid));
     this.setFloorM(-depthM);
   }
 
@@ -129,7 +126,7 @@ export class PoolBasin {
   }
 
   dispose(): void {
-    const { tiled, deck, planted, leaves } = this.geometries;
-    for (const each of [tiled, deck, planted, ...leaves, ...this.materials]) each.dispose();
+    const { tiled, deck, planted } = this.geometries;
+    for (const each of [tiled, deck, planted, ...this.materials]) each.dispose();
   }
 }
