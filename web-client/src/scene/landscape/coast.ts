@@ -6,8 +6,9 @@ import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../
 import { clamp, smoothstep } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
+import { Foliage } from "./foliage";
 import { bedPaint, mixPaint } from "./paints";
-import { addPine, addVillage, type Land } from "./village";
+import { addVillage, kLandLeaves, type Land } from "./village";
 import { depthAtM, insideM, isShoreDepth, longSideM, type Bed } from "./terrain";
 
 interface Coast {
@@ -208,19 +209,20 @@ export function makeCoastGeometry(coast: Coast, cellsCount: number, plain: boole
       builder.grid(rows, (row, column) => paintAt(coast, rows[row]![column]!), isSeen);
     }
   addQuayWalls(coast, builder, cellsCount);
-  for (const side of kSideNames) if (coast.sides[side] === "closed") addVillage(builder, landOf(coast, side), plain);
-  addPines(bed, builder, plain);
+  const plants = new Foliage(builder, plain ? "plain" : "land");
+  for (const side of kSideNames) if (coast.sides[side] === "closed") addVillage(builder, plants, landOf(coast, side));
+  addPines(bed, plants);
   return builder.build();
 }
 
 /** Adds pines where the ground inside the square is high above the waves: on islands and dunes, not on beaches. */
-function addPines(bed: Bed, builder: MeshBuilder, plain: boolean): void {
+function addPines(bed: Bed, plants: Foliage): void {
   if (!bed.ground) return;
   const high = Array.from({ length: kPinePlaces }, (_, n): Point => {
     const [x, z] = [(hash(n, 1, 71) - 0.5) * bed.sideM, (hash(n, 2, 71) - 0.5) * bed.widthM];
     return [x, -depthAtM(bed, x, z), z];
   }).filter(([, y]) => y > kPineDepths * bed.depthM);
-  high.slice(0, kPinesMost).forEach((at, n) => addPine(builder, at, longSideM(bed) * (0.06 + 0.03 * hash(n, 3, 71)), n, plain));
+  high.slice(0, kPinesMost).forEach((at, n) => plants.pine(at, longSideM(bed) * (0.06 + 0.03 * hash(n, 3, 71)), kLandLeaves));
 }
 
 function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): void {

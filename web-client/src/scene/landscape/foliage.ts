@@ -1,4 +1,4 @@
-// Plants of leaves: shrubs, trees, cypresses. A clump is a lumpy ellipsoid, dark in its hollows.
+// Plants of leaves: shrubs, trees, cypresses, pines. A clump is a lumpy ellipsoid, dark in its hollows.
 import { clamp, mix } from "../maths/interpolate";
 import { makeFastRandom } from "../maths/random";
 import type { MeshBuilder, Paint, Point } from "../meshes/mesh_builder";
@@ -11,14 +11,17 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 /** A clump in its hollows and on its lumps: size relative to the ellipsoid, and brightness relative to the leaves. */
 const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
-/** Its rows and columns. */
-const kCells = { full: [10, 18], plain: [3, 6] } as const;
+/** Its rows and columns: in a garden, on the land behind a sea, and in the plain tiers. */
+const kCells = { garden: [10, 18], land: [6, 10], plain: [3, 6] } as const;
 
 export class Foliage {
   private readonly random = makeFastRandom(4242);
 
-  /** `plain`: of fewer clumps and triangles. */
-  constructor(private readonly builder: MeshBuilder, readonly plain: boolean) {}
+  constructor(private readonly builder: MeshBuilder, private readonly cells: keyof typeof kCells) {}
+
+  get plain(): boolean {
+    return this.cells === "plain";
+  }
 
   /** Returns a number of the range, other ones with each call. */
   between(low: number, high: number): number {
@@ -27,7 +30,7 @@ export class Foliage {
 
   /** Adds a clump within an ellipsoid. */
   clump(middle: Point, half: Point, leaves: Leaves): void {
-    const [rowsCount, columnsCount] = kCells[this.plain ? "plain" : "full"];
+    const [rowsCount, columnsCount] = kCells[this.cells];
     const phase = [0, 1, 2, 3].map(() => this.between(0, 2 * Math.PI));
     // 0 in a hollow, 1 on a lump; the last column is the first one again.
     const lumps = Array.from({ length: rowsCount + 1 }, (_, r) => {
@@ -64,6 +67,19 @@ export class Foliage {
   /** Adds a tall slender tree. */
   cypress([xM, yM, zM]: Point, highM: number, leaves: Leaves): void {
     this.clump([xM, yM + 0.48 * highM, zM], [0.11 * highM, 0.53 * highM, 0.11 * highM], leaves);
+  }
+
+  /** Adds an umbrella pine: a trunk that leans, and a flat crown of three clumps. */
+  pine([xM, yM, zM]: Point, highM: number, leaves: Leaves): void {
+    const top: Point = [xM + this.between(-0.15, 0.15) * highM, yM + 0.8 * highM, zM + this.between(-0.15, 0.15) * highM];
+    addRod(this.builder, [xM, yM - 0.1 * highM, zM], top, 0.035 * highM, kBark, 5, 0.02 * highM);
+    const turnRad = this.between(0, 2 * Math.PI);
+    for (const lobe of [0, 1, 2]) {
+      const outM = lobe === 0 ? 0 : 0.2 * highM;
+      const middle: Point = [top[0] + outM * Math.cos(turnRad + 2.4 * lobe), top[1] + (0.03 - 0.05 * lobe) * highM, top[2] + outM * Math.sin(turnRad + 2.4 * lobe)];
+      const wideM = 0.29 * (1 - 0.18 * lobe) * highM;
+      this.clump(middle, [wideM, 0.11 * highM, wideM], leaves);
+    }
   }
 
   private paint([first, second]: Leaves, bright: number): Paint {

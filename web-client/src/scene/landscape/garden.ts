@@ -146,7 +146,7 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
   const [halfX, halfZ] = halfM;
   const sideM = 2 * Math.max(halfX, halfZ);
   const { awayM, treeM } = gardenReach(sideM);
-  const plants = new Foliage(builder, plain);
+  const plants = new Foliage(builder, plain ? "plain" : "garden");
   const lawnM = deckM - 0.03;
   addLawn(builder, lawnM, [halfX + deckWidthM - 0.02, halfZ + deckWidthM - 0.02], Math.max(halfX, halfZ) + 3 * awayM);
   // The sides -z, +x, +z, -x: the direction along them and outward.

@@ -1,9 +1,10 @@
 // What stands on the land behind a shore or a quay: a village whose houses face the water, a church among them, and trees round it and in
 // woods on the hills. Sizes are shares of the square's longer side, so that they suit its boats and its lighthouse. Pure.
-import { clamp, mix } from "../maths/interpolate";
+import { mix } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import type { MeshBuilder, Paint, Point } from "../meshes/mesh_builder";
-import { addRod, addTurned } from "../meshes/shapes";
+import { addTurned } from "../meshes/shapes";
+import type { Foliage, Leaves } from "./foliage";
 
 /** The land behind one side of the square. */
 export interface Land {
@@ -21,17 +22,16 @@ const kRoofs: readonly Paint[] = [[0.34, 0.115, 0.065, 0.9], [0.27, 0.095, 0.06,
 /** Dark by day, and lit in the dark. */
 const kWindow: Paint = [0.11, 0.085, 0.05, -1];
 const kDarkWindow: Paint = [0.06, 0.065, 0.07, 0.2];
-const kLeaves: readonly Paint[] = [[0.078, 0.125, 0.040, 1], [0.105, 0.150, 0.050, 1], [0.060, 0.105, 0.045, 1]];
-
-const kTrunk: Paint = [0.15, 0.095, 0.06, 1];
+export const kLandLeaves: Leaves = [[0.075, 0.125, 0.045, 1.8], [0.135, 0.185, 0.065, 1.8]];
 
 const kHousesCount = { full: 46, plain: 20 };
 const kTreesCount = { full: 150, plain: 36 };
 /** Length of the usual house, in sides of the square. */
 const kHouseSides = 0.068;
 
-export function addVillage(builder: MeshBuilder, land: Land, plain: boolean): void {
+export function addVillage(builder: MeshBuilder, plants: Foliage, land: Land): void {
   const { sideM, seed } = land;
+  const { plain } = plants;
   const middleM = 1.9 * (hash(seed, 1, 222) - 0.5) * sideM;
   const housesCount = plain ? kHousesCount.plain : kHousesCount.full;
   for (let n = 0; n < housesCount; ++n) {
@@ -51,8 +51,9 @@ export function addVillage(builder: MeshBuilder, land: Land, plain: boolean): vo
     const outSides = near ? 0.42 + 0.6 * hash(n, seed, 45) : 1 + 2.2 * hash(n % 11, seed, 46) + 0.45 * hash(n, seed, 47);
     const alongSides = near ? 2.2 * (hash(n, seed, 48) - 0.5) : 7 * (wood - 0.5) + 0.9 * (hash(n, seed, 49) - 0.5);
     const at = land.groundAt(middleM + alongSides * sideM, outSides * sideM);
-    if (at && n % 6 === 0) addPine(builder, at, sideM * (0.09 + 0.03 * wood), n, plain);
-    else if (at) addTree(builder, at, sideM * (0.034 + 0.03 * hash(n, seed, 50)), n, plain);
+    const sizeM = sideM * (0.034 + 0.03 * hash(n, seed, 50));
+    if (at && n % 6 === 0) plants.pine(at, sideM * (0.09 + 0.03 * wood), kLandLeaves);
+    else if (at) plants.clump([at[0], at[1] + 0.5 * sizeM, at[2]], [0.7 * sizeM, 0.8 * sizeM, 0.7 * sizeM], kLandLeaves);
   }
 }
 
@@ -124,26 +125,4 @@ function addChurch(builder: MeshBuilder, { sideM, facingRad }: Land, at: Point):
   const tower = place([-1.15 * sizeM, 0, 0]);
   const turn = (yM: number, radiusM: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: yM * sizeM, radiusM: radiusM * sizeM, paint });
   addTurned(builder, tower, [turn(-1, 0.36, kWalls[1]!), turn(1.75, 0.34, kRoofs[2]!), turn(1.75, 0.42, kRoofs[2]!), turn(3, 0, kRoofs[2]!)], 4);
-}
-
-/** Adds an umbrella pine: a trunk that leans, and a flat crown of three lobes. */
-export function addPine(builder: MeshBuilder, [xM, yM, zM]: Point, heightM: number, n: number, plain: boolean): void {
-  const sides = plain ? 5 : 8;
-  const top: Point = [xM + 0.3 * heightM * (hash(n, 1, 61) - 0.5), yM + 0.8 * heightM, zM + 0.3 * heightM * (hash(n, 2, 61) - 0.5)];
-  addRod(builder, [xM, yM - 0.1 * heightM, zM], top, 0.035 * heightM, kTrunk, 5, 0.02 * heightM);
-  for (const lobe of [0, 1, 2]) {
-    const paint = kLeaves[(n + lobe) % kLeaves.length]!;
-    const turn = (up: number, radius: number): { yM: number; radiusM: number; paint: Paint } => ({ yM: up * heightM, radiusM: radius * (1 - 0.18 * lobe) * heightM, paint });
-    const turnRad = n + 2.4 * lobe;
-    const outM = lobe === 0 ? 0 : 0.2 * heightM;
-    const middle: Point = [top[0] + outM * Math.cos(turnRad), top[1] - 0.05 * lobe * heightM, top[2] + outM * Math.sin(turnRad)];
-    addTurned(builder, middle, [turn(-0.06, 0), turn(-0.03, 0.2), turn(0.03, 0.25), turn(0.1, 0.17), turn(0.13, 0)], sides);
-  }
-}
-
-/** Adds the crown of a broad tree: it stands on the ground. */
-function addTree(builder: MeshBuilder, [xM, yM, zM]: Point, sizeM: number, n: number, plain: boolean): void {
-  const paint = kLeaves[n % kLeaves.length]!;
-  const turn = (up: number, radius: number): { yM: number; radiusM: number; paint: Paint } => ({ yM: up * sizeM, radiusM: clamp(radius + 0.16 * (hash(n, Math.round(10 * up), 60) - 0.5), 0, 1) * sizeM, paint });
-  addTurned(builder, [xM, yM - 0.1 * sizeM, zM], [turn(0, 0.35), turn(0.4, 0.62), turn(0.95, 0.5), { yM: 1.3 * sizeM, radiusM: 0, paint }], plain ? 4 : 6);
 }
