@@ -64,7 +64,8 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   float hazy = max(distance_m - 2.0 * side_m, 0.0) / u_haze_m;
   v_shares.y = 0.85 * hazy / (1.0 + hazy);
   foam_shade *= v_share_away.x;
-  undrawn = smoothstep(0.02, 0.35, v_share_away.y / side_m);
+  // Far away, walls below the water are hidden by more of it than is above the bed.
+  undrawn = max(smoothstep(0.02, 0.35, v_share_away.y / side_m), smoothstep(0.15, 0.6, distance_m / side_m));
 #endif
 #ifdef BEACH
   float level = clamp(bed_m / u_depth_m, 0.0, 1.0);
