@@ -20,6 +20,8 @@ interface Coast {
 const kQuaySides = 0.03;
 const kQuayMinM = 0.25;
 const kQuayMaxM = 2.5;
+/** In the plain tiers its wall ends at this share of the depth: through their water it would be a dark band. */
+const kPlainWallDepths = 0.3;
 /** Where a ground is looked at along a side. */
 const kSideSamples = [-0.45, -0.3, -0.15, 0, 0.15, 0.3, 0.45] as const;
 /** Slope behind a shore that no beach makes. */
@@ -208,7 +210,7 @@ export function makeCoastGeometry(coast: Coast, cellsCount: number, plain: boole
       const rows = zBand.at.map((z) => xBand.at.map((x): Point => [x, coastHeightM(coast, x, z, pastQuay), z]));
       builder.grid(rows, (row, column) => paintAt(coast, rows[row]![column]!), isSeen);
     }
-  addQuayWalls(coast, builder, cellsCount);
+  addQuayWalls(coast, builder, cellsCount, plain ? kPlainWallDepths * bed.depthM : bed.depthM);
   const plants = new Foliage(builder, plain ? "plain" : "land");
   for (const side of kSideNames) if (coast.sides[side] === "closed") addVillage(builder, plants, landOf(coast, side));
   addPines(bed, plants);
@@ -225,7 +227,7 @@ function addPines(bed: Bed, plants: Foliage): void {
   high.slice(0, kPinesMost).forEach((at, n) => plants.pine(at, longSideM(bed) * (0.06 + 0.03 * hash(n, 3, 71)), kLandLeaves));
 }
 
-function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): void {
+function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number, deepestM: number): void {
   for (const side of kSideNames) {
     const half = (side[1] === "x" ? coast.bed.sideM : coast.bed.widthM) / 2;
     if (coast.sides[side] !== "closed" || isShore(coast, side)) continue;
@@ -238,7 +240,7 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number): v
       const inward = 1 - 1e-6;
       return [x, past ? coastHeightM(coast, x, z, true) : coastHeightM(coast, side[1] === "x" ? x * inward : x, side[1] === "z" ? z * inward : z), z];
     };
-    const low = ordered.map((t) => at(t, false));
+    const low = ordered.map((t) => at(t, false)).map(([x, y, z]): Point => [x, Math.max(y, -deepestM), z]);
     const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
     builder.grid([low, high], hasRockyShores(coast.bed.beaches) ? kCliff : kQuayWall);
   }
