@@ -84,7 +84,7 @@ function boundsOf(geometry: ReturnType<typeof makeGlassGeometry>) {
 }
 
 describe("a tank", () => {
-  const greeting = { sideM: 4, widthM: 0.8, waterExtents: { sideM: 0.8, longM: 0.8, depthM: 2 } };
+  const greeting = { sideM: 4, widthM: 0.8, waterExtents: { sideM: 0.8, longM: 0.8, depthM: 2 }, wave: undefined };
 
   it("encloses the water with room above it, and the glass lies outside the water", () => {
     const size = tankSize(greeting);

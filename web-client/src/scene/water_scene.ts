@@ -28,6 +28,7 @@ import { clamp } from "./maths/interpolate";
 import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
 import type { Pole } from "./solids/gauge_poles";
+import { shownHeightM } from "./solids/glass_tank";
 import { isIndoors, viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
@@ -245,13 +246,13 @@ export class WaterScene {
   /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particles; a scene's first view is that of resting water. */
   viewedBox(): ViewedBox | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, widthM, wave, waterExtents, firstView } = this.greeting;
+    const { sideM, widthM, wave, firstView } = this.greeting;
     const view = viewOf(this.greeting);
     if (wave) return { ...view, sideM, widthM, minYM: -wave.depthM, maxYM: kWaveRoom * Math.sqrt(sideM * widthM) };
     const frame = this.frames.particles.newest();
     if (!frame) return undefined;
     const minYM = this.floorM()!;
-    return { ...view, sideM, widthM, withFloor: isIndoors(this.greeting), minYM, maxYM: firstView ? minYM + waterExtents.depthM : frame.maxM[1] + frame.radiusM };
+    return { ...view, sideM, widthM, withFloor: isIndoors(this.greeting), minYM, maxYM: firstView ? minYM + shownHeightM(this.greeting) : frame.maxM[1] + frame.radiusM };
   }
 
   /** Returns the level of the floor: that of the wave, or below the lowest of the newest particles. */

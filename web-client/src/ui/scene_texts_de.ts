@@ -6,7 +6,7 @@ export const kGermanScenes: Record<string, { title: string; description: string 
   boat_wake_particles: { title: "Kielwasser, nur Partikel", description: "Nur Partikel: ein Rumpf pflügt eine Furche hindurch, wirft Wasser zur Seite und hinterlässt eine Spur, die sich schließt. Positionsbasierter Löser." },
   boat_wake_wave: { title: "Kielwasser, nur Welle", description: "Dasselbe Boot ohne Partikel und ohne Dispersion: alle Wellen sind gleich schnell, und der Keil bleibt scharf." },
   breaking_wave: { title: "Brechende Welle", description: "Alle 9 Sekunden kommt von der Seite +x ein Wellenkamm, wird über dem steigenden Grund steiler, bricht und wirft weißes Wasser ab." },
-  breaking_wave_particles: { title: "Brechende Welle, nur Partikel", description: "Nur Partikel: von der Seite +x wird eine Welle angeschoben, läuft durch den Kasten und bricht an der Wand gegenüber. Positionsbasierter Löser." },
+  breaking_wave_particles: { title: "Brechende Welle, nur Partikel", description: "Nur Partikel: von der Seite +x eines gläsernen Beckens wird eine Welle angeschoben, wird steiler, überschlägt sich und bricht. Positionsbasierter Löser." },
   breaking_wave_wave: { title: "Brechende Welle, nur Welle", description: "Derselbe Kamm ohne Partikel: er wird auf dem Hang steiler und vergeht, und nichts löst sich von ihm." },
   dam_break: { title: "Dammbruch", description: "Eine Wassersäule, 1 m lang und 2 m hoch, fällt in ein Becken von 4 m. Nur Partikel, positionsbasierter Löser. Alle 15 Sekunden beginnt es neu." },
   flotsam: { title: "Treibgut", description: "Kisten, Bälle, Fässer, Bretter, Enten, Bojen und Flöße in einem Becken mit sanfter Dünung. Sie lassen sich ziehen und werfen; neue kommen dazu, und Steine fliegen zwischen sie." },

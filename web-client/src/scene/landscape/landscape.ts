@@ -11,10 +11,10 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a tank is painted blue-green: shallow water over it has the colour of deep water. Its cut sides are dark and cannot be taken for water. */
+/** A bed in a tank is painted blue-green: shallow water over it has the colour of deep water. Its cut sides are of pale concrete and cannot be taken for water. */
 export const kTankBed = [0.045, 0.19, 0.25] as const;
 const kFill: Paint = [...kTankBed, 0.3];
-const kFillCut: Paint = [0.05, 0.065, 0.08, 0.3];
+const kFillCut: Paint = [0.58, 0.57, 0.54, 0.35];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 

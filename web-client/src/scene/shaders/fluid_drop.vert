@@ -40,7 +40,8 @@ void main() {
   if (strength <= 0.0) return;
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
   vec4 random = hash(vec3(level, u_drop));
-  vec3 center_m = particle.center_m + 3.0 * u_radius_m * (random.xyz - 0.5);
+  // Those of a particle that flies alone lie far apart: close ones would be a flock.
+  vec3 center_m = particle.center_m + (3.0 + 5.0 * strength * strength) * u_radius_m * (random.xyz - 0.5);
   // Few are large. The first stands for the mist among them.
   bool is_mist = u_drop == 0.0;
   float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);

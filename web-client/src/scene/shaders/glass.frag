@@ -10,6 +10,8 @@ layout(location = 0) out vec4 color;
 
 const float kBrightest = 0.12;  // of what a pane mirrors: brighter lamps would be bars across what is behind it
 
+const vec3 kTint = vec3(0.008, 0.018, 0.02);  // added by each face: a pane is seen, not only its edges
+
 void main() {
   vec3 ray = normalize(v_world - u_camera_m);
   vec3 normal = normalize(v_normal);
@@ -19,7 +21,7 @@ void main() {
   float fresnel = 0.015 + 0.45 * away * away * (1.0 - facing);
   // What is behind is on the screen in display values already, whose squares are about linear: a dim reflection adds little to them.
   vec3 mirrored = toDisplay(min(skyLight(reflect(ray, normal)), vec3(kBrightest)) * fresnel);
-  color = vec4(mirrored * mirrored, 0.99 * (1.0 - fresnel));
+  color = vec4(mirrored * mirrored + kTint, 0.98 * (1.0 - fresnel));
   if (v_color.a > 0.5) {
     vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.12 * min(textureLod(u_sky, reflect(ray, normal), 4.0).rgb, vec3(kBrightest)));
     color = vec4(0.7 * edge, 0.3);

@@ -13,6 +13,9 @@ uniform sampler2D u_noise;
 layout(location = 0) out vec4 color;
 
 const vec3 kConcrete = vec3(0.085, 0.10, 0.12);
+#ifdef PLAIN
+const vec3 kFar = vec3(0.06, 0.095, 0.135);  // about the foot of the walls
+#endif
 
 void main() {
   vec2 away_m = max(abs(v_world.xz) - u_half_m, 0.0);
@@ -21,7 +24,7 @@ void main() {
   float pool = 1.0 / (1.0 + away);
   vec3 sun = u_sun_light * (1.25 * u_sun_direction.y);
 #ifdef PLAIN
-  vec3 lit = kConcrete * (pool * pool) * sun + kConcrete * max(pool * pool, 0.4) * u_ambient_up;
+  vec3 lit = mix(kFar * u_ambient_up, kConcrete * (pool * pool) * (sun + u_ambient_up), smoothstep(0.05, 0.85, pool));
   if (u_is_displayed) lit = toDisplay(lit);
 #else
 #ifdef SHADOWS
@@ -38,6 +41,8 @@ void main() {
   // Rough, it mirrors little but the walls.
   float mirror = (0.01 + 0.45 * past * past * past * past) * smoothstep(0.5, 0.2, -ray.y);
   lit += mirror * (1.0 - 0.6 * joint + 0.15 * stains) * textureLod(u_sky, vec3(ray.x, -ray.y, ray.z), 3.0).rgb;
+  // Far away it fades into the foot of the walls: its end would be a line across the picture.
+  lit = mix(textureLod(u_sky, vec3(ray.x, 0.02, ray.z), 2.0).rgb, lit, smoothstep(0.05, 0.85, pool));
 #endif
   color = vec4(lit, 1.0);
 }

@@ -26,6 +26,9 @@ vec3 veiledSky(vec3 direction) {
 }
 #endif
 
+// Of a room's lamps: mip level, and the most light.
+const float kTubesLevel = 3.5, kBrightestTube = 0.4;
+
 // The sky as a surface mirrors it whose slopes have this variance within a pixel.
 vec3 mirroredSky(vec3 direction, float variance) {
 #if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
@@ -34,7 +37,8 @@ vec3 mirroredSky(vec3 direction, float variance) {
   float spread = float(textureSize(u_sky, 0).x) * (1.3 * sqrt(variance) + 0.5 * length(turn));
   return mix(textureLod(u_sky, direction, log2(max(spread, 1.0))).rgb, veiledSky(direction), kVeiledShare);
 #else
-  return skyLight(direction);
+  // Tubes in a level surface would be bars.
+  return min(textureLod(u_sky, direction, kTubesLevel).rgb, vec3(kBrightestTube));
 #endif
 }
 

@@ -7,7 +7,7 @@ layout(location = 0) out vec4 color;
 
 // Half the room along x and z and its height, seen from a position on its floor.
 const vec3 kRoom = vec3(2.0, 1.3, 1.5);
-const vec3 kWall = vec3(0.006, 0.010, 0.016), kWash = vec3(0.022, 0.050, 0.086), kCeiling = vec3(0.004, 0.006, 0.009), kLamp = vec3(3.8, 4.2, 4.5);
+const vec3 kWall = vec3(0.006, 0.010, 0.016), kWash = vec3(0.030, 0.068, 0.115), kCeiling = vec3(0.004, 0.006, 0.009), kLamp = vec3(3.8, 4.2, 4.5);
 
 float within(float at, float low, float high, float soft) { return smoothstep(low - soft, low + soft, at) * smoothstep(high + soft, high - soft, at); }
 
@@ -27,6 +27,6 @@ void main() {
     light = kWall + kWash * exp(-3.2 * at.y) * mix(0.25, 1.0, exp(-1.6 * along * along));
     if (is_long) light += 0.8 * kLamp * within(at.y, 0.80, 0.86, 0.006) * within(abs(fract(along / 0.7) - 0.5), -1.0, 0.42, 0.01) * within(abs(along), -1.0, 1.4, 0.01);
   }
-  if (to.y < 0.0) light *= 0.25 + 0.35 * exp(-8.0 * up.y);
+  if (to.y < 0.0) light *= 0.25 + 0.75 * exp(-8.0 * up.y);
   color = vec4(light * u_room_light, 1.0);
 }

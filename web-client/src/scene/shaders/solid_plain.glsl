@@ -26,7 +26,12 @@ void lightSolid(vec3 world, vec3 normal, vec4 paint, bool is_over_water) {
   lit += 1.5 * max(albedo - 1.0, 0.0);
   v_wet = vec2(is_over_water ? 1e3 : world.y / u_wet_m, 0.24 * min(grain, 1.0));
 #ifdef SHORE
-  v_shore = simulatedShore(world.xz, u_extent_m) * step(grain, 0.95) * step(0.8, normal.y) * step(1e-3, grain) * shoreAt(world.xz, u_extent_m).gb;
+  vec3 shore = shoreAt(world.xz, u_extent_m);
+#ifdef TANK
+  // Foam on standing water is the water's: on the bed of a tank it would be large patches.
+  shore.b *= 1.0 - smoothstep(0.004, 0.03, shore.r);
+#endif
+  v_shore = simulatedShore(world.xz, u_extent_m) * step(grain, 0.95) * step(0.8, normal.y) * step(1e-3, grain) * shore.gb;
 #endif
   if (u_haze_m > 0.0) {
     float hazy = max(length(world - u_camera_m) - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;

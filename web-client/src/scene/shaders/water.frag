@@ -83,6 +83,12 @@ const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 #endif
 
+#if !defined(OPEN_SEA) && !defined(WALLS)
+const float kGlintShare = 0.04;  // a tank's lamps are wide
+#else
+const float kGlintShare = 1.0;
+#endif
+
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
 const vec3 kFarBed = vec3(0.224, 0.205, 0.156);
 
@@ -324,7 +330,7 @@ void main() {
   // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
   vec3 turn = fwidth(mirrored);
   narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
-  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * edge;
+  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * kGlintShare * edge;
 #endif
 #endif
 #ifndef SKIRT

@@ -85,7 +85,8 @@ void main() {
   vec3 sky = mix(u_displayed_sky[2], u_displayed_sky[1], clamp(6.0 * up, 0.0, 1.0));
   sky = mix(sky, u_displayed_sky[0], clamp(1.7 * up - 0.25, 0.0, 1.0));
 #else
-  vec3 sky = toDisplay(textureLod(u_sky, vec3(mirrored.x, up, mirrored.z), 0.0).rgb);
+  // As kBrightestTube of mirror.glsl.
+  vec3 sky = toDisplay(min(textureLod(u_sky, vec3(mirrored.x, up, mirrored.z), 0.0).rgb, vec3(0.4)));
 #endif
   // The glow around the sun, and its image.
   float at_sun = max(mirrored.x * u_sun_direction.x + up * u_sun_direction.y + mirrored.z * u_sun_direction.z, 0.0);
@@ -94,8 +95,12 @@ void main() {
 #endif
   float glow = at_sun * at_sun;
   sky += u_displayed_glow * (glow * glow);
+#if defined(OPEN_SEA) || defined(WALLS) || defined(RIPPLES)
   float glint = clamp(1.0 - 250.0 * (1.0 - at_sun), 0.0, 1.0);
   glint *= glint * (0.4 + fresnel);
+#else
+  const float glint = 0.0;  // a tank's lamps are wide
+#endif
   // Haze has the colour of the horizon, which water far out mirrors.
   fresnel = mix(fresnel, 1.0, v_shares.y);
   vec3 light = mix(v_under.rgb, sky, fresnel) + u_displayed_sun * glint;

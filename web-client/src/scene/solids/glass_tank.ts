@@ -9,24 +9,31 @@ import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
 
 /** Thickness of the glass and of the base: a share of the tank's size. */
-const kGlassThickness = 0.006;
+const kGlassThickness = 0.004;
 /** Rim of the glass over the resting water: a share of the depth, and at least one of the tank's size. */
 const kFreeboardDepths = 0.45;
 const kFreeboardSides = 0.06;
+/** The same of a channel of particles, whose waves are as high as its water is deep: the longer side is so many of the shorter ones. */
+const kParticlesFreeboardSides = 0.3;
+const kChannelWidths = 4;
+/** Share of its height that a first view shows: the rim would be a line across the picture. */
+const kShownOfChannel = 0.8;
 /** The size of a long channel is this many of its shorter sides: its glass is not those of a wide tank. */
 const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
-const kPlinth = 3.5;
+const kPlinth = 5;
 
 /** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
 const kTileShare = 1 / 24;
+/** Below waves the floor is even, for their light: tiles smaller than a pixel are not drawn. */
+const kNoTile = 1e-4;
 const kSlabShare = 1 / 5;
 const kHallSides = 40;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
 export const kTankTile = [0.04, 0.13, 0.17] as const;
-/** Grain 0 is paint. */
-const kBase: Paint = [0.10, 0.13, 0.16, 0];
+/** Matt: polish would show single tubes. */
+const kBase: Paint = [0.10, 0.13, 0.16, 0.8];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
@@ -43,11 +50,20 @@ function sizeM({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): number {
   return Math.min(Math.max(sideM, widthM), kSizeWidths * Math.min(sideM, widthM));
 }
 
+function isChannelOfParticles({ sideM, widthM, wave }: Pick<GreetingInfo, "sideM" | "widthM" | "wave">): boolean {
+  return !wave && Math.max(sideM, widthM) > kChannelWidths * Math.min(sideM, widthM);
+}
+
+/** Returns the height over the floor that the first view of a tank of particles shows. */
+export function shownHeightM(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "wave">): number {
+  return isChannelOfParticles(greeting) ? kShownOfChannel * tankSize(greeting).heightM : greeting.waterExtents.depthM;
+}
+
 /** Returns the tank that holds the scene's water, with room for waves. */
-export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents">): TankSize {
+export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "wave">): TankSize {
   const { sideM, widthM, waterExtents } = greeting;
   const { depthM } = waterExtents;
-  const freeboardM = Math.max(kFreeboardDepths * depthM, kFreeboardSides * sizeM({ sideM, widthM }));
+  const freeboardM = Math.max(kFreeboardDepths * depthM, (isChannelOfParticles(greeting) ? kParticlesFreeboardSides : kFreeboardSides) * sizeM({ sideM, widthM }));
   return { sideM, widthM, heightM: depthM + freeboardM };
 }
 
@@ -118,7 +134,7 @@ export class GlassTank {
     const hall = { ...this.uniforms, ...shadow, u_noise: { value: noise }, u_slab_m: { value: kSlabShare * sizeM(size) } };
     const hallM = kHallSides * longM;
     this.floors = [
-      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, (kTileShare * sizeM(size)) / longM]), makeTiles(greeting, context)),
+      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, ((greeting.wave ? kNoTile : kTileShare) * sizeM(size)) / longM]), makeTiles(greeting, context)),
       new Mesh(level(hallM, -kPlinth * thickM, hallM, kBase), makeMaterial("hallFloor", hall, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(shadow && { SHADOWS: 1 }) } })),
     ];
     for (const mesh of [this.glass, this.base, ...this.floors]) mesh.frustumCulled = false;
