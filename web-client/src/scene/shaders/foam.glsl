@@ -15,7 +15,7 @@ float laceAt(vec2 at, float fresh) {
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
 float shownFoam(float streamed) {
-#if defined(OPEN_SEA) || defined(RIPPLES) || defined(WALLS)
+#if defined(OPEN_SEA) || defined(RIPPLES)
   return streamed * (0.65 + 0.35 * streamed * streamed);
 #else
   // The low waves of a tank are seen from near.

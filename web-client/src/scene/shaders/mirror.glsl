@@ -1,5 +1,5 @@
 // Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, SKIRT, MIRROR as there.
-#if defined(RIPPLES) || defined(WALLS)
+#ifdef RIPPLES
 #include <border>
 #endif
 #if defined(OPEN_SEA) || defined(RIPPLES)
@@ -56,7 +56,7 @@ float behindScreen(vec3 at, out vec2 uv) {
   return viewZ(texture(u_behind_depth, uv).r) - view.z;
 }
 
-#if defined(RIPPLES) || defined(WALLS)
+#ifdef RIPPLES
 // Light of the garden and of the sky over it: what the screen shows where the ray meets the border, unless something stands before it.
 vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
   vec3 at = atBorder(from, direction, u_extent_m);
@@ -69,7 +69,7 @@ vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
-#if defined(RIPPLES) || defined(WALLS)
+#ifdef RIPPLES
   sky = gardenLight(from, direction, sky);
   // A ray that rises past a pool's walls does not meet the deck, of which the screen shows the upper side.
   reach_m = min(reach_m, 1.02 * wayOut(from, direction));

@@ -4,7 +4,7 @@
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // UNEVEN: straight crests are drawn uneven.
-// SKIRT: the side of the water in a tank, through which one looks into it. RIPPLES: of a pool, whose walls others draw, as with WALLS. RAIN: with the rings of rain.
+// SKIRT: the side of the water in a tank, through which one looks into it. RIPPLES: of a pool, whose walls others draw. RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
 #include <sky>
@@ -81,12 +81,6 @@ const float kSpillM = 0.34;
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
 const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
-#endif
-
-#if !defined(OPEN_SEA) && !defined(WALLS)
-const float kGlintShare = 0.04;  // a tank's lamps are wide
-#else
-const float kGlintShare = 1.0;
 #endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -201,7 +195,7 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
-#if (defined(OPEN_SEA) || defined(RIPPLES) || defined(WALLS)) && !defined(SKIRT)
+#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
   // What stands in the water is close behind its surface; the bed below shallow water is not meant.
   float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float contact = 1.0 - smoothstep(0.0, kContactM, solid_m);
@@ -324,13 +318,6 @@ void main() {
   water *= 1.0 - 0.45 * contact;
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
-#else
-  float at_sun = dot(mirrored, u_sun_direction);
-  float narrow = 1500.0;
-  // A glint narrower than the turn of the mirror over a pixel would flicker: it is wider and dimmer instead (after Kaplanyan et al. 2016).
-  vec3 turn = fwidth(mirrored);
-  narrow /= 1.0 + narrow * min(0.1 * dot(turn, turn), 0.004);
-  if (at_sun > 0.95) water += u_sun_light * (u_sun_sharp * sunlit_share) * (pow(at_sun, narrow) * 13.0 / 1500.0 * narrow + pow(at_sun, 120.0) * 0.8) * (0.1 + fresnel) * kGlintShare * edge;
 #endif
 #endif
 #ifndef SKIRT
@@ -339,7 +326,7 @@ void main() {
 #else
   vec2 place = v_world.xz / u_extent_m + 0.5;
 #endif
-#if defined(RIPPLES) || defined(WALLS)
+#ifdef RIPPLES
   float foam = 0.0;
   water = mix(water, meniscusLight(), climbingShare(solid_m));
 #else

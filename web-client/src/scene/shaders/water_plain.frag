@@ -1,7 +1,7 @@
 // The water's surface in the plain tiers, blended over the solids on the canvas (premultiplied): clear colours and sharp edges at full resolution
 // instead of refraction and mirrored solids. Most of it comes from the vertices (water_plain.glsl), for the display, so that a pixel only mixes.
 // There are no branches: software renderers execute both sides of one.
-// SKIRT, OPEN_SEA, WALLS and RIPPLES as in water.frag.
+// SKIRT and OPEN_SEA as in water.frag; WALLS: of a pool, whose walls others draw.
 #include <sky>
 #ifdef SKIRT
 #include <water_optics>
@@ -81,7 +81,7 @@ void main() {
   float fresnel = v_shares.x * (0.02 + 0.98 * past2 * past2 * past);
   vec3 mirrored = v_ray - (2.0 * along) * normal;
   float up = abs(mirrored.y) + v_slopes.w;
-#if defined(OPEN_SEA) || defined(WALLS) || defined(RIPPLES)
+#if defined(OPEN_SEA) || defined(WALLS)
   vec3 sky = mix(u_displayed_sky[2], u_displayed_sky[1], clamp(6.0 * up, 0.0, 1.0));
   sky = mix(sky, u_displayed_sky[0], clamp(1.7 * up - 0.25, 0.0, 1.0));
 #else
@@ -95,7 +95,7 @@ void main() {
 #endif
   float glow = at_sun * at_sun;
   sky += u_displayed_glow * (glow * glow);
-#if defined(OPEN_SEA) || defined(WALLS) || defined(RIPPLES)
+#if defined(OPEN_SEA) || defined(WALLS)
   float glint = clamp(1.0 - 250.0 * (1.0 - at_sun), 0.0, 1.0);
   glint *= glint * (0.4 + fresnel);
 #else
