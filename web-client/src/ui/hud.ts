@@ -1,4 +1,4 @@
-// Shows the values measured by the server and the page. Each value is written when it arrives.
+// Shows the values measured by the server and the page.
 import type { GreetingInfo } from "../../client/codec/greeting";
 import type { DiagnosticsInfo } from "../../client/codec/parse";
 import type { ConnectionState } from "../../client/session/events";
@@ -22,6 +22,9 @@ export function describeState(state: ConnectionState): string {
       return kTexts.states.refused(state.reason);
   }
 }
+
+/** Nobody reads the server's values as fast as they come. */
+const kDiagnosticsEveryMs = 200;
 
 export class Hud {
   private readonly simTime = byId("sim-time");
@@ -47,6 +50,8 @@ export class Hud {
   private readonly health = byId("health");
   private shown: ConnectionState = { name: "connecting" };
   private isPaused = false;
+  /** What came last, until it is written. */
+  private latest: DiagnosticsInfo | undefined;
 
   /** Shows only the rows that this room has values for. */
   enter(greeting: GreetingInfo): void {
@@ -63,26 +68,9 @@ export class Hud {
     this.device.title = greeting.device;
   }
 
-  diagnostics(d: DiagnosticsInfo): void {
-    setText(this.boats, String(d.boatCount));
-    setText(this.breaking, `${fixed(100 * d.breakingRatio, 2)} %`);
-    setText(this.volumeError, kTexts.volumeUnits(d.volumeErrorUnits));
-    this.volumeError.classList.toggle("trouble", d.volumeErrorUnits !== 0n);
-    setText(this.exchanged, `${fixed(d.emittedM3, 3)} / ${fixed(d.absorbedM3, 3)} m³`);
-    setText(this.simTime, `${fixed(d.timeS, 2)} s`);
-    setText(this.rtf, `${fixed(d.realTimeFactor, 2)} ×`);
-    setText(this.particles, grouped(d.particleCount));
-    setText(this.stepMs, `${fixed(d.stepMs, 2)} ms`);
-    setText(this.substeps, String(d.substepsCount));
-    const counts: [bigint, (count: bigint) => string][] = [
-      [d.nonfiniteCount, kTexts.nonfinite],
-      [d.escapedCount, kTexts.escaped],
-      [d.recoveredCount, kTexts.recovered],
-    ];
-    const trouble = counts.filter(([count]) => count > 0n);
-    setText(this.health, trouble.map(([count, what]) => what(count)).join(", ") || kTexts.healthy);
-    this.health.classList.toggle("trouble", trouble.length > 0);
-    this.writePasses(d);
+  diagnostics(diagnostics: DiagnosticsInfo): void {
+    if (!this.latest) setTimeout(() => this.writeDiagnostics(this.latest!), kDiagnosticsEveryMs);
+    this.latest = diagnostics;
   }
 
   link(stats: LinkStats): void {
@@ -120,6 +108,29 @@ export class Hud {
     setText(this.state, isStill ? kTexts.paused : describeState(state));
     this.state.dataset["state"] = isStill ? "paused" : state.name;
     this.state.title = state.name === "retrying" ? state.why : "";
+  }
+
+  private writeDiagnostics(d: DiagnosticsInfo): void {
+    this.latest = undefined;
+    setText(this.boats, String(d.boatCount));
+    setText(this.breaking, `${fixed(100 * d.breakingRatio, 2)} %`);
+    setText(this.volumeError, kTexts.volumeUnits(d.volumeErrorUnits));
+    this.volumeError.classList.toggle("trouble", d.volumeErrorUnits !== 0n);
+    setText(this.exchanged, `${fixed(d.emittedM3, 3)} / ${fixed(d.absorbedM3, 3)} m³`);
+    setText(this.simTime, `${fixed(d.timeS, 2)} s`);
+    setText(this.rtf, `${fixed(d.realTimeFactor, 2)} ×`);
+    setText(this.particles, grouped(d.particleCount));
+    setText(this.stepMs, `${fixed(d.stepMs, 2)} ms`);
+    setText(this.substeps, String(d.substepsCount));
+    const counts: [bigint, (count: bigint) => string][] = [
+      [d.nonfiniteCount, kTexts.nonfinite],
+      [d.escapedCount, kTexts.escaped],
+      [d.recoveredCount, kTexts.recovered],
+    ];
+    const trouble = counts.filter(([count]) => count > 0n);
+    setText(this.health, trouble.map(([count, what]) => what(count)).join(", ") || kTexts.healthy);
+    this.health.classList.toggle("trouble", trouble.length > 0);
+    this.writePasses(d);
   }
 
   private writePasses(d: DiagnosticsInfo): void {
