@@ -11,8 +11,8 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 /** A clump in its hollows and on its lumps: size relative to the ellipsoid, and brightness relative to the leaves. */
 const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
-/** Its rows and columns: in a garden, on the land behind a sea, and in the plain tiers. */
-const kCells = { garden: [10, 18], land: [6, 10], plain: [3, 6] } as const;
+/** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
+const kCells = { garden: [10, 18, 0.35], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
 
 export class Foliage {
   private readonly random = makeFastRandom(4242);
@@ -30,14 +30,14 @@ export class Foliage {
 
   /** Adds a clump within an ellipsoid. */
   clump(middle: Point, half: Point, leaves: Leaves): void {
-    const [rowsCount, columnsCount] = kCells[this.cells];
+    const [rowsCount, columnsCount, uneven] = kCells[this.cells];
     const phase = [0, 1, 2, 3].map(() => this.between(0, 2 * Math.PI));
     // 0 in a hollow, 1 on a lump; the last column is the first one again.
     const lumps = Array.from({ length: rowsCount + 1 }, (_, r) => {
       const row = Array.from({ length: columnsCount }, (_unused, c) => {
         const [up, round] = [(Math.PI * r) / rowsCount, (2 * Math.PI * c) / columnsCount];
         const wide = Math.sin(3 * round + phase[0]! + 2 * Math.sin(2 * up + phase[1]!)) * Math.sin(4 * up + phase[2]! + Math.sin(round + phase[3]!));
-        return clamp(0.5 + 0.3 * wide + this.between(-0.35, 0.35), 0, 1);
+        return clamp(0.5 + 0.3 * wide + this.between(-uneven, uneven), 0, 1);
       });
       return [...row, row[0]!];
     });
