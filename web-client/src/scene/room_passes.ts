@@ -3,7 +3,7 @@
 //   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
 //   foam         frames -> foam
 //   sea          time -> ripples, and in an open sea the waves around the square
-//   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from high on
+//   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from medium on
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
 //   solids       sky, ground, rocks, boats, objects -> solids (linear light, depth)
 //   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
