@@ -10,6 +10,9 @@
 #include <fluid_volume>
 #ifdef RIPPLES
 #include <ripples>
+const float kGlint = 1800.0, kGleam = 0.12;  // ripples spread the sun
+#else
+const float kGlint = 700.0, kGleam = 0.5;
 #endif
 #ifdef OUTDOORS
 #include <border>
@@ -342,11 +345,9 @@ void main() {
   vec3 at_floor = shownAt(from);
   float shown_m = distanceAt(at_floor.xy);
   bool is_shown = all(lessThan(abs(at_floor.xy - 0.5), vec2(0.5))) && shown_m < at_floor.z - 2.0 * u_radius_m;
-#ifdef OUTDOORS
   // The rim of a pool does not stand in it.
   vec2 inside_m = min(u_volume_max_m.xz, -u_volume_min_m.xz) - abs(u_camera_m + (from - u_camera_m) * (shown_m / at_floor.z)).xz;
   is_shown = is_shown && min(inside_m.x, inside_m.y) > u_radius_m;
-#endif
   vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * clamp(from.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
 #endif
 
@@ -377,7 +378,7 @@ void main() {
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
   if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
-  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
+  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, kGlint) * 9.0 + pow(at_sun, 70.0) * kGleam) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE
   // Where the solids were drawn on the canvas, what is there shows through by the green share of its light that passes.
