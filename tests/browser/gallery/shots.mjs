@@ -20,7 +20,7 @@ const kDefault = { tick: 180 };
 const kShots = {
   beach: { tick: 516, historyTicks: 300 },
   boat_wake: { tick: 300 },
-  boat_wake_particles: { tick: 240 },
+  boat_wake_particles: { tick: 138 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 500 },
@@ -33,17 +33,17 @@ const kShots = {
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
   particles_only: { tick: 24, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
-  pool: { tick: 408 },
+  pool: { tick: 80 },
   regatta: { tick: 150, visitors: kRacers },
   river_mouth: { tick: 840, historyTicks: 300 },
   ripple_tank: { tick: 540 },
   rain_rings: { tick: 198 },
   splash: { tick: 70 },
-  splash_particles: { tick: 78 },
-  splash_wave: { tick: 120 },
+  splash_particles: { tick: 80 },
+  splash_wave: { tick: 98 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },
-  wave_only: { tick: 66 },
+  wave_only: { tick: 69 },
 };
 
 /** Pictures of both qualities have this size. */

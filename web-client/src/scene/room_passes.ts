@@ -3,7 +3,7 @@
 //   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
 //   foam         frames -> foam
 //   sea          time -> ripples, and in an open sea the waves around the square
-//   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from high on
+//   caustics     field, sea -> sunlight that the waves focus on what is below them; in the tiers from medium on
 //   shadow       frames, field -> what the sun sees of solids; in the tiers from medium on
 //   solids       sky, ground, rocks, boats, objects -> solids (linear light, depth)
 //   particles    frames -> particles; their shadow -> solids (fluid/fluid.ts)
@@ -83,7 +83,8 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const shore = field && cellsOf && new ShorePass(frames, field, wetness, cellsOf, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const sea = makeSea(greeting, quality);
-  const caustics = field && quality.caustics && new CausticsPass(field.texture, sea?.uniforms, sky, { sideM, widthM, depthM: wave.depthM }, quality.caustics);
+  const isPool = greeting.setting === "pool";
+  const caustics = (field || isPool) && quality.caustics ? new CausticsPass(field?.texture, sea, sky, { sideM, widthM, depthM: wave?.depthM ?? greeting.waterExtents.depthM, isPool }, quality.caustics) : undefined;
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality);
   shadow?.setCasters(solids);

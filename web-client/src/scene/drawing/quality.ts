@@ -83,7 +83,7 @@ export const kTiers: Record<TierName, Tier> = {
   medium: {
     maxPixelRatio: 1, tankPixelRatio: 1, frameRateMaxHz: 60, surfaceCellsCount: 160, samplesCount: 2, plain: false, sparing: false, fieldCountMax: 512, seaTexelsCount: 256, mirrorStepsCount: 10,
     fluid: { cellsPerSpacing: 1.25, scale: 0.75, dropsCount: 6, floorTexelsCount: 256 }, whitewater: { capacityCount: 6000, densityRatio: 0.7, frothTexelsCount: 384 },
-    rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: undefined, shadows: { texelsCount: 1024 },
+    rain: { ringTexelsCount: 256, streaksCount: 6000 }, caustics: { cellsCount: 128, texelsCount: 256 }, shadows: { texelsCount: 1024 },
   },
   high: {
     maxPixelRatio: 1.5, tankPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,

@@ -2,11 +2,12 @@
 // the depth of the solids. Writes the colour of the solids, and the map.
 import { BufferAttribute, BufferGeometry, CustomBlending, DstColorFactor, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OrthographicCamera, RedFormat, Scene, Vector2, WebGLRenderTarget, ZeroFactor, type Camera, type RawShaderMaterial, type WebGLRenderer } from "three";
 
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import { FullscreenPass } from "../drawing/fullscreen";
 import type { Pass, Picture } from "../drawing/pass";
 import type { FluidQuality, Quality } from "../drawing/quality";
 import type { Sky } from "../light/sky";
-import { tankColourRatio } from "../light/water_optics";
+import { colourRatio } from "../light/water_optics";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
@@ -38,9 +39,10 @@ export class FluidShadowPass implements Pass {
     volume: FluidVolumePass,
     private readonly solids: SolidsPass,
     sky: Sky,
-    { sideM, widthM }: { sideM: number; widthM: number },
+    greeting: GreetingInfo,
     { floorTexelsCount, texelType, plain }: Pick<FluidQuality, "floorTexelsCount"> & Pick<Quality, "texelType" | "plain">,
   ) {
+    const { sideM, widthM } = greeting;
     const sideTexelsCount = solids.surroundings.edge.kind === "walls" ? floorTexelsCount : floorTexelsCount / kTankTexelsRatio;
     this.map = new WebGLRenderTarget(sideTexelsCount, sideTexelsCount, { type: texelType, generateMipmaps: !plain, minFilter: plain ? LinearFilter : LinearMipmapLinearFilter });
     this.above = new OrthographicCamera(-sideM / 2, sideM / 2, widthM / 2, -widthM / 2, 0, 2 * kMapAboveSides * sideM);
@@ -52,7 +54,7 @@ export class FluidShadowPass implements Pass {
     const [x, z] = [0.5 * sideM, 0.5 * widthM].map((half) => half / place.u_shaded_m.value) as [number, number];
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([-x, 0, -z, -x, 0, z, x, 0, -z, x, 0, z]), 3));
     geometry.setIndex([0, 1, 2, 2, 1, 3]);
-    const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: tankColourRatio({ sideM, widthM }) } };
+    const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: colourRatio(greeting) } };
     this.floor = new Mesh(
       geometry,
       makeMaterial("fluidShadow", uniforms, {

@@ -1,4 +1,5 @@
 // Optical types of water: what it absorbs and scatters, and the colours that follow for the shaders (shaders/water_optics.glsl). Pure.
+import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { WaterTypeName } from "../../../client/codec/scene_info";
 import { mapRgb, type Rgb } from "./light";
 
@@ -39,9 +40,13 @@ const kCrestShare = 0.34;
 /** Way through a tank, for its colour (m). */
 const kTankWayM = 0.9;
 
-/** Returns by which factor lengths in a tank count as longer for its water's colour: tanks of all sizes look alike from the side. */
-export function tankColourRatio({ sideM, widthM }: { sideM: number; widthM: number }): number {
-  return kTankWayM / Math.min(sideM, widthM);
+/** Depth of a pool whose lengths count as they are (m). */
+const kPoolDeepM = 1.5;
+
+/** Returns by which factor lengths count as longer for the water's colour: tanks of all sizes look alike from the side, and shallow pools of particles like deep ones. */
+export function colourRatio({ setting, wave, sideM, widthM, waterExtents }: Pick<GreetingInfo, "setting" | "wave" | "sideM" | "widthM" | "waterExtents">): number {
+  if (setting === "pool") return wave ? 1 : Math.max(kPoolDeepM / waterExtents.depthM, 1);
+  return setting === "openSea" ? 1 : kTankWayM / Math.min(sideM, widthM);
 }
 
 export interface WaterOptics {

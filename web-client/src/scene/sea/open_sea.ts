@@ -81,6 +81,15 @@ export class OpenSea implements Pass {
     this.shownSlope = this.slope();
   }
 
+  get longestRippleM(): number {
+    return this.ripples.tileM / kRippleTileLengths;
+  }
+
+  /** Root mean square of the ripples' curvature. */
+  get rippleCurvaturePerM(): number {
+    return this.shownSlope * Math.sqrt(this.rippleWaves.reduce((sum, { amplitudeM, kxRadpm, kzRadpm }) => sum + 0.5 * (amplitudeM * (kxRadpm ** 2 + kzRadpm ** 2)) ** 2, 0));
+  }
+
   /** Follows a parameter of the room, by its path in the scene. */
   setParameter(path: string, value: number): void {
     if (path === "wave.depth_m" && value > 0) this.wave = { ...this.wave, depthM: value };

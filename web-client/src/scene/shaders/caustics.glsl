@@ -2,6 +2,8 @@
 uniform sampler2D u_caustics;       // light relative to level water, at the floor and at kUpperLayer of its depth
 uniform float u_caustic_depth_m;    // of the floor
 uniform vec2 u_caustic_extent_m;
+uniform sampler2D u_caustic_ripples;  // light that a pool's ripples focus on its floor, a repeating tile
+uniform float u_caustic_tile_m;
 
 const float kUpperLayer = 0.4;
 const float kSoftLevel = 2.2;   // mip level
@@ -18,5 +20,7 @@ float focusedLight(vec2 crossed, float deep_m) {
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));
-  return mix(1.0, focus, inside.x * inside.y);
+  float fine = texture(u_caustic_ripples, crossed / u_caustic_tile_m + 0.5).r;
+  fine = 1.4 * fine / (1.0 + 0.4 * fine);
+  return mix(1.0, focus * mix(1.0, fine, share), inside.x * inside.y);
 }

@@ -10,6 +10,9 @@
 #include <fluid_volume>
 #ifdef RIPPLES
 #include <ripples>
+const float kGlint = 1800.0, kGleam = 0.12;  // ripples spread the sun
+#else
+const float kGlint = 700.0, kGleam = 0.5;
 #endif
 #ifdef OUTDOORS
 #include <border>
@@ -33,6 +36,7 @@ uniform vec2 u_extent_m;       // length and width of the wave
 #else
 uniform sampler2D u_floor_light;  // the floor of the tank from above
 uniform vec2 u_floor_size_m;
+const float kMapped = 0.485;   // share of the map without the rim, which hides the floor from above
 #endif
 layout(location = 0) out vec4 color;
 
@@ -48,6 +52,7 @@ const int kHalvings = 5, kParts = 3;
 // Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
 const float kSlopeRadii = 2.0;         // slopes are taken over so much to each side
+const float kRoom = 0.25;              // share of the way to the picture's edge by which what is behind may be shifted
 const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
@@ -57,6 +62,7 @@ const vec2 kFrothSun = vec2(0.0, 1.05);
 const float kMist = 0.25;
 #else
 const float kSlopeRadii = 3.0;
+const float kRoom = 1.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef OUTDOORS
@@ -199,7 +205,7 @@ vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
   vec2 uv = at.xy;
   vec2 away = uv - v_uv;
   vec2 most = max(step(0.0, away) - v_uv, v_uv - step(0.0, away)) / max(abs(away), vec2(1e-5));
-  vec2 shown = v_uv + away * min(min(most.x, most.y), 1.0);
+  vec2 shown = v_uv + away * min(kRoom * min(most.x, most.y), 1.0);
   for (int i = 0; i < 3 && distanceAt(shown) < surface_m; ++i) shown = mix(shown, v_uv, i == 2 ? 1.0 : 0.5);
   vec2 rim = smoothstep(0.5, 0.47, abs(uv - 0.5));
   float is_sky = smoothstep(-0.05, 0.05, ray.y) * (1.0 - (at.z > 0.0 ? rim.x * rim.y : 0.0));
@@ -307,7 +313,8 @@ void main() {
   // Further down it is the wave's water.
   if (leaving.y < -0.05) {
     float down_m = clamp((from.y - u_floor_m) / -leaving.y, 0.0, 40.0);
-    past_m = down_m;
+    // As far as in water.frag.
+    past_m = min(down_m, 0.45);
     length_m += down_m;
   }
 #else
@@ -336,8 +343,12 @@ void main() {
 #else
   // Unless something stands before it.
   vec3 at_floor = shownAt(from);
-  bool is_shown = all(lessThan(abs(at_floor.xy - 0.5), vec2(0.5))) && distanceAt(at_floor.xy) < at_floor.z - 2.0 * u_radius_m;
-  vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * from.xz / u_floor_size_m + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
+  float shown_m = distanceAt(at_floor.xy);
+  bool is_shown = all(lessThan(abs(at_floor.xy - 0.5), vec2(0.5))) && shown_m < at_floor.z - 2.0 * u_radius_m;
+  // The rim of a pool does not stand in it.
+  vec2 inside_m = min(u_volume_max_m.xz, -u_volume_min_m.xz) - abs(u_camera_m + (from - u_camera_m) * (shown_m / at_floor.z)).xz;
+  is_shown = is_shown && min(inside_m.x, inside_m.y) > u_radius_m;
+  vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * clamp(from.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
 #endif
 
   behind = mix(behind, again.rgb, again.a);
@@ -367,7 +378,7 @@ void main() {
 #endif
   float at_sun = dot(mirrored, u_sun_direction);
   if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
-  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, 700.0) * 9.0 + pow(at_sun, 70.0) * 0.5) * (0.1 + fresnel) * (1.0 - white);
+  float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, kGlint) * 9.0 + pow(at_sun, 70.0) * kGleam) * (0.1 + fresnel) * (1.0 - white);
   float alpha = raised;
 #ifdef WAVE
   // Where the solids were drawn on the canvas, what is there shows through by the green share of its light that passes.

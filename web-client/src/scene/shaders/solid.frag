@@ -74,7 +74,7 @@ void main() {
       float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19, kSharper).r;
       bool is_grass = albedo.g > albedo.r;
       if (is_grass) albedo *= mix(vec3(1.25, 1.12, 0.85), vec3(0.36, 0.46, 0.42), smoothstep(0.5, 0.75, 0.65 * broad + 0.35 * middle));
-      else if (grain < 0.75) {
+      else if (grain > 0.6 && grain < 0.75) {
         float tufts = texture(u_noise, at / (0.37 * grain_m) + 0.53).r;
         float scrub = smoothstep(0.5, 0.9, v_world.y) * smoothstep(0.36, 0.6, 0.35 * broad + 0.25 * middle + 0.4 * (0.95 - tufts));
         albedo = mix(albedo, kScrub, 0.7 * scrub);

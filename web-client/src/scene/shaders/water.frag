@@ -81,6 +81,12 @@ const float kSpillM = 0.34;
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
 const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
+// A pool's finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
+#ifdef RIPPLES
+const float kSunSpread = 6.0;
+#else
+const float kSunSpread = 1.0;
+#endif
 #endif
 
 // Albedo of the level bed of coast.ts as solid.frag draws it, on average.
@@ -317,7 +323,7 @@ void main() {
   // Less of the sky lights the water beside what stands in it.
   water *= 1.0 - 0.45 * contact;
 #ifdef GLITTER
-  if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, lost_variance, facing);
+  if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, kSunSpread * lost_variance, facing);
 #endif
 #endif
 #ifndef SKIRT

@@ -11,7 +11,7 @@ export interface SurroundingsContext {
   sky: Sky;
   noise: Texture;
   field: Texture | undefined;
-  /** Of caustics.glsl; undefined below the tier high, and where there is no wave. */
+  /** Of caustics.glsl; undefined in the plain tiers, and where there is neither a wave nor a pool. */
   caustics: Uniforms | undefined;
   /** Of shadow.glsl; undefined: no map of shadows. */
   shadow: Uniforms | undefined;

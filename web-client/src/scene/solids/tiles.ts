@@ -16,7 +16,7 @@ export function makeTiles({ setting, sideM, widthM }: Pick<GreetingInfo, "settin
     u_extent_m: { value: new Vector2(sideM, widthM) },
     u_half_m: { value: new Vector2(sideM / 2, widthM / 2) },
     u_level_m: { value: 0 },
-    u_has_water: { value: field !== undefined },
+    u_has_water: { value: (field ?? caustics) !== undefined },
   };
   return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : isDeck ? { DECK: 1 } : setting !== "pool" && { LAMP: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
 }

@@ -1,10 +1,12 @@
 // Sunlight that the waves focus on what is below them: a grid of the surface is refracted along the light and drawn with the ratio of its
 // areas, added up (after Stam 1996; Shah, Konttinen & Pattanaik 2007). Two layers: at the floor, and above it, because focus grows with the depth.
-// Reads the field and the ripples. Writes the caustics: light relative to level water, over the square, mean 1.
-import { AdditiveBlending, DoubleSide, HalfFloatType, LinearMipmapLinearFilter, Mesh, RGFormat, Scene, Vector2, Vector3, Camera, Color, WebGLRenderTarget, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
+// The grid is too coarse for the ripples of a pool: their light has a repeating tile of its own, as their waves have.
+// Reads the field and the ripples. Writes the caustics: light relative to level water, over the square and over the tile, mean 1.
+import { AdditiveBlending, DoubleSide, HalfFloatType, LinearMipmapLinearFilter, Mesh, RGFormat, RepeatWrapping, Scene, Vector2, Vector3, Camera, Color, WebGLRenderTarget, type BufferGeometry, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
+import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { gridLines, makeGrid } from "./water_grid";
 
@@ -15,8 +17,24 @@ const kLayers = [
   { channel: [1, 0], depths: 1 },
   { channel: [0, 1], depths: 0.4 },
 ];
+/**
+ * Root mean square of the convergence of a pool's light at the floor by ripples: below 0.5 the light does not come to a point, above 1 its
+ * lines cross each other. The ripples drawn are calmer, because a mirror that stirred would not show the garden.
+ */
+const kRippleFocus = 0.65;
+/** Light is focused in shallow water by shorter ripples: the longest are at most as long as the depth over this. */
+const kDepthPerRipple = 2;
+/** Share of a slope by which light turns that enters water. */
+const kTurn = 0.25;
 /** Direct light below which the focus cannot be seen. */
 const kLeastLight = 0.02;
+
+interface Water {
+  sideM: number;
+  widthM: number;
+  depthM: number;
+  isPool: boolean;
+}
 
 export class CausticsPass implements Pass {
   readonly name = "caustics";
@@ -25,65 +43,72 @@ export class CausticsPass implements Pass {
   /** Of caustics.glsl. */
   readonly uniforms: Uniforms;
   private readonly target: WebGLRenderTarget;
-  private readonly scene = new Scene();
+  private readonly tile: WebGLRenderTarget;
   private readonly camera = new Camera();
-  private readonly mesh: Mesh<BufferGeometry, RawShaderMaterial>;
+  private readonly layers: Scene[];
+  private readonly ripples: Scene | undefined;
+  private readonly geometry: BufferGeometry;
+  private readonly materials: RawShaderMaterial[] = [];
   private readonly white = new Color(1, 1, 1);
   private readonly cleared = new Color();
 
-  /** `ripples`: of ripples.glsl; undefined: there are none. */
-  constructor(field: Texture, ripples: Uniforms | undefined, private readonly sky: Sky, size: { sideM: number; widthM: number; depthM: number }, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
-    const { sideM, widthM, depthM } = size;
+  /** `field` undefined: there are ripples alone. */
+  constructor(field: Texture | undefined, sea: OpenSea | undefined, private readonly sky: Sky, { sideM, widthM, depthM, isPool }: Water, { cellsCount, texelsCount }: { cellsCount: number; texelsCount: number }) {
     const extentM = new Vector2(sideM, widthM);
-    this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
-      format: RGFormat,
-      type: HalfFloatType,
-      minFilter: LinearMipmapLinearFilter,
-      generateMipmaps: true,
-      depthBuffer: false,
-    });
-    this.uniforms = { u_caustics: { value: this.target.texture }, u_caustic_depth_m: { value: depthM }, u_caustic_extent_m: { value: extentM } };
-    const lines = gridLines(cellsCount, false, false);
-    const uniforms = {
-      ...sky.uniforms,
-      ...ripples,
-      u_field: { value: field },
-      u_extent_m: { value: extentM },
-      u_deep_m: { value: depthM },
-      u_reach: { value: kReachSides },
-      u_layer: { value: new Vector2() },
-      u_texel_m: { value: Math.sqrt((sideM / texelsCount) * (widthM / texelsCount)) },
+    const shrunk = sea ? Math.min(depthM / (kDepthPerRipple * sea.longestRippleM), 1) : 1;
+    const tileM = shrunk * ((sea?.uniforms["u_tiles_m"]!.value as Vector2 | undefined)?.y ?? 1);
+    const makeTarget = (sideCount: number): WebGLRenderTarget =>
+      new WebGLRenderTarget(sideCount, sideCount, { format: RGFormat, type: HalfFloatType, minFilter: LinearMipmapLinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping, generateMipmaps: true, depthBuffer: false });
+    this.target = makeTarget(field ? texelsCount : 1);
+    this.tile = makeTarget(isPool ? texelsCount : 1);
+    this.uniforms = {
+      u_caustics: { value: this.target.texture },
+      u_caustic_depth_m: { value: depthM },
+      u_caustic_extent_m: { value: extentM },
+      u_caustic_ripples: { value: this.tile.texture },
+      u_caustic_tile_m: { value: tileM },
     };
-    this.mesh = new Mesh(makeGrid(lines, lines), makeMaterial("caustics", uniforms, { ...(ripples && { defines: { RIPPLES: 1 } }), side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true }));
-    this.mesh.frustumCulled = false;
-    this.scene.add(this.mesh);
+    const lines = gridLines(cellsCount, false, false);
+    this.geometry = makeGrid(lines, lines);
+    const makeScene = (defines: Record<string, number>, overM: Vector2, deepM: number, channel: readonly number[], gain = 1): Scene => {
+      const uniforms = {
+        ...sky.uniforms,
+        ...sea?.uniforms,
+        u_field: { value: field ?? null },
+        u_extent_m: { value: overM },
+        u_deep_m: { value: deepM },
+        u_reach: { value: kReachSides },
+        u_gain: { value: gain },
+        u_layer: { value: new Vector2().fromArray(channel) },
+        u_texel_m: { value: Math.sqrt(overM.x * overM.y) / texelsCount },
+      };
+      const material = makeMaterial("caustics", uniforms, { defines, side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true });
+      this.materials.push(material);
+      const mesh = new Mesh(this.geometry, material);
+      mesh.frustumCulled = false;
+      return new Scene().add(mesh);
+    };
+    this.layers = field ? kLayers.map(({ channel, depths }) => makeScene(sea && !isPool ? { RIPPLES: 1 } : {}, extentM, depths * depthM, channel)) : [];
+    if (isPool && sea) this.ripples = makeScene({ RIPPLES: 1, TILE: 1 }, new Vector2(tileM, tileM), depthM, [1, 1], (kRippleFocus * shrunk) / (kTurn * depthM * sea.rippleCurvaturePerM));
   }
 
   draw({ renderer }: Picture): void {
-    const { uniforms } = this.mesh.material;
     const light = this.sky.uniforms["u_sun_light"]!.value as Vector3;
     const isLit = Math.max(light.x, light.y, light.z) * (this.sky.uniforms["u_sun_sharp"]!.value as number) > kLeastLight;
-    renderer.setRenderTarget(this.target);
-    if (!isLit) {
-      renderer.getClearColor(this.cleared);
-      const alpha = renderer.getClearAlpha();
-      renderer.setClearColor(this.white, 1);
+    renderer.getClearColor(this.cleared);
+    const alpha = renderer.getClearAlpha();
+    const focus = (target: WebGLRenderTarget, scenes: readonly Scene[]): void => {
+      renderer.setRenderTarget(target);
+      if (!isLit || scenes.length === 0) renderer.setClearColor(this.white, 1);
       renderer.clear();
       renderer.setClearColor(this.cleared, alpha);
-      return;
-    }
-    renderer.clear();
-    for (const { channel, depths } of kLayers) {
-      (uniforms["u_layer"]!.value as Vector2).fromArray(channel);
-      uniforms["u_deep_m"]!.value = depths * (this.uniforms["u_caustic_depth_m"]!.value as number);
-      this.mesh.material.uniformsNeedUpdate = true;
-      renderer.render(this.scene, this.camera);
-    }
+      if (isLit) for (const scene of scenes) renderer.render(scene, this.camera);
+    };
+    focus(this.target, this.layers);
+    focus(this.tile, this.ripples ? [this.ripples] : []);
   }
 
   dispose(): void {
-    this.target.dispose();
-    this.mesh.geometry.dispose();
-    this.mesh.material.dispose();
+    for (const each of [this.target, this.tile, this.geometry, ...this.materials]) each.dispose();
   }
 }

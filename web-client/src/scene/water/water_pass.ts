@@ -11,7 +11,7 @@ import type { Quality } from "../drawing/quality";
 import { makeGroundTexture } from "../landscape/ground_texture";
 import { bedOf, bedUniformValues, longSideM } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
-import { tankColourRatio } from "../light/water_optics";
+import { colourRatio } from "../light/water_optics";
 import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
@@ -86,7 +86,7 @@ export class WaterPass implements Pass {
       u_near_far_m: { value: new Vector2(1, 2) },
       u_extent_m: { value: new Vector2(bed.sideM, bed.widthM) },
       u_depth_m: { value: depthM },
-      u_colour_ratio: { value: isIndoors(greeting) ? tankColourRatio(greeting) : 1 },
+      u_colour_ratio: { value: colourRatio(greeting) },
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
