@@ -16,6 +16,8 @@ export async function* shootReadme(context) {
     const page = await DrivenPage.open(context, { scene, quality: "high", size: kSize });
     try {
       await setUp(page, shotOf(scene));
+      // As a visitor sees it.
+      await page.light("automatic");
       const path = join(kFolder, `${scene}.webp`);
       write(path, await page.picture(kFile));
       yield path;
