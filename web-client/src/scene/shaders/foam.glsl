@@ -2,7 +2,7 @@
 // heap of domes with creases between them. After u_noise, u_lace_m and sky.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn.
-const float kReliefTiles = 0.02, kReliefSlope = 4.0, kSteepest = 0.9;
+const float kReliefTiles = 0.02, kReliefSlope = 5.5, kSteepest = 1.1;
 
 // Height of the lace, 0..1 around 0.5. `fresh`: 0 a network, 1 a heap.
 float laceAt(vec2 at, float fresh) {
@@ -31,8 +31,8 @@ vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share
   float slope = clamp(kReliefSlope * rise * kReliefTiles / step_tiles, -kSteepest, kSteepest);
   vec3 bent = normalize(normal - slope * vec3(toward_sun.x, 0.0, toward_sun.y));
   // Light that enters at one side of a lump leaves it at the others.
-  float sun = sunlit_share * clamp(0.45 + 0.55 * dot(bent, u_sun_direction), 0.0, 1.0);
+  float sun = sunlit_share * clamp(0.25 + 0.75 * dot(bent, u_sun_direction), 0.0, 1.0);
   // Little of the sky is seen from a crease.
-  float open = mix(0.5 + 0.7 * lace, 0.86, smoothstep(0.05, 0.3, blur));
-  return vec3(0.91, 0.95, 0.97) * open * (1.2 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
+  float open = mix(0.3 + 1.0 * lace, 0.8, smoothstep(0.05, 0.3, blur));
+  return vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
 }
