@@ -363,7 +363,7 @@ void main() {
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
 #if !defined(WAVE) && !defined(OUTDOORS)
   // Through glass its bubbles are seen from near.
-  white_m *= clamp(0.8 * lumps(4.0 * surface / u_radius_m) + 0.7, 0.6, 1.6);
+  white_m *= clamp(1.5 * lumps(4.0 * surface / u_radius_m) + 0.25, 0.35, 1.8);
 #endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);

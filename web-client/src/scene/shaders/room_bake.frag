@@ -7,7 +7,7 @@ layout(location = 0) out vec4 color;
 
 // Half the room along x and z and its height, seen from a position on its floor.
 const vec3 kRoom = vec3(2.0, 1.3, 1.5);
-const vec3 kWall = vec3(0.006, 0.010, 0.016), kWash = vec3(0.030, 0.068, 0.115), kCeiling = vec3(0.004, 0.006, 0.009), kLamp = vec3(3.8, 4.2, 4.5);
+const vec3 kWall = vec3(0.006, 0.010, 0.016), kWash = vec3(0.020, 0.047, 0.082), kCeiling = vec3(0.004, 0.006, 0.009), kLamp = vec3(3.8, 4.2, 4.5);
 
 float within(float at, float low, float high, float soft) { return smoothstep(low - soft, low + soft, at) * smoothstep(high + soft, high - soft, at); }
 
