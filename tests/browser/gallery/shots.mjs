@@ -10,7 +10,7 @@ import { repository } from "../server.mjs";
  * @property {object[]} [visitors] commands at tick 0, where a scene shows what it is for only with somebody in it
  */
 
-const kRacers = [[-10.6, -1.6, -15], [-8, -8, -10], [-3, -8.5, -20], [-11, 0.5, -20], [-9, -6, -10], [-5.5, -2, -35]].map(([x_m, z_m, heading_deg]) => ({
+const kRacers = [[-9.5, 0.5, -15], [-9, -9.5, -10], [-2, -9.5, -20], [-12, 3.5, -20], [-7, -4.5, -15], [-3, -1, -30]].map(([x_m, z_m, heading_deg]) => ({
   spawn_boat: { boat: { x_m, z_m, heading_deg, length_m: 2.6, beam_m: 0.95, density_ratio: 0.3, max_speed_mps: 4, throttle_ratio: 0.6 } },
 }));
 
@@ -40,7 +40,7 @@ const kShots = {
   rain_rings: { tick: 198 },
   splash: { tick: 70 },
   splash_particles: { tick: 80 },
-  splash_wave: { tick: 98 },
+  splash_wave: { tick: 86 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },
   wave_only: { tick: 69 },
