@@ -187,9 +187,17 @@ Directory::Decision Directory::decide(Entries& entries) {
   Decision out;
   std::map<std::string, int> placed;
   std::map<std::string, Clock::time_point> orphans;
+  std::map<std::string, Clock::time_point> disputed;
   for (const auto& [room, entry] : entries) {
     if (simulation_->find(room)) {
-      if (entry.record.server() != self_) out.settle.push_back(room);
+      const std::string& other = entry.record.server();
+      if (other == self_) continue;
+      // Without a shared state the other server may run it, too: after a cut too short to be noticed, its pulses come later
+      // than its entry.
+      const auto since = disputed_.contains(room) ? disputed_.at(room) : now;
+      disputed[room] = since;
+      const bool may_run_there = !other.empty() && !simulation_->rules().states;
+      if (!may_run_there || servers.runs(other, room, now) || now - since >= kListenTime) out.settle.push_back(room);
       continue;
     }
     {
@@ -218,6 +226,7 @@ Directory::Decision Directory::decide(Entries& entries) {
     out.take.push_back(room);
   }
   orphans_ = std::move(orphans);
+  disputed_ = std::move(disputed);
   return out;
 }
 

@@ -89,6 +89,7 @@ class Directory {
   std::mutex mutex_;
   std::set<std::string> opening_;                         ///< guarded by mutex_
   std::map<std::string, Clock::time_point> orphans_;      ///< since when; on the worker
+  std::map<std::string, Clock::time_point> disputed_;     ///< run here, and another server has entered them; likewise
   std::set<std::string> closed_;                          ///< for good, but perhaps still entered; on the worker
   std::map<std::string, Clock::time_point> retry_after_;  ///< rooms that could not be opened here; under mutex_
   bool was_cut_off_ = false;                              ///< on the worker, like the next one

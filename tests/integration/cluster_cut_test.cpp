@@ -127,6 +127,22 @@ TEST_F(CutOffServer, ClosesItsRoomIfAnotherServerTookIt) {
   EXPECT_THAT(s2.process->log(), Not(HasSubstr("as well")));
 }
 
+TEST_F(CutOffServer, ClosesItsRoomAlsoIfItDidNotNoticeTheCut) {
+  const Member s1 = server("s1", "", link_->port());
+  const Member s2 = server("s2", "", nats_->port());
+  const Member e1 = edge("e1");
+  ASSERT_TRUE(eventually([&] { return metric(e1.port, "cluster_servers") == 2; }));
+  ScriptedClient direct(s1.port, "main");
+  direct.hello();
+  link_->cut();
+  // Back as soon as the other server has the room: its entry comes before its pulse.
+  ASSERT_THAT(s2.process->waitForLog("room main: taken over"), HasSubstr("from server s1"));
+  link_->restore();
+  EXPECT_TRUE(direct.ws().waitClosed()) << s1.process->log();
+  EXPECT_THAT(s1.process->log(), HasSubstr("runs on server s2 as well"));
+  EXPECT_THAT(s2.process->log(), Not(HasSubstr("as well")));
+}
+
 TEST_F(CutOffServer, RemovesAClosedRoomAfterReconnecting) {
   const Member s1 = server("s1", "", link_->port());
   ASSERT_EQ(post(s1.port, "/api/v1/rooms", R"({"name": "race", "scene": "pool"})").status, 201u);
