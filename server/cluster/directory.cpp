@@ -192,12 +192,12 @@ Directory::Decision Directory::decide(Entries& entries) {
     if (simulation_->find(room)) {
       const std::string& other = entry.record.server();
       if (other == self_) continue;
-      // Without a shared state the other server may run it, too: after a cut too short to be noticed, its pulses come
-      // later than its entry.
+      // Without a shared state the other server may run it, too, or be opening it: after a cut too short to be noticed,
+      // its pulses come later than its entry.
       const auto since = disputed_.contains(room) ? disputed_.at(room) : now;
       disputed[room] = since;
-      const bool may_run_there = !other.empty() && !simulation_->rules().states;
-      if (!may_run_there || servers.runs(other, room, now) || now - since >= kListenTime) out.settle.push_back(room);
+      const bool is_free = other.empty() || (!servers.isAlive(other, now) && now - since >= kListenTime);
+      if (simulation_->rules().states || is_free || servers.runs(other, room, now)) out.settle.push_back(room);
       continue;
     }
     {
