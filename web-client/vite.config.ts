@@ -15,8 +15,11 @@ const kEnum = /^export var (\w+);\n\(function \(\1\) \{(.*?)^\}\)\(\1 \|\| \(\1 
 /** Around these no language of shaders needs space. Two signs in a row, as in `a - -b`, do. */
 const kSpaceAround = /[ \t]*([=*/,;(){}<>?:|&])[ \t]*|(?<=[\w)\]]) ([+-]) (?=[\w(.])/g;
 
-/** Between two lines that are not of the preprocessor. */
+/** A line break between two lines that are not of the preprocessor. */
 const kNeedlessBreak = /(?<=^[^#].*[;{},(]|^[{}])\n(?=[^#\n])/gm;
+
+/** As in 0.5. */
+const kLeadingZero = /(?<!\w)0(?=\.\d)/g;
 
 /** Returns the descriptor of a file without the options of its fields, in base64. */
 function withoutFieldOptions(descriptor: string): string {
@@ -40,7 +43,7 @@ function withoutUnusedText() {
     transform(code: string, id: string) {
       if (/\.(frag|vert|glsl)\?raw$/.test(id)) {
         const source = readFileSync(id.replace(/\?raw$/, ""), "utf8").replace(/\/\/.*$/gm, "").replace(/^\s+/gm, "");
-        const packed = source.replace(/^[^#].*$/gm, (line) => line.replace(kSpaceAround, "$1$2").replace(/(?<!\w)0(?=\.\d)/g, ""));
+        const packed = source.replace(/^[^#].*$/gm, (line) => line.replace(kSpaceAround, "$1$2").replace(kLeadingZero, ""));
         return `export default ${JSON.stringify(packed.replace(kNeedlessBreak, ""))};`;
       }
       if (/\/gen\/spindrift\/v1\/\w+_pb\.ts$/.test(id)) return code.replace(/(?<=fileDesc\(")[^"]+/, withoutFieldOptions);

@@ -34,17 +34,17 @@ interface FluidPasses {
 const kSparingDropsCount = 3;
 
 /** `field` undefined: no wave around the particles. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, size: GreetingInfo, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
-  const particles = new FluidParticles(frames.particles, frames.clock, field, size);
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, greeting: GreetingInfo, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
+  const particles = new FluidParticles(frames.particles, frames.clock, field, greeting);
   // The wave shows most of the water.
   if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount, true)] };
-  if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, size, solids.surroundings, sky, noise, colourRatio(size))] };
-  const volume = new FluidVolumePass(particles, size, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
+  if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, greeting, solids.surroundings, sky, noise, colourRatio(greeting))] };
+  const volume = new FluidVolumePass(particles, greeting, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
   // A wave has no floor of its own.
-  const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, size, { ...quality, texelType, plain });
+  const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, greeting, { ...quality, texelType, plain });
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
-  const surface = new FluidSurfacePass(inputs, field ? 1 : colourRatio(size), quality, plain);
+  const surface = new FluidSurfacePass(inputs, field ? 1 : colourRatio(greeting), quality, plain);
   const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };

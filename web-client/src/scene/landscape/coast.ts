@@ -78,7 +78,7 @@ function outOfM(coast: Coast, side: SideName, xM: number, zM: number): number {
   return bendM(coast, side, xM, zM) - insideM(side, coast.bed, xM, zM);
 }
 
-/** Asked for at every point of the ground. */
+/** The sides of a coast that are shores: asked for at every point of its ground. */
 const shores = new WeakMap<Coast, ReadonlySet<SideName>>();
 
 function isShore(coast: Coast, side: SideName): boolean {
@@ -240,7 +240,10 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number, de
       const inward = 1 - 1e-6;
       return [x, past ? coastHeightM(coast, x, z, true) : coastHeightM(coast, side[1] === "x" ? x * inward : x, side[1] === "z" ? z * inward : z), z];
     };
-    const low = ordered.map((t) => at(t, false)).map(([x, y, z]): Point => [x, Math.max(y, -deepestM), z]);
+    const low = ordered.map((t): Point => {
+      const [x, y, z] = at(t, false);
+      return [x, Math.max(y, -deepestM), z];
+    });
     const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
     builder.grid([low, high], hasRockyShores(coast.bed.beaches) ? kCliff : kQuayWall);
   }

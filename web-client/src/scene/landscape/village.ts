@@ -22,6 +22,7 @@ const kRoofs: readonly Paint[] = [[0.34, 0.115, 0.065, 0.9], [0.27, 0.095, 0.06,
 /** Dark by day, and lit in the dark. */
 const kWindow: Paint = [0.11, 0.085, 0.05, -1];
 const kDarkWindow: Paint = [0.06, 0.065, 0.07, 0.2];
+/** Of all plants behind a sea. */
 export const kLandLeaves: Leaves = [[0.075, 0.125, 0.045, 1.8], [0.135, 0.185, 0.065, 1.8]];
 
 const kHousesCount = { full: 46, plain: 20 };
