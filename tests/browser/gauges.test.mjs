@@ -211,8 +211,14 @@ describe("gauges of one's own", { skip, concurrency: 1 }, () => {
     assert.ok(found, "no place on the water can be touched");
     return found;
   }
-  /** Waves of 0.7 m move what is seen under a pixel by 1.4 m. */
-  const isNear = ({ xM, zM }, place) => assert.ok(Math.hypot(xM - place.xM, zM - place.zM) < 2, `${xM}, ${zM} for ${place.xM}, ${place.zM}`);
+  /** A ray that is low over waves ends metres from where it meets still water: the touched pixel must be one of the gauge's pole. */
+  async function assertIsAt(page, { xM, zM, lowM, topM }, { xPx, yPx }) {
+    const ends = await page.evaluate(([x, z, ...ends]) => ends.map((y) => window.spindrift.pixelOf(x, z, y)), [xM, zM, lowM, topM]);
+    const [[lowXPx, lowYPx], [topXPx, topYPx]] = ends;
+    const share = Math.min(1, Math.max(0, (yPx - topYPx) / (lowYPx - topYPx)));
+    const poleXPx = topXPx + share * (lowXPx - topXPx);
+    assert.ok(Math.abs(poleXPx - xPx) < 3 && yPx > topYPx - 3 && yPx < lowYPx + 3, `the pole is seen from ${topXPx}, ${topYPx} to ${lowXPx}, ${lowYPx}, not at ${xPx}, ${yPx}`);
+  }
 
   it("are placed by a click, in a scene that has none, and others see them", slow, async () => {
     await desk.getByTestId("gauges").click();
@@ -224,7 +230,7 @@ describe("gauges of one's own", { skip, concurrency: 1 }, () => {
     const place = await openWater(desk);
     await desk.mouse.click(place.xPx, place.yPx);
     const [gauge] = await gaugesWhen(desk, "the gauge", "G1");
-    isNear(gauge, place);
+    await assertIsAt(desk, gauge, place);
     assert.ok(gauge.lowM < -1.4 && gauge.topM > 0.2, `${gauge.lowM} to ${gauge.topM} m`);
     assert.ok(!(await isPlacing(desk)));
     assert.equal((await desk.evaluate(() => window.spindrift.stats())).lastCommand.case, "placeGauge");
@@ -256,7 +262,7 @@ describe("gauges of one's own", { skip, concurrency: 1 }, () => {
     await phone.getByTestId("hint").filter({ hasText: "Tap the water" }).waitFor({ timeout: kPatienceMs });
     const place = await openWater(phone);
     await phone.touchscreen.tap(place.xPx, place.yPx);
-    isNear((await gaugesWhen(phone, "the second gauge", "G1,G2"))[1], place);
+    await assertIsAt(phone, (await gaugesWhen(phone, "the second gauge", "G1,G2"))[1], place);
     await gaugesWhen(desk, "the second gauge on the other page", "G1,G2");
     await valueShows(phone, "G2");
     const small = await phone.evaluate((least) => [...document.querySelectorAll(".gauge-card :is(button, select)")].filter((each) => each.checkVisibility() && (each.offsetWidth < least || each.offsetHeight < least)).map(({ textContent }) => textContent), kFingerPx);

@@ -1,5 +1,9 @@
 // The load of the soak on one server: clients that come and go all the time are answered, and see only finite numbers.
+#include <set>
+#include <string>
+
 #include <boost/json.hpp>
+#include <gmock/gmock.h>
 
 #include <spindrift/bench/soak.h>
 
@@ -24,7 +28,7 @@ class Soak : public ServerTest {
     )"}};
   }
 
-  static double numberOf(const boost::json::object& report, const char* name) {
+  static double numberOf(const boost::json::object& report, const std::string& name) {
     return report.at(name).to_number<double>();
   }
 };
@@ -43,17 +47,24 @@ TEST_F(Soak, ComingAndGoingClientsAreAnswered) {
   options.level_changes_per_s = 2.0;
   const std::unique_ptr<std::FILE, Closer> nowhere(std::fopen("/dev/null", "w"));
   ASSERT_TRUE(nowhere);
-  const auto report = bench::measureSoak(options, nowhere.get());
-  ASSERT_TRUE(report) << report.error().message;
-  SCOPED_TRACE(boost::json::serialize(*report));
-  for (const char* some : {"sent", "answers", "heavy_answers", "reconnects", "resumed", "refused", "frames", "decoded"})
-    EXPECT_GT(numberOf(*report, some), 0.0) << some;
-  for (const char* none : {"unanswered", "undecodable", "nonfinite", "watchdog_nonfinite"})
-    EXPECT_EQ(numberOf(*report, none), 0.0) << none;
-  EXPECT_TRUE(report->at("ended").as_object().empty()) << "the server ended connections of its clients";
-  EXPECT_LE(numberOf(*report, "answer_p50_ms"), numberOf(*report, "answer_p99_ms"));
-  EXPECT_LE(numberOf(*report, "answer_p99_ms"), numberOf(*report, "answer_max_ms"));
-  EXPECT_LE(numberOf(*report, "answers") + numberOf(*report, "heavy_answers"), numberOf(*report, "sent"));
+  // In five seconds in which a busy machine hardly runs, not all of it need happen: then it goes on.
+  constexpr int kMostRuns = 10;
+  std::set<std::string> awaited = {"sent",    "answers", "heavy_answers", "reconnects",
+                                   "resumed", "refused", "frames",        "decoded"};
+  for (int run = 0; run < kMostRuns && !awaited.empty(); ++run) {
+    const auto report = bench::measureSoak(options, nowhere.get());
+    ASSERT_TRUE(report) << report.error().message;
+    SCOPED_TRACE(boost::json::serialize(*report));
+    ++options.seed;
+    std::erase_if(awaited, [&](const std::string& name) { return numberOf(*report, name) > 0.0; });
+    for (const char* none : {"unanswered", "undecodable", "nonfinite", "watchdog_nonfinite"})
+      EXPECT_EQ(numberOf(*report, none), 0.0) << none;
+    EXPECT_TRUE(report->at("ended").as_object().empty()) << "the server ended connections of its clients";
+    EXPECT_LE(numberOf(*report, "answer_p50_ms"), numberOf(*report, "answer_p99_ms"));
+    EXPECT_LE(numberOf(*report, "answer_p99_ms"), numberOf(*report, "answer_max_ms"));
+    EXPECT_LE(numberOf(*report, "answers") + numberOf(*report, "heavy_answers"), numberOf(*report, "sent"));
+  }
+  EXPECT_THAT(awaited, testing::IsEmpty());
 }
 
 TEST_F(Soak, RefusesAUrlThatIsNone) {
