@@ -47,7 +47,7 @@ TEST_F(Soak, ComingAndGoingClientsAreAnswered) {
   options.level_changes_per_s = 2.0;
   const std::unique_ptr<std::FILE, Closer> nowhere(std::fopen("/dev/null", "w"));
   ASSERT_TRUE(nowhere);
-  // In five seconds in which a busy machine hardly runs, not all of it need happen: then it goes on.
+  // In five seconds in which a busy machine hardly runs, not all of it need happen: then it continues.
   constexpr int kMostRuns = 10;
   std::set<std::string> awaited = {"sent",    "answers", "heavy_answers", "reconnects",
                                    "resumed", "refused", "frames",        "decoded"};

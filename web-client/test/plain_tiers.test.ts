@@ -187,7 +187,7 @@ describe("a picture of a tank of particles in the tier minimal", () => {
 describe("a pixel of the plain programs", () => {
   it("reads at most two textures", () => {
     expect(readsOf(waterPlain, "OPEN_SEA", "BEACH", "SHORE", "FOAM")).toBeLessThanOrEqual(2);
-    expect(readsOf(waterPlain, "WALLS", "FOAM")).toBeLessThanOrEqual(2);
+    expect(readsOf(waterPlain, "FOAM")).toBeLessThanOrEqual(2);
     expect(readsOf(waterPlain, "SKIRT")).toBe(1);
     expect(readsOf(waterPlain, "OPEN_SEA", "DIVED")).toBeGreaterThan(2);
     expect(readsOf(fluidPlain)).toBe(2);

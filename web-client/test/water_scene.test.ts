@@ -132,7 +132,7 @@ describe("the list of passes", () => {
     expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray"]);
     expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
-    expect(names(kRooms["a flume"]!)).not.toContain("rain streaks");
+    expect(names(kRooms["a flume"]!)).toContain("rain streaks");
     expect(names(kRooms["a beach where water runs up"]!).slice(0, 3)).toEqual(["field", "shore", "foam"]);
     expect(names(kRooms["a harbor with everything"]!)).not.toContain("shore");
     const tank = names(kRooms["a tank of particles"]!);

@@ -38,7 +38,7 @@ import type { ShoreWetness } from "./shore/shore_wetness";
 import { GlassPass } from "./solids/glass_pass";
 import { LampsPass } from "./solids/lamps_pass";
 import { kInTextures, kOnCanvas, SolidsPass } from "./solids/solids_pass";
-import { isIndoors, makeSea } from "./solids/surroundings";
+import { makeSea } from "./solids/surroundings";
 import { CausticsPass } from "./water/caustics_pass";
 import { EdgesPass } from "./water/edges_pass";
 import { FieldPass } from "./water/field_pass";
@@ -96,7 +96,7 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const { glass } = solids.surroundings;
   const white = field && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
   const { ringTexelsCount, streaksCount } = quality.rain;
-  const isRainedOn = field !== undefined && greeting.wind !== undefined && !isIndoors(greeting);
+  const isRainedOn = field !== undefined && greeting.wind !== undefined;
   const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };

@@ -29,7 +29,7 @@ import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
 import type { Pole } from "./solids/gauge_poles";
 import { shownHeightM } from "./solids/glass_tank";
-import { isIndoors, viewOf } from "./solids/surroundings";
+import { isTank, viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
 
@@ -101,7 +101,7 @@ export class WaterScene {
     this.greeting = greeting;
     this.frames.enter(greeting.wave !== undefined, isSameWater);
     if (!isSameWater) this.wetness.clear();
-    this.sky.enter(isIndoors(greeting), greeting.waterType);
+    this.sky.enter(greeting.waterType);
     this.sky.hideBelowHorizon(greeting.setting === "openSea");
     this.daylight.setSceneHour(greeting.firstView?.hour ?? 12);
     this.daylight.setRoomStorm(greeting.wind?.levelRatio ?? 0, true);
@@ -252,7 +252,7 @@ export class WaterScene {
     const frame = this.frames.particles.newest();
     if (!frame) return undefined;
     const minYM = this.floorM()!;
-    return { ...view, sideM, widthM, withFloor: isIndoors(this.greeting), minYM, maxYM: firstView ? minYM + shownHeightM(this.greeting) : frame.maxM[1] + frame.radiusM };
+    return { ...view, sideM, widthM, withFloor: isTank(this.greeting), minYM, maxYM: firstView ? minYM + shownHeightM(this.greeting) : frame.maxM[1] + frame.radiusM };
   }
 
   /** Returns the level of the floor: that of the wave, or below the lowest of the newest particles. */
@@ -287,10 +287,9 @@ export class WaterScene {
   /** Returns the surface for picking: the newest elevations, or flat water where no frame has any. */
   shape(): WaterShape | undefined {
     if (!this.greeting) return undefined;
-    const { sideM, widthM, setting, wave, waterExtents } = this.greeting;
+    const { sideM, widthM, wave, waterExtents } = this.greeting;
     const floorM = this.floorM();
-    const hasPanes = setting === "glassTank" || setting === "flume";
-    const sides = { sideM, widthM, glassFromM: hasPanes ? floorM : undefined };
+    const sides = { sideM, widthM, glassFromM: isTank(this.greeting) ? floorM : undefined };
     const frame = this.newestSurface();
     const restingM = wave || floorM === undefined ? 0 : floorM + waterExtents.depthM;
     if (!frame) return { ...sides, minM: restingM, maxM: restingM, elevationAtM: () => restingM };

@@ -9,7 +9,6 @@ import { clearanceM } from "../scene/landscape/clearance";
 import { bedOf, depthAtM, insideM } from "../scene/landscape/terrain";
 import { clamp } from "../scene/maths/interpolate";
 import { makeFastRandom } from "../scene/maths/random";
-import { isIndoors } from "../scene/solids/surroundings";
 import { AreaTiles, kTileCount } from "./area_tiles";
 import { BoatWatch } from "./boat_watch";
 import { addFoam, addParticles } from "./breaking_watch";
@@ -205,7 +204,7 @@ export class WaterSound {
       this.offer(kKeys.cloud + n, xM, 0, zM, kCloudShare * Math.PI * radiusM * radiusM, kRainHz);
     }
     const { levelRatio = 0, dropsPerM2S = 0 } = this.greeting.wind ?? {};
-    const rain = isIndoors(this.greeting) ? 0 : kRainLevel * Math.sqrt(clamp((levelRatio * dropsPerM2S) / kHeaviestRain, 0, 1));
+    const rain = kRainLevel * Math.sqrt(clamp((levelRatio * dropsPerM2S) / kHeaviestRain, 0, 1));
     const number = this.beds.offer(kKeys.rain, rain);
     if (number >= 0) write(this.bedOffers[number]!, rain, 0, listener.isUnder ? 2000 : 16_000, kRainHz);
   }

@@ -62,7 +62,7 @@ export class FluidSurfacePass implements Pass {
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
       },
-      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "walls" && { OUTDOORS: 1 }) }, transparent: true },
+      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "cut" && { GLASS: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

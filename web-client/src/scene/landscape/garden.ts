@@ -1,17 +1,20 @@
-// The garden around a pool: a mown lawn, a border of shrubs and flowers, trees with sky between them, and furniture beside the water.
+// The garden around a pool or a tank: a mown lawn, a border of shrubs and flowers, trees with sky between them, and furniture beside the water.
 import { clamp } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addPlate, addRod, addTurned } from "../meshes/shapes";
 import { Foliage, type Leaves } from "./foliage";
 
 export interface GardenSize {
-  /** Half of the water along x and z. */
+  /** Half of the water, or of the free space around a tank, along x and z. */
   halfM: readonly [number, number];
-  /** Heights of the still water and of the deck. */
-  waterM: number;
+  /** Heights of the deck, and of the still water that ladders lead into; undefined: there are none. */
   deckM: number;
+  waterM?: number;
 }
 
+/** Width of the deck as a share of the border's distance, and at least. */
+const kDeckShare = 0.5;
+const kDeckLeastM = 2.4;
 /** Distance of the border from the water, in sides of the water, and its bounds. */
 const kAwaySides = 0.72;
 const kAwayLimitsM = [3.6, 8.5] as const;
@@ -21,6 +24,8 @@ const kLawnReachM = 600;
 const kStripeM = 1.1;
 const kSmallM = 8;
 
+const kDeck = [0.60, 0.52, 0.42] as const;
+const kSlabM = 0.8;
 const kLawns: readonly [Paint, Paint] = [[0.15, 0.25, 0.062, 0.9], [0.20, 0.31, 0.085, 0.9]];
 const kMeadow: Paint = [0.17, 0.26, 0.08, 1.4];
 const kBox: Leaves = [[0.10, 0.21, 0.045, 1.8], [0.21, 0.34, 0.075, 1.8]];
@@ -44,6 +49,11 @@ const kClay: Paint = [0.60, 0.27, 0.14, 0.5];
 export function gardenReach(sideM: number): { awayM: number; treeM: number } {
   const awayM = clamp(kAwaySides * sideM, ...kAwayLimitsM);
   return { awayM, treeM: (kTreeM * awayM) / kAwayLimitsM[1] };
+}
+
+/** Returns the width of the deck around water of this side, and its paint, whose fourth number is the side of a slab in sides of the water (tiles.frag). */
+export function deckOf(sideM: number): { widthM: number; paint: Paint } {
+  return { widthM: Math.max(kDeckShare * gardenReach(sideM).awayM, kDeckLeastM), paint: [...kDeck, Math.min(kSlabM / sideM, 1 / 8)] };
 }
 
 /** Positions beside one side of the water: along it, height, and outward from its edge. */
@@ -88,7 +98,7 @@ function addPot(builder: MeshBuilder, plants: Foliage, [xM, deckM, zM]: Point, l
 }
 
 /** A ladder of steel at the water's edge: two bent rails and three steps. */
-function addLadder(builder: MeshBuilder, at: Beside, alongM: number, { waterM, deckM }: GardenSize): void {
+function addLadder(builder: MeshBuilder, at: Beside, alongM: number, waterM: number, deckM: number): void {
   const footM = Math.max(waterM - 1, 0.1 * waterM);
   const handM = deckM + 0.82;
   for (const across of [-0.27, 0.27]) {
@@ -142,7 +152,7 @@ function addLawn(builder: MeshBuilder, yM: number, inner: readonly [number, numb
 
 /** Adds everything that stands on the deck and on the lawn. `deckWidthM`: of the deck around the water. */
 export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): void {
-  const { deckM, halfM } = size;
+  const { deckM, waterM, halfM } = size;
   const [halfX, halfZ] = halfM;
   const sideM = 2 * Math.max(halfX, halfZ);
   const { awayM, treeM } = gardenReach(sideM);
@@ -175,7 +185,7 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
       if (plain) plants.clump(middle, [0.8 * highM, 0.65 * highM, 0.8 * highM], kWood);
       else plants.crown(middle, 0.6 * highM, kWood);
     }
-    if (side === 0 || (isOpen && sideM > kSmallM)) addLadder(builder, at, 0.5 * half, size);
+    if (waterM !== undefined && (side === 0 || (isOpen && sideM > kSmallM))) addLadder(builder, at, 0.5 * half, waterM, deckM);
     // Beside a small pool, nothing stands where the first views come from.
     if (sideM < kSmallM && side >= 2) return;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;

@@ -11,15 +11,15 @@ import { makeRockGeometry } from "./rock_mesh";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** A bed in a tank is painted blue-green: shallow water over it has the colour of deep water. Its cut sides are of pale concrete and cannot be taken for water. */
-export const kTankBed = [0.045, 0.19, 0.25] as const;
-const kFill: Paint = [...kTankBed, 0.3];
-const kFillCut: Paint = [0.58, 0.57, 0.54, 0.35];
+/** Of a bed in a tank, which is painted like a pool, and its cut sides. */
+export const kTankBed = [0.13, 0.42, 0.54] as const;
+const kPainted: Paint = [...kTankBed, 0.2];
+const kConcrete: Paint = [0.64, 0.61, 0.55, 0.35];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
 /** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
-export function makeGroundGeometry(bed: Bed, cellsCount: number, isIndoors = false): BufferGeometry {
+export function makeGroundGeometry(bed: Bed, cellsCount: number, isTank = false): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
   const floorM = -bed.depthM - kFloorDropSides * longSideM(bed);
   const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
@@ -28,10 +28,10 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number, isIndoors = fal
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
   const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, isIndoors ? kFill : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  builder.grid(rows, isTank ? kPainted : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
-  for (const edge of edges) builder.grid([edge.map(down), edge], isIndoors ? kFillCut : kCut);
+  for (const edge of edges) builder.grid([edge.map(down), edge], isTank ? kConcrete : kCut);
   return builder.build();
 }
 

@@ -68,17 +68,6 @@ const kNoonSky = kSkies.at(-1)!;
 /** Storm level from which the sky begins to change. A breeze is under a clear sky. */
 const kFairStorm = 0.3;
 
-/** Direct light in a room at noon: white, so that white water is. */
-const kStudioKey: Rgb = [1.22, 1.25, 1.30];
-/** Light from all sides in a room over that under the sky: dark walls send little back. */
-const kStudioAmbient = 0.75;
-/** A room by day is shown brighter than its light, as photographs of rooms are. */
-const kStudioExposure = 1.5;
-/** Light of lamps in a room, which adds to the daylight. */
-const kLampKey: Rgb = [0.52, 0.43, 0.30];
-const kLampAmbientUp: Rgb = [0.21, 0.18, 0.14];
-const kLampAmbientDown: Rgb = [0.085, 0.075, 0.06];
-
 function unit([x, y, z]: Rgb): Rgb {
   const length = Math.hypot(x, y, z);
   return [x / length, y / length, z / length];
@@ -154,27 +143,6 @@ export function lightAt(hour: number, storm: number): Light {
   };
 }
 
-/** Returns the light in a room: as bright as the hour, from one side, and lamps are on when it is dim. */
-export function indoors(light: Light): Light {
-  const daylight = Math.min(luminance(light.ambientUp) / luminance(kNoonSky.ambientUp), 1);
-  const lamps = smoothstep(0.9, 0.2, daylight);
-  const from = (noon: Rgb, lamp: Rgb): Rgb => {
-    const tint = mapRgb(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b);
-    return mapRgb(mapRgb(noon, tint, (a, b) => a * b), lamp, (a, b) => a + lamps * b);
-  };
-  return {
-    ...light,
-    sunDirection: kNoon,
-    keyDirection: kNoon,
-    sharp: mix(light.sharp, 1, lamps),
-    stars: 0,
-    key: from(kStudioKey, kLampKey),
-    ambientUp: from(scale(kNoonSky.ambientUp, kStudioAmbient), kLampAmbientUp),
-    ambientDown: from(scale(kNoonSky.ambientDown, kStudioAmbient), kLampAmbientDown),
-    exposure: mix(kStudioExposure * light.exposure, 1, lamps),
-  };
-}
-
 /** Stars are seen when the sun is low: none above the first sine of its altitude, all below the second. */
 const kStarSines = [-0.10, -0.26] as const;
 
@@ -203,8 +171,6 @@ interface DerivedLight {
   water: Rgb;
   /** Direct light below level water on a surface that faces its refracted direction, relative to noon's times noon's colour. */
   keyBelow: Rgb;
-  /** Light in a room, relative to noon. */
-  room: Rgb;
 }
 
 /** Index of refraction of air over that of water. */
@@ -225,7 +191,6 @@ export function derive(light: Light): DerivedLight {
   const clouds = light.cloudCover - 0.1;
   const onLevel = ({ key, ambientUp }: Pick<Light, "key" | "ambientUp">, sine: number): Rgb => mapRgb(key, ambientUp, (k, a) => 1.25 * k * sine + a);
   return {
-    room: mapRgb(light.ambientUp, kNoonSky.ambientUp, (a, b) => a / b),
     veiled: [mixRgb(light.zenith, light.cloud, clouds), mixRgb(light.middle, light.cloud, clouds), mixRgb(light.horizon, light.cloud, 0.3 * clouds)],
     water: mapRgb(onLevel(light, light.keyDirection[1]), onLevel(kNoonSky, kNoon[1]), (a, b) => a / b),
     keyBelow: scale(light.key, throughSurface(light.keyDirection[1]) / throughSurface(kNoon[1])),

@@ -1,4 +1,4 @@
-// The sky, or a room: baked into a cube map that the dome, the water's reflection and the particles' gloss read, and the light of the
+// The sky: baked into a cube map that the dome, the water's reflection and the particles' gloss read, and the light of the
 // hour and the weather (light/light.ts) as uniforms of every material. A new light shows at once in the uniforms; the cube map follows a
 // few times per second.
 import {
@@ -22,7 +22,7 @@ import type { WaterTypeName } from "../../../client/codec/scene_info";
 import { makeFullscreenGeometry } from "../drawing/fullscreen";
 import type { Quality } from "../drawing/quality";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
-import { derive, displayed, indoors, lightAt, type Light, type Rgb } from "./light";
+import { derive, displayed, lightAt, type Light, type Rgb } from "./light";
 import { waterOpticsOf } from "./water_optics";
 
 const kFaceCount = 512;
@@ -46,11 +46,7 @@ export class Sky {
   private readonly domeUniforms: Uniforms;
   private readonly bakeUniforms: Uniforms;
   private readonly box: Mesh<BoxGeometry, RawShaderMaterial>;
-  private readonly outdoors: RawShaderMaterial;
-  private readonly room: RawShaderMaterial;
   private readonly scene = new Scene();
-  private light = lightAt(12, 0);
-  private isRoom = false;
   private isStale = true;
   private bakedS = Number.NEGATIVE_INFINITY;
 
@@ -97,18 +93,14 @@ export class Sky {
       u_cloud_lit: vector(),
       u_cloud_cover: { value: 0 },
       u_ambient_up: this.uniforms["u_ambient_up"]!,
-      u_room_light: vector(),
       u_lowest: { value: -1 },
     };
-    this.outdoors = makeMaterial("skyBake", this.bakeUniforms, { side: BackSide, defines: plain ? { PLAIN: 1 } : {} });
-    this.room = makeMaterial("roomBake", this.bakeUniforms, { side: BackSide });
-    this.box = new Mesh(new BoxGeometry(2, 2, 2), this.outdoors);
+    this.box = new Mesh(new BoxGeometry(2, 2, 2), makeMaterial("skyBake", this.bakeUniforms, { side: BackSide, defines: plain ? { PLAIN: 1 } : {} }));
     this.scene.add(this.box);
     this.domeUniforms = {
       ...this.uniforms,
       u_inverse_projection: { value: new Matrix4() },
       u_camera_world: { value: new Matrix4() },
-      u_has_disc: { value: true },
       u_stars: { value: 0 },
       u_lowest: this.bakeUniforms["u_lowest"]!,
     };
@@ -116,24 +108,19 @@ export class Sky {
     this.dome.frustumCulled = false;
     // After the solids: only the remaining pixels are shaded.
     this.dome.renderOrder = 10;
-    this.setLight(this.light);
+    this.setLight(lightAt(12, 0));
   }
 
-  /** Chooses the open sky or a room, which is baked, and the water; needed again after the WebGL context was restored. */
-  enter(isRoom: boolean, waterType: WaterTypeName): void {
-    this.isRoom = isRoom;
-    const { lossPerM, scattered, bubbly, crest } = waterOpticsOf(isRoom && waterType === "pool" ? "dyed" : waterType);
+  /** Takes the colours of the scene's water; needed again after the WebGL context was restored, with which the cube map is lost. */
+  enter(waterType: WaterTypeName): void {
+    const { lossPerM, scattered, bubbly, crest } = waterOpticsOf(waterType);
     Object.entries({ u_loss_per_m: lossPerM, u_scattered: scattered, u_bubbly: bubbly, u_crest: crest }).forEach(([name, rgb]) => (this.uniforms[name]!.value as Vector3).set(...rgb));
-    this.box.material = isRoom ? this.room : this.outdoors;
     this.bakedS = Number.NEGATIVE_INFINITY;
-    this.setLight(this.light);
+    this.isStale = true;
   }
 
-  /** Takes the light of the open air. */
-  setLight(outside: Light): void {
-    this.light = outside;
-    const light = this.isRoom ? indoors(outside) : outside;
-    const { veiled, water, keyBelow, room } = derive(light);
+  setLight(light: Light): void {
+    const { veiled, water, keyBelow } = derive(light);
     const set = (uniforms: Uniforms, name: string, rgb: Rgb): void => void (uniforms[name]!.value as Vector3).set(...rgb);
     this.sunDirection.set(...light.keyDirection);
     set(this.uniforms, "u_sun_light", light.key);
@@ -153,9 +140,7 @@ export class Sky {
     set(this.bakeUniforms, "u_cloud", light.cloud);
     set(this.bakeUniforms, "u_cloud_lit", light.cloudLit);
     this.bakeUniforms["u_cloud_cover"]!.value = light.cloudCover;
-    set(this.bakeUniforms, "u_room_light", room);
     this.uniforms["u_sun_sharp"]!.value = light.sharp;
-    this.domeUniforms["u_has_disc"]!.value = !this.isRoom;
     this.domeUniforms["u_stars"]!.value = light.stars;
     this.isStale = true;
   }
@@ -191,8 +176,7 @@ export class Sky {
   dispose(): void {
     this.cube.dispose();
     this.box.geometry.dispose();
-    this.outdoors.dispose();
-    this.room.dispose();
+    this.box.material.dispose();
     this.dome.geometry.dispose();
     (this.dome.material as { dispose(): void }).dispose();
   }

@@ -13,14 +13,12 @@ interface Properties {
 
 /** Pure water absorbs (0.340, 0.0565, 0.0092) /m (Pope & Fry 1997). The rest is plankton, silt and what rivers bring, within the ranges that
  *  Mobley (Light and Water, 1994, chapter 3) reports. */
-const kProperties: Record<WaterTypeName | "dyed", Properties> = {
+const kProperties: Record<WaterTypeName, Properties> = {
   pool: { absorption: [0.340, 0.065, 0.026], backscattering: [0.0060, 0.0120, 0.0180] },
   lagoon: { absorption: [0.345, 0.060, 0.022], backscattering: [0.0050, 0.0085, 0.0130] },
   // So deep that no bed is seen.
   ocean: { absorption: [0.350, 0.068, 0.030], backscattering: [0.0016, 0.0028, 0.0052], realPerModelLength: 20 },
   coast: { absorption: [0.375, 0.090, 0.082], backscattering: [0.0045, 0.0070, 0.0078] },
-  // With a green-blue dye and a little milk, as in experiments: bright before a dark room.
-  dyed: { absorption: [0.90, 0.10, 0.034], backscattering: [0.008, 0.055, 0.075] },
   harbor: { absorption: [0.460, 0.140, 0.165], backscattering: [0.0080, 0.0155, 0.0165] },
 };
 
@@ -38,7 +36,7 @@ const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
 /** Way through a tank, for its colour (m). */
-const kTankWayM = 0.9;
+const kTankWayM = 2.5;
 
 /** Depth of a pool whose lengths count as they are (m). */
 const kPoolDeepM = 1.5;
@@ -60,7 +58,7 @@ export interface WaterOptics {
   crest: Rgb;
 }
 
-export function waterOpticsOf(type: WaterTypeName | "dyed"): WaterOptics {
+export function waterOpticsOf(type: WaterTypeName): WaterOptics {
   const { absorption, backscattering, realPerModelLength = kRealPerModelLength } = kProperties[type];
   const of = (value: (a: number, b: number) => number): Rgb => mapRgb(absorption, backscattering, value);
   return {

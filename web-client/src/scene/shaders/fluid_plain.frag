@@ -1,4 +1,4 @@
-// The mesh of a tank's particles, blended over the solids on the canvas (premultiplied): the room in its mirror, the light from below it from
+// The mesh of a tank's particles, blended over the solids on the canvas (premultiplied): the sky in its mirror, the light from below it from
 // the vertices, and white water torn by the noise. There are no branches: software renderers execute both sides of one.
 #include <sky>
 
@@ -19,9 +19,9 @@ void main() {
   float past2 = past * past;
   float fresnel = (0.03 + 0.9 * past2 * past2 * past) * (1.0 - 0.8 * v_white_pane.y);
   vec3 mirrored = v_ray - (2.0 * along) * normal;
-  vec3 room = toDisplay(textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 0.0).rgb);
+  vec3 sky = toDisplay(textureLod(u_sky, vec3(mirrored.x, abs(mirrored.y), mirrored.z), 0.0).rgb);
   float glint = clamp(1.0 - 60.0 * (1.0 - dot(mirrored, u_sun_direction)), 0.0, 1.0) * (1.0 - v_white_pane.y);
-  vec3 light = mix(v_under.rgb, room, fresnel) + u_displayed_sun * (glint * glint * 0.5);
+  vec3 light = mix(v_under.rgb, sky, fresnel) + u_displayed_sun * (glint * glint * 0.5);
   float seen = v_under.a * (1.0 - fresnel);
   float lace = textureLod(u_noise, v_at_lace, 0.0).r;
   float white = 0.9 * clamp(2.5 * (lace - 1.0 + 1.4 * v_white_pane.x), 0.0, 1.0);

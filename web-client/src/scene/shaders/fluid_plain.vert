@@ -19,7 +19,7 @@ out vec3 v_normal;
 out vec2 v_at_lace;  // on the noise
 out vec2 v_white_pane;  // white share; 1 at a pane
 
-// Share of the light in the room that what is behind the water sends on.
+// Share of the light from all sides that what is behind the water sends on.
 const float kBehind = 0.3;
 
 void main() {
@@ -35,7 +35,7 @@ void main() {
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * (1.2 + 2.2 * sun);
   float against_sun = max(dot(v_ray, u_sun_direction), 0.0);
   scattered += u_crest * u_sun_light * (0.35 * against_sun * against_sun);
-  // Blending has one share for all colours: the light of a room that is lit evenly makes up for the difference.
+  // Blending has one share for all colours: light from all sides makes up for the difference.
   float seen = min(passed.r, min(passed.g, passed.b));
   vec3 light = scattered * (1.0 - passed) + kBehind * (u_ambient_up + u_ambient_down) * (passed - seen);
   v_under = vec4(toDisplay(light / max(1.0 - seen, 0.02)) * (1.0 - seen), seen);

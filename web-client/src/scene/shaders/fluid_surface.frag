@@ -3,7 +3,7 @@
 // absorbed and scattered (water_optics.glsl), and white water hides it.
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
-// volume is a tank with walls of glass, or with OUTDOORS a pool. AGAIN: a ray that has left the liquid may enter it again. RIPPLES: the
+// volume is a pool, or with GLASS a tank. AGAIN: a ray that has left the liquid may enter it again. RIPPLES: the
 // surface mirrors with waves too short for particles.
 #include <sky>
 #include <water_optics>
@@ -14,7 +14,7 @@ const float kGlint = 1800.0, kGleam = 0.12;  // ripples spread the sun
 #else
 const float kGlint = 700.0, kGleam = 0.5;
 #endif
-#ifdef OUTDOORS
+#ifndef WAVE
 #include <border>
 #endif
 
@@ -56,7 +56,6 @@ const float kRoom = 0.25;              // share of the way to the picture's edge
 const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
 const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
-const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 const vec2 kFrothSun = vec2(0.0, 1.05);
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
@@ -65,35 +64,20 @@ const float kSlopeRadii = 3.0;
 const float kRoom = 1.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
-#ifdef OUTDOORS
-#ifdef AGAIN
+#ifdef GLASS
+const float kWhiteness = 0.22;  // of broken water at a pane
+#elif defined(AGAIN)
 const float kWhiteness = 0.035;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif
-const vec3 kFroth = vec3(0.93, 0.96, 0.97);
-#else
-const float kWhiteness = 0.25;
-const vec3 kFroth = vec3(0.90, 0.98, 1.03);
-const float kShadeRadii = 30.0;
-// Light in a tank's water from behind it, which is lost per particle radius, and from all sides.
-const float kFromBehind = 2.5;
-const float kAwayLit = 0.3, kTowardLit = 1.15;
-const vec3 kLossPerRadius = vec3(0.15, 0.065, 0.05), kFromSides = vec3(0.18, 0.24, 0.36);
-#endif
 const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 #endif
 
-#if defined(WAVE) || defined(OUTDOORS)
+const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 const float kAwayLit = 0.5, kTowardLit = 1.1;
-#endif
-
-// Mip level of what is mirrored: clouds are blurred, windows are not.
-#if defined(WAVE) || defined(OUTDOORS)
+// Mip level of what is mirrored: clouds are blurred.
 const float kMirrorLevel = 4.0;
-#else
-const float kMirrorLevel = 2.0;
-#endif
 
 vec3 mirroredAlong(vec3 to) { return textureLod(u_sky, vec3(to.x, abs(to.y), to.z), kMirrorLevel).rgb; }
 
@@ -171,15 +155,6 @@ float densityAt(vec3 at_m) {
 #endif
 }
 
-#if !defined(WAVE) && !defined(OUTDOORS)
-// Length of the liquid between a position and the light, in particle radii, up to kShadeRadii.
-float shadeAt(vec3 at_m) {
-  float length_radii = 0.0;
-  for (float radii = 2.5; radii < kShadeRadii; radii *= 1.9) length_radii += 0.65 * radii * smoothstep(0.2, 0.7, volumeAt(at_m + radii * u_radius_m * u_sun_direction).r);
-  return length_radii;
-}
-#endif
-
 vec3 normalAt(vec3 at_m) {
   vec2 apart_m = vec2(kSlopeRadii * u_radius_m, 0.0);
   vec3 slope = vec3(densityAt(at_m + apart_m.xyy) - densityAt(at_m - apart_m.xyy), densityAt(at_m + apart_m.yxy) - densityAt(at_m - apart_m.yxy), densityAt(at_m + apart_m.yyx) - densityAt(at_m - apart_m.yyx));
@@ -212,7 +187,7 @@ vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
   return mix(texture(u_behind, shown).rgb, textureLod(u_sky, ray, 1.0).rgb, is_sky);
 }
 
-#ifdef OUTDOORS
+#ifndef WAVE
 // The garden, and the sky over it, that a ray from the surface meets: as far as they are on the screen.
 vec3 gardenLight(vec3 from, vec3 ray) {
   vec3 sky = behindShrubs(mirroredAlong(ray), abs(ray.y));
@@ -356,22 +331,15 @@ void main() {
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * mix(kAwayLit, kTowardLit, sun);
-#if !defined(WAVE) && !defined(OUTDOORS)
-  scattered *= kFromSides + kFromBehind * exp(-kLossPerRadius * shadeAt(surface + bent * min(0.5 * length_m, 4.0 * u_radius_m)));
-#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
-#if !defined(WAVE) && !defined(OUTDOORS)
-  // Through glass its bubbles are seen from near.
-  white_m *= clamp(1.5 * lumps(4.0 * surface / u_radius_m) + 0.25, 0.35, 1.8);
-#endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-#ifdef OUTDOORS
+#ifndef WAVE
   vec3 mirrored_light = gardenLight(surface, mirrored);
 #else
   vec3 mirrored_light = mirroredAlong(mirrored);

@@ -19,7 +19,16 @@ float shownFoam(float streamed) {
   return streamed * (0.65 + 0.35 * streamed * streamed);
 #else
   // The low waves of a tank are seen from near.
-  return min(1.25 * streamed, 1.0);
+  return smoothstep(0.0, 0.65, streamed);
+#endif
+}
+
+// Shift of the lace per slope, m. The large breakers of a sea tear it; the same on small, steep waves would fold it into rings.
+float shiftedFoam() {
+#ifdef OPEN_SEA
+  return 0.6;
+#else
+  return 0.15 * u_lace_m;
 #endif
 }
 

@@ -1,4 +1,4 @@
-// A pane of glass: the room reflected by Fresnel's equations, a little green in its thickness; its cut edges collect light. Blended: the
+// A pane of glass: the sky reflected by Fresnel's equations, a little green in its thickness; its cut edges collect light. Blended: the
 // colour is added to what is behind times alpha.
 #include <sky>
 
@@ -8,7 +8,7 @@ in vec4 v_color;
 uniform vec3 u_camera_m;
 layout(location = 0) out vec4 color;
 
-const float kBrightest = 0.12;  // of what a pane mirrors: brighter lamps would be bars across what is behind it
+const float kBrightest = 0.2;  // of what a pane mirrors: the sky would be a veil before the water
 
 const vec3 kTint = vec3(0.008, 0.018, 0.02);  // added by each face: a pane is seen, not only its edges
 
@@ -23,7 +23,7 @@ void main() {
   vec3 mirrored = toDisplay(min(skyLight(reflect(ray, normal)), vec3(kBrightest)) * fresnel);
   color = vec4(mirrored * mirrored + kTint, 0.98 * (1.0 - fresnel));
   if (v_color.a > 0.5) {
-    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.12 * min(textureLod(u_sky, reflect(ray, normal), 4.0).rgb, vec3(kBrightest)));
+    vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.12 * textureLod(u_sky, reflect(ray, normal), 4.0).rgb);
     color = vec4(0.7 * edge, 0.3);
   }
 }

@@ -43,7 +43,6 @@ import fluidWords from "./fluid_words.glsl?raw";
 import frothFrag from "./froth.frag?raw";
 import fullscreenVert from "./fullscreen.vert?raw";
 import glassFrag from "./glass.frag?raw";
-import hallFloorFrag from "./hall_floor.frag?raw";
 import glitter from "./glitter.glsl?raw";
 import instance from "./instance.glsl?raw";
 import lampFrag from "./lamp.frag?raw";
@@ -63,7 +62,6 @@ import rainRingVert from "./rain_ring.vert?raw";
 import rainStreakFrag from "./rain_streak.frag?raw";
 import rainStreakVert from "./rain_streak.vert?raw";
 import ripples from "./ripples.glsl?raw";
-import roomBakeFrag from "./room_bake.frag?raw";
 import seaBlend from "./sea_blend.glsl?raw";
 import seaTileFrag from "./sea_tile.frag?raw";
 import shadow from "./shadow.glsl?raw";
@@ -110,7 +108,6 @@ const kPrograms = {
   fluidVolume: [fluidVolumeVert, fluidVolumeFrag],
   froth: [whitewaterVert, frothFrag],
   glass: [solidVert, glassFrag],
-  hallFloor: [solidVert, hallFloorFrag],
   lamp: [lampVert, lampFrag],
   level: [fullscreenVert, levelFrag],
   lookParticle: [lookParticleVert, lookParticleFrag],
@@ -120,7 +117,6 @@ const kPrograms = {
   presentBelow: [skyDomeVert, presentBelowFrag],
   rainRing: [rainRingVert, rainRingFrag],
   rainStreak: [rainStreakVert, rainStreakFrag],
-  roomBake: [skyBakeVert, roomBakeFrag],
   seaTile: [fullscreenVert, seaTileFrag],
   shadow: [solidVert, shadowFrag],
   shore: [fullscreenVert, shoreFrag],

@@ -1,8 +1,7 @@
 // Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, SKIRT, MIRROR as there.
-#ifdef RIPPLES
+#ifndef OPEN_SEA
 #include <border>
 #endif
-#if defined(OPEN_SEA) || defined(RIPPLES)
 uniform vec3 u_veiled_sky[3];  // zenith, middle, horizon
 uniform vec3 u_glow;
 // Share of the mirrored sky without single clouds: waves finer than the ripples blur them.
@@ -24,22 +23,13 @@ vec3 veiledSky(vec3 direction) {
 #endif
   return sky;
 }
-#endif
-
-// Of a room's lamps: mip level, and the most light.
-const float kTubesLevel = 3.5, kBrightestTube = 0.4;
 
 // The sky as a surface mirrors it whose slopes have this variance within a pixel.
 vec3 mirroredSky(vec3 direction, float variance) {
-#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
   // Mip levels whose texels are as wide as the reflection: twice the slopes, and the turn of the mirror over a pixel.
   vec3 turn = fwidth(direction);
   float spread = float(textureSize(u_sky, 0).x) * (1.3 * sqrt(variance) + 0.5 * length(turn));
   return mix(textureLod(u_sky, direction, log2(max(spread, 1.0))).rgb, veiledSky(direction), kVeiledShare);
-#else
-  // Tubes in a level surface would be bars.
-  return min(textureLod(u_sky, direction, kTubesLevel).rgb, vec3(kBrightestTube));
-#endif
 }
 
 #if defined(MIRROR) && !defined(SKIRT)
@@ -56,7 +46,7 @@ float behindScreen(vec3 at, out vec2 uv) {
   return viewZ(texture(u_behind_depth, uv).r) - view.z;
 }
 
-#ifdef RIPPLES
+#ifndef OPEN_SEA
 // Light of the garden and of the sky over it: what the screen shows where the ray meets the border, unless something stands before it.
 vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
   vec3 at = atBorder(from, direction, u_extent_m);
@@ -69,7 +59,7 @@ vec3 gardenLight(vec3 from, vec3 direction, vec3 sky) {
 // Light that arrives at `from` along `direction`: from a solid if the ray meets one on the screen, else from the sky.
 vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
   float reach_m = 0.3 * max(u_extent_m.x, u_extent_m.y);
-#ifdef RIPPLES
+#ifndef OPEN_SEA
   sky = gardenLight(from, direction, sky);
   // A ray that rises past a pool's walls does not meet the deck, of which the screen shows the upper side.
   reach_m = min(reach_m, 1.02 * wayOut(from, direction));

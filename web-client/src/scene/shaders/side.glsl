@@ -19,8 +19,8 @@ vec3 solidsAt(vec3 at) {
   return textureLod(u_behind, clamp(clip.xy / clip.w * 0.5 + 0.5, 0.001, 0.999), 0.0).rgb;
 }
 
-// Light that comes in a room along `to` to a position outside of the water.
-vec3 roomLight(vec3 from, vec3 to) {
+// Light that comes along `to` to a position outside of the water.
+vec3 lightAround(vec3 from, vec3 to) {
   float down_m = (from.y + u_depth_m) / max(-to.y, 1e-3);
   return mix(solidsAt(from + to * min(down_m, 30.0)), textureLod(u_sky, vec3(to.x, abs(to.y), to.z), 1.0).rgb, smoothstep(-0.06, 0.0, to.y));
 }
@@ -51,7 +51,7 @@ vec3 throughSide(vec3 from, vec3 ray, vec3 side, out float length_m) {
       outward.xz = sign(from.xz) * (left_m.x < left_m.y ? vec2(1.0, 0.0) : vec2(0.0, 1.0));
     } else break;
     vec3 leaving = refract(bent, -outward, 1.333);
-    if (dot(leaving, leaving) > 0.0) return roomLight(from, leaving);
+    if (dot(leaving, leaving) > 0.0) return lightAround(from, leaving);
     bent = reflect(bent, outward);
     from -= outward * 0.01 * u_depth_m;
   }
@@ -61,7 +61,7 @@ vec3 throughSide(vec3 from, vec3 ray, vec3 side, out float length_m) {
   return solidsAt(from);
 }
 
-// Light in the water of a tank `under_m` below its surface: lamps hang over it.
+// Light in the water of a tank `under_m` below its surface, from above.
 float litFromAbove(float under_m) { return 0.7 + 1.5 * exp(-under_m / (0.16 * u_depth_m)); }
 
 // `under_m`: below the surface. The bright line where it meets the glass, over a darker one.

@@ -4,7 +4,6 @@
 #include <far_land>
 
 in vec3 v_direction;
-uniform bool u_has_disc;
 uniform float u_stars;   // their brightness
 uniform float u_lowest;  // the sky is hidden below directions of this height
 layout(location = 0) out vec4 color;
@@ -41,7 +40,7 @@ void main() {
   if (direction.y < u_lowest) return;
   // The disc, and around it the light that air and lens spread.
   float toward_sun = max(dot(direction, u_sun_direction), 0.0);
-  float sun = u_has_disc ? u_sun_sharp * (12.0 * smoothstep(0.99986, 0.99996, toward_sun) + 1.6 * pow(toward_sun, 3000.0) + 0.35 * pow(toward_sun, 250.0)) : 0.0;
+  float sun = u_sun_sharp * (12.0 * smoothstep(0.99986, 0.99996, toward_sun) + 1.6 * pow(toward_sun, 3000.0) + 0.35 * pow(toward_sun, 250.0));
   vec4 sky = texture(u_sky, direction);
   sky.rgb += u_sun_light * sun;
   if (u_stars > 0.0) sky.rgb += u_stars * sky.a * starLight(direction, 0.6 * length(fwidth(direction)));

@@ -3,11 +3,10 @@
 
 in vec3 v_direction;
 in vec3 v_light;
-uniform bool u_has_disc;
 layout(location = 0) out vec4 color;
 
 void main() {
   float toward_sun = dot(v_direction, u_sun_direction) * inversesqrt(dot(v_direction, v_direction));
-  float disc = u_has_disc ? u_sun_sharp * smoothstep(0.99988, 0.99994, toward_sun) : 0.0;
+  float disc = u_sun_sharp * smoothstep(0.99988, 0.99994, toward_sun);
   color = vec4(mix(v_light, u_sun_light, disc), 1.0);
 }

@@ -1,7 +1,7 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
 // PLAIN: also for the display. DECK: around a pool, slabs of natural stone that are wet near the water.
-// LAMP: focused light has more contrast, as that of a single lamp. CAUSTICS: from a photon grid; otherwise from the surface's curvature.
+// CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
 #ifdef CAUSTICS
@@ -100,9 +100,6 @@ void main() {
 #endif
     // Walls take part of the light that the water scatters.
     float focus = focusedLight(crossed, deep_m);
-#ifdef LAMP
-    focus *= mix(0.4, 1.0, min(focus, 2.0) * 0.6);
-#endif
     sun = lit * (max(dot(normal, toward_sun), 0.0) * 0.9 + 0.1) * 0.96 * mix(1.0, focus, 0.88 * u_sun_sharp);
     ambient *= vec3(0.75, 0.95, 1.0) * (1.0 - 0.25 * smoothstep(0.0, 1.0, deep_m / (0.12 * max(u_extent_m.x, u_extent_m.y))));
   } else {

@@ -1,7 +1,7 @@
 // The water's surface in the plain tiers, blended over the solids on the canvas (premultiplied): clear colours and sharp edges at full resolution
 // instead of refraction and mirrored solids. Most of it comes from the vertices (water_plain.glsl), for the display, so that a pixel only mixes.
 // There are no branches: software renderers execute both sides of one.
-// SKIRT and OPEN_SEA as in water.frag; WALLS: of a pool, whose walls others draw.
+// SKIRT and OPEN_SEA as in water.frag.
 #include <sky>
 #ifdef SKIRT
 #include <water_optics>
@@ -95,12 +95,8 @@ void main() {
 #endif
   float glow = at_sun * at_sun;
   sky += u_displayed_glow * (glow * glow);
-#if defined(OPEN_SEA) || defined(WALLS)
   float glint = clamp(1.0 - 250.0 * (1.0 - at_sun), 0.0, 1.0);
   glint *= glint * (0.4 + fresnel);
-#else
-  const float glint = 0.0;  // a tank's lamps are wide
-#endif
   // Haze has the colour of the horizon, which water far out mirrors.
   fresnel = mix(fresnel, 1.0, v_shares.y);
   vec3 light = mix(v_under.rgb, sky, fresnel) + u_displayed_sun * glint;

@@ -1,9 +1,11 @@
-// A glass tank or flume on the floor of a dark laboratory, whose walls are the cube map that stands for the sky (room_bake.frag).
+// A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table.
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
+import { addGarden, deckOf } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
+import { addRod } from "../meshes/shapes";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
@@ -23,17 +25,25 @@ const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
 const kPlinth = 5;
 
-/** Sides of the tiles in the tank and of the slabs around it, as shares of its size; the slabs reach as far as one sees. */
+/** Side of the tiles in the tank: a share of its size. */
 const kTileShare = 1 / 24;
 /** Below waves the floor is even, for their light: tiles smaller than a pixel are not drawn. */
 const kNoTile = 1e-4;
-const kSlabShare = 1 / 5;
-const kHallSides = 40;
+/** What is kept free around a tank, from its middle and beside it. */
+const kFreeHalfM = 3;
+const kFreeBesideM = 1.6;
+/** A tank of which no side is longer stands on a table of this height, with room beside it. */
+const kTrayM = 1.2;
+const kTableM = 0.74;
+const kTableBesideM = 0.22;
+const kPlankM = 0.09;
+/** Height of its walls as a share of that of its glass. */
+const kWallHeight = 0.85;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
-export const kTankTile = [0.04, 0.13, 0.17] as const;
-/** Matt: polish would show single tubes. */
-const kBase: Paint = [0.10, 0.13, 0.16, 0.8];
+export const kTankTile = [0.20, 0.50, 0.60] as const;
+const kBase: Paint = [0.42, 0.43, 0.42, 0.6];
+const kTeak: Paint = [0.42, 0.25, 0.12, 0.5];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
@@ -48,6 +58,10 @@ interface TankSize {
 /** The length that glass and rim are shares of: the longer side. */
 function sizeM({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): number {
   return Math.min(Math.max(sideM, widthM), kSizeWidths * Math.min(sideM, widthM));
+}
+
+function isTray({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): boolean {
+  return Math.max(sideM, widthM) < kTrayM;
 }
 
 function isChannelOfParticles({ sideM, widthM, wave }: Pick<GreetingInfo, "sideM" | "widthM" | "wave">): boolean {
@@ -86,13 +100,54 @@ export function makeGlassGeometry({ sideM, widthM, heightM }: TankSize): BufferG
   return builder.build();
 }
 
-/** The plate under the tank. */
-export function makeBaseGeometry({ sideM, widthM }: TankSize): BufferGeometry {
-  const thickM = kGlassThickness * sizeM({ sideM, widthM });
+/** A table of planks along x that stands at `footM`. */
+function addTable(builder: MeshBuilder, halfX: number, halfZ: number, footM: number): void {
+  const topM = footM + kTableM;
+  const planksCount = Math.round((2 * halfZ) / kPlankM);
+  const planeM = halfZ / planksCount;
+  for (let n = 0; n < planksCount; ++n) {
+    const plank = { halfX, halfZ: 0.96 * planeM };
+    builder.block(0, (2 * n + 1 - planksCount) * planeM, { yM: topM - 0.03, ...plank }, { yM: topM, ...plank }, kTeak);
+  }
+  for (const x of [-1, 1]) for (const z of [-1, 1]) addRod(builder, [0.9 * x * halfX, footM, 0.9 * z * halfZ], [0.9 * x * halfX, topM - 0.03, 0.9 * z * halfZ], 0.035, kTeak);
+}
+
+/** The painted walls of a tray, in its glass. */
+function addWalls(builder: MeshBuilder, { sideM, widthM }: TankSize, topM: number): void {
+  const halfM = kGlassThickness * sizeM({ sideM, widthM });
+  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTankTile, 0.2]);
+  for (const side of [-1, 1]) {
+    wall(0, side * (widthM / 2 + 1.05 * halfM), sideM / 2 + 2.05 * halfM, halfM);
+    wall(side * (sideM / 2 + 1.05 * halfM), 0, halfM, widthM / 2);
+  }
+}
+
+/** Returns the height of the deck under the tank's floor. */
+function deckM(size: TankSize): number {
+  return -kPlinth * kGlassThickness * sizeM(size) - (isTray(size) ? kTableM : 0);
+}
+
+/** What the tank stands on: a plate, and under a tray a table. */
+export function makeBaseGeometry(size: TankSize): BufferGeometry {
+  const thickM = kGlassThickness * sizeM(size);
   const builder = new MeshBuilder();
-  const [halfX, halfZ] = [sideM / 2 + thickM, widthM / 2 + thickM];
+  const [halfX, halfZ] = [size.sideM / 2 + thickM, size.widthM / 2 + thickM];
   builder.block(0, 0, { yM: -kPlinth * thickM, halfX, halfZ }, { yM: -0.12 * thickM, halfX, halfZ }, kBase);
+  if (isTray(size)) {
+    addTable(builder, halfX + kTableBesideM, halfZ + kTableBesideM, deckM(size));
+    addWalls(builder, size, kWallHeight * size.heightM);
+  }
   return builder.build();
+}
+
+function makeGarden(size: TankSize, plain: boolean): { deck: BufferGeometry; planted: BufferGeometry } {
+  const halfM = [size.sideM, size.widthM].map((lengthM) => Math.max(lengthM / 2 + kFreeBesideM, kFreeHalfM)) as [number, number];
+  const sideM = 2 * Math.max(...halfM);
+  const { widthM, paint } = deckOf(sideM);
+  const planted = new MeshBuilder();
+  addGarden(planted, { halfM, deckM: deckM(size) }, widthM, plain);
+  const slab = (paint[3] * sideM) / Math.max(size.sideM, size.widthM);
+  return { deck: level(halfM[0] + widthM, deckM(size), halfM[1] + widthM, [paint[0], paint[1], paint[2], slab]), planted: planted.build() };
 }
 
 /** A level rectangle around the middle. */
@@ -106,13 +161,14 @@ export class GlassTank {
   /** What the tank stands on. */
   readonly group = new Group();
   readonly glass: Mesh<BufferGeometry, RawShaderMaterial>;
-  /** The tiles on the plate, and the floor of the hall. */
+  /** The tiles on the plate, and the deck. */
   private readonly floors: readonly Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly base: Mesh;
+  private readonly planted: Mesh;
   private readonly uniforms: Uniforms;
 
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
-    const { sky, solid, quality, noise, shadow } = context;
+    const { sky, solid, quality, shadow } = context;
     const size = tankSize(greeting);
     const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
     const thickM = kGlassThickness * sizeM(size);
@@ -131,15 +187,16 @@ export class GlassTank {
       }),
     );
     this.base = new Mesh(makeBaseGeometry(size), solid);
-    const hall = { ...this.uniforms, ...shadow, u_noise: { value: noise }, u_slab_m: { value: kSlabShare * sizeM(size) } };
-    const hallM = kHallSides * longM;
+    const { deck, planted } = makeGarden(size, quality.plain);
+    this.planted = new Mesh(planted, solid);
     this.floors = [
       new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, ((greeting.wave ? kNoTile : kTileShare) * sizeM(size)) / longM]), makeTiles(greeting, context)),
-      new Mesh(level(hallM, -kPlinth * thickM, hallM, kBase), makeMaterial("hallFloor", hall, { defines: { ...(quality.plain && { PLAIN: 1 }), ...(shadow && { SHADOWS: 1 }) } })),
+      new Mesh(deck, makeTiles(greeting, context, true)),
     ];
-    for (const mesh of [this.glass, this.base, ...this.floors]) mesh.frustumCulled = false;
+    for (const mesh of [this.glass, this.base, this.planted, ...this.floors]) mesh.frustumCulled = false;
     castsShadow(this.base);
-    this.group.add(this.base, ...this.floors);
+    if (shadow) castsShadow(this.planted);
+    this.group.add(this.base, this.planted, ...this.floors);
     this.setFloorM(greeting.wave ? -greeting.waterExtents.depthM : 0);
   }
 
@@ -156,6 +213,7 @@ export class GlassTank {
     this.glass.geometry.dispose();
     this.glass.material.dispose();
     this.base.geometry.dispose();
+    this.planted.geometry.dispose();
     for (const { geometry, material } of this.floors) {
       geometry.dispose();
       material.dispose();

@@ -2,7 +2,7 @@
 import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
-import { addGarden, gardenReach } from "../landscape/garden";
+import { addGarden, deckOf } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import type { SurroundingsContext } from "./surroundings_context";
@@ -12,21 +12,16 @@ import { makeTiles } from "./tiles";
 const kRimHeight = 0.026;
 const kRimMostM = 0.4;
 const kRimWidth = 0.028;
-/** Width of the deck as a share of the garden's border, and at least. */
-const kDeckShare = 0.5;
-const kDeckLeastM = 2.4;
 const kTilesPerSide = 36;
 /** Lane lines on the floor: their number, and width in sides. */
 const kLaneCount = 3;
 const kLaneWidth = 0.022;
-const kSlabM = 0.8;
 
 // The fourth number is the side of a tile, in sides of the water (tiles.frag).
 const kFloorTile: Paint = [0.36, 0.66, 0.72, 1 / kTilesPerSide];
 const kWallTile: Paint = [0.42, 0.70, 0.75, 1 / kTilesPerSide];
 const kBandTile: Paint = [0.05, 0.17, 0.36, 1 / kTilesPerSide];
 const kRim: Paint = [0.80, 0.77, 0.70, 1 / 20];
-const kDeck = [0.60, 0.52, 0.42] as const;
 /** Rounded edge of the coping: outward and upward, in its height. */
 const kCopingProfile = [[-1, -1], [-1, 0.3], [-0.8, 0.75], [-0.35, 1]] as const;
 
@@ -91,8 +86,8 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   const outerM = kRimWidth * sideM;
   addRing(deck, rimM + liftM, grown(-0.35 * liftM), grown(outerM), kRim);
   addWalls(deck, grown(outerM), rimM, rimM + liftM, false, kRim);
-  const deckM = Math.max(kDeckShare * gardenReach(sideM).awayM, kDeckLeastM);
-  addRing(deck, rimM, grown(outerM), grown(deckM), [...kDeck, Math.min(kSlabM / sideM, 1 / 8)]);
+  const { widthM: deckM, paint } = deckOf(sideM);
+  addRing(deck, rimM, grown(outerM), grown(deckM), paint);
   const planted = new MeshBuilder();
   addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
   return { tiled: tiled.build(), deck: deck.build(), planted: planted.build() };

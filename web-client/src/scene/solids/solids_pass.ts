@@ -28,7 +28,7 @@ import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
 import { kTankTile } from "./glass_tank";
-import { isIndoors, Surroundings } from "./surroundings";
+import { isTank, Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
 const kGrainSides = 1 / 16;
@@ -112,7 +112,7 @@ export class SolidsPass implements Pass {
       u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isIndoors(greeting) ? { TANK: 1 } : field && !quality.plain && { FIELD: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
+    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isTank(greeting) ? { TANK: 1 } : field && !quality.plain && { FIELD: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
     if (quality.plain) defines["VERTEX_LIT"] = 1;
     const program = quality.plain ? "solidPlain" : "solid";
     this.material = makeMaterial(program, uniforms, { defines });
@@ -214,7 +214,7 @@ export class SolidsPass implements Pass {
   draw(picture: Picture): void {
     const { renderer, camera, sizePx, shownS } = picture;
     this.place(shownS);
-    this.haze.value = isIndoors(this.greeting) ? 0 : hazeM(this.greeting);
+    this.haze.value = isTank(this.greeting) ? 0 : hazeM(this.greeting);
     this.sky.follow(camera);
     this.surroundings.look(camera.position);
     (this.material.uniforms["u_camera_m"]!.value as Vector3).copy(camera.position);

@@ -49,7 +49,7 @@ export function viewOf({ setting, wave, firstView }: GreetingInfo): Pick<ViewedB
   return { ...view, seenFrom, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
 }
 
-export function isIndoors({ setting }: GreetingInfo): boolean {
+export function isTank({ setting }: GreetingInfo): boolean {
   return setting === "glassTank" || setting === "flume";
 }
 
@@ -96,7 +96,7 @@ export class Surroundings {
       return;
     }
     if (obstacles.length > 0 || beaches.length > 0 || hasBed) {
-      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount, isIndoors(greeting)), obstacles, context.solid, plain);
+      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount, isTank(greeting)), obstacles, context.solid, plain);
       this.solids.push(this.landscape.group);
     }
     if (setting === "pool") {

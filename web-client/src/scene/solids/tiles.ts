@@ -6,7 +6,7 @@ import { makeMaterial } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 
 /** `isDeck`: of natural stone. Returns a material for geometries whose fourth number of a colour is the side of a tile, in sides of the water. The caller disposes it. */
-export function makeTiles({ setting, sideM, widthM }: Pick<GreetingInfo, "setting" | "sideM" | "widthM">, { sky, noise, field, caustics, shadow, quality }: SurroundingsContext, isDeck = false): RawShaderMaterial {
+export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "widthM">, { sky, noise, field, caustics, shadow, quality }: SurroundingsContext, isDeck = false): RawShaderMaterial {
   const uniforms = {
     ...sky.uniforms,
     ...caustics,
@@ -18,5 +18,5 @@ export function makeTiles({ setting, sideM, widthM }: Pick<GreetingInfo, "settin
     u_level_m: { value: 0 },
     u_has_water: { value: (field ?? caustics) !== undefined },
   };
-  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : isDeck ? { DECK: 1 } : setting !== "pool" && { LAMP: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
+  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : isDeck && { DECK: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
 }

@@ -15,13 +15,13 @@ import { colourRatio } from "../light/water_optics";
 import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
-import { isIndoors } from "../solids/surroundings";
+import { isTank } from "../solids/surroundings";
 import { BelowSurface } from "./below_surface";
 import { makeWaterGeometries } from "./water_grid";
 
 /** The water reflects solids as well as the sky. */
 function hasSolids({ hasBoats, obstacles, beaches, hasBed, setting }: GreetingInfo): boolean {
-  return hasBoats || obstacles.length > 0 || beaches.length > 0 || hasBed || setting === "pool";
+  return hasBoats || obstacles.length > 0 || beaches.length > 0 || hasBed || setting !== "openSea";
 }
 
 /** A breaker without anything that floats on it, whose place would no longer be that of the water under it. */
@@ -90,7 +90,7 @@ export class WaterPass implements Pass {
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
-      u_lace_m: { value: isIndoors(greeting) ? 0.28 * Math.min(bed.sideM, bed.widthM) : clamp(Math.min(longSideM(bed) / 15, 0.8 * Math.min(bed.sideM, bed.widthM)), 0.5, 9) },
+      u_lace_m: { value: isTank(greeting) ? 0.28 * Math.min(bed.sideM, bed.widthM) : clamp(Math.min(longSideM(bed) / 15, 0.8 * Math.min(bed.sideM, bed.widthM)), 0.5, 9) },
       u_froth: { value: froth },
       ...foam,
       ...rain,
@@ -109,7 +109,7 @@ export class WaterPass implements Pass {
     if (shadow) defines["SHADOWS"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     if (edge.kind === "sea" && !quality.plain && isDrawnUneven(greeting)) defines["UNEVEN"] = 1;
-    if (edge.kind === "walls") defines[edge.ripples ? "RIPPLES" : "WALLS"] = 1;
+    if (edge.kind === "walls" && edge.ripples) defines["RIPPLES"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
     // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.
     const surface = (side: Side, more: Record<string, number> = {}): RawShaderMaterial =>
@@ -118,7 +118,7 @@ export class WaterPass implements Pass {
         : makeMaterial("water", this.uniforms, { side, defines: { ...defines, ...more } });
     this.grid = new Mesh(top, surface(DoubleSide));
     if (quality.plain) this.plain = { surface: this.grid.material, dived: surface(FrontSide, { DIVED: 1 }) };
-    this.below = new BelowSurface(solids.floorAlbedo, isIndoors(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest, bed);
+    this.below = new BelowSurface(solids.floorAlbedo, isTank(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest, bed);
     this.underside = new Mesh(top, this.below.surface);
     this.meshes = [this.grid, this.underside];
     if (sides) this.meshes.push(new Mesh(sides, surface(FrontSide, { SKIRT: 1 })));
