@@ -26,7 +26,7 @@ const kShots = {
   breaking_wave_particles: { tick: 500 },
   breaking_wave_wave: { tick: 105 },
   dam_break: { tick: 104 },
-  flume: { tick: 906 },
+  flume: { tick: 918 },
   flotsam: { tick: 300 },
   harbor: { tick: 330 },
   island: { tick: 540, historyTicks: 300 },

@@ -189,8 +189,8 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     // Beside a small pool, nothing stands where the first views come from.
     if (sideM < kSmallM && side >= 2) return;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
-    addParasol(builder, at(groupM, deckM, seat + 0.9));
-    for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
+    if (waterM !== undefined) addParasol(builder, at(groupM, deckM, seat + 0.9));
+    for (const n of waterM !== undefined ? [0, 1] : []) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
     const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
     for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
   });

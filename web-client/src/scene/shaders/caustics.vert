@@ -1,5 +1,6 @@
 // A grid of the surface, each vertex moved to where its sunlight arrives at a depth. Drawn in the coordinates in which that light would
 // have crossed level water, so that still water gives the grid itself.
+#include <bicubic>
 in vec3 position;  // x, z in -1/2..1/2 over the square
 uniform sampler2D u_field;
 uniform vec3 u_sun_direction;
@@ -18,7 +19,7 @@ void main() {
 #ifdef TILE
   vec4 field = vec4(0.0, u_gain * textureLod(u_ripples, v_from_m / u_extent_m, 1.0).gb, 0.0);
 #else
-  vec4 field = textureLod(u_field, v_from_m / u_extent_m + 0.5, 0.0);
+  vec4 field = smoothTexel(u_field, v_from_m / u_extent_m + 0.5);
 #ifdef RIPPLES
   // Those that the grid resolves.
   field.gb += textureLod(u_ripples, v_from_m / u_tiles_m.y, 2.0).gb;

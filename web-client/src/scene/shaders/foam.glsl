@@ -23,15 +23,6 @@ float shownFoam(float streamed) {
 #endif
 }
 
-// Shift of the lace per slope, m. The large breakers of a sea tear it; the same on small, steep waves would fold it into rings.
-float shiftedFoam() {
-#ifdef OPEN_SEA
-  return 0.6;
-#else
-  return 0.15 * u_lace_m;
-#endif
-}
-
 // Light of foam of this `lace` on water with this `normal`. `blur`: width of a pixel in tiles of the lace.
 vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share, float blur) {
   vec2 toward_sun = u_sun_direction.xz * inversesqrt(dot(u_sun_direction.xz, u_sun_direction.xz) + 1e-4);

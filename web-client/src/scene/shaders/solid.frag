@@ -38,6 +38,8 @@ uniform sampler2D u_field;
 // Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
 const float kWetBandM = 0.11, kDarkBandM = 0.16;
 #endif
+// Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
+const float kLeavesGrain = 1.6, kLeavesTiles = 0.5;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
 const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 layout(location = 0) out vec4 color;
@@ -47,6 +49,7 @@ void main() {
   vec3 albedo = v_color.rgb;
   float grain = max(v_color.a, 0.0);
   float wet_film = 0.0;
+  float leaves = 0.5;
 #ifdef TANK
   float over_water_m = any(greaterThan(abs(v_world.xz), 0.5 * u_extent_m)) ? 1e3 : v_world.y;
 #else
@@ -68,6 +71,15 @@ void main() {
     float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
 #ifndef INSTANCES
+    if (grain > kLeavesGrain) {
+      // Leaves before the shade between them: the outline is torn where one looks along it.
+      vec2 leaves_at = at / (kLeavesTiles * grain_m);
+      leaves = texture(u_noise, leaves_at).r;
+      leaves = smoothstep(0.3, 0.7, 0.6 * leaves + 0.4 * texture(u_noise, leaves_at.yx / 2.3).r);
+      vec3 toward = normalize(u_camera_m - v_world);
+      if (dot(normal, toward) < 0.45 * (0.85 - leaves)) discard;
+      albedo *= 0.45 + 1.1 * leaves;
+    }
     if (u_haze_m > 0.0 && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
       // What grows on open land: scrub on dry sand, and woods and hedges on grass.
       float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71, kSharper).r;

@@ -365,7 +365,11 @@ void main() {
 #endif
 #endif
   if (foam > 0.01) {
-    vec2 at = v_world.xz - shiftedFoam() * field.gb;
+    vec2 at = v_world.xz;
+#ifdef OPEN_SEA
+    // Large breakers tear it; small, steep waves would fold it into rings.
+    at -= 0.6 * field.gb;
+#endif
     // The water's motion draws the lace out and curls it.
     vec2 curl = vec2(texture(u_noise, at.yx / (2.9 * u_lace_m) + 0.13).r, texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r);
     at += 0.2 * u_lace_m * (curl - 0.5);
