@@ -32,5 +32,5 @@ void main() {
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 froth = kFroth * (u_sun_light * mix(0.6, 1.2, sun * sun) + u_ambient_up);
-  color = vec4(toDisplay(mix(light, froth, 0.35 + 0.5 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
+  color = vec4(toDisplay(mix(light, froth, 0.2 + 0.6 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
 }

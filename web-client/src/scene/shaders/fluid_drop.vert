@@ -16,13 +16,13 @@ const float kAlone = 0.30, kAmongOthers = 0.55, kAmongWhite = 0.9;
 // Density (as streamed) of particles that are never apart from it.
 const float kDense = 0.7;
 // A drop is drawn as long as it flies in this time.
-const float kExposureS = 0.008;
+const float kExposureS = 0.012;
 const float kLeastPx = 1.6;
 const float kLargeM = 0.07;
 // Share of what is behind it that the mist around a white particle hides.
 const float kMist = 0.12;
 // Drops near the eye are not larger than this share of their distance: they would be flakes.
-const float kMostShare = 0.004;
+const float kMostShare = 0.003;
 
 vec4 hash(vec3 at) {
   vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
@@ -44,7 +44,7 @@ void main() {
   vec3 center_m = particle.center_m + (3.0 + 5.0 * strength * strength) * u_radius_m * (random.xyz - 0.5);
   // Few are large. The first stands for the mist among them.
   bool is_mist = u_drop == 0.0;
-  float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.04, 0.3, random.w * random.w * random.w * random.w);
+  float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.03, 0.3, random.w * random.w * random.w * random.w);
   if (is_mist) center_m = particle.center_m;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;
   if (-seen_m.z < 4.0 * u_radius_m) return;
@@ -53,7 +53,7 @@ void main() {
   vec2 flight_mps = (mat3(viewMatrix) * particle.velocity_mps).xy;
   float speed_mps = length(flight_mps);
   float width_px = 2.0 * radius_m * px_per_m;
-  float length_px = width_px + min(speed_mps * kExposureS, 3.0 * radius_m) * px_per_m;
+  float length_px = width_px + min(speed_mps * kExposureS, 6.0 * radius_m) * px_per_m;
   // What is thinner than a pixel covers a part of it, and what flies covers each place for a part of the time.
   v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
   width_px = max(width_px, kLeastPx);

@@ -67,7 +67,7 @@ const float kLaceRadii = 22.0;
 #ifdef GLASS
 const float kWhiteness = 0.22;  // of broken water at a pane
 #elif defined(AGAIN)
-const float kWhiteness = 0.035;  // of two sheets
+const float kWhiteness = 0.022;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif
