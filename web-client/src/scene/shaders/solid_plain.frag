@@ -2,10 +2,11 @@
 // the swash (SHORE).
 in vec3 v_light;
 in vec2 v_wet;
+in vec3 v_leaves;
+uniform sampler2D u_noise;
 #ifdef SHORE
 in vec3 v_world;
 in vec2 v_shore;
-uniform sampler2D u_noise;
 uniform float u_grain_m;  // size of one tile of the noise
 #endif
 layout(location = 0) out vec4 color;
@@ -15,7 +16,7 @@ void main() {
 #ifdef SHORE
   wet = max(wet, smoothstep(0.2, 0.4, v_shore.x));
 #endif
-  vec3 light = v_light * (1.0 - v_wet.y * wet);
+  vec3 light = v_light * ((1.0 - v_wet.y * wet) * (1.0 + v_leaves.z * (textureLod(u_noise, v_leaves.xy, 0.0).r - 0.5)));
 #ifdef SHORE
   if (v_shore.y > 0.02) {
     float lace = textureLod(u_noise, v_world.xz / (2.2 * u_grain_m), 0.0).r;

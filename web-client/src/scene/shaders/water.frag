@@ -325,8 +325,6 @@ void main() {
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, kSunSpread * lost_variance, facing);
 #endif
-#endif
-#ifndef SKIRT
 #ifdef UNEVEN
   vec2 place = unevenAt(v_unleaned_m) / u_extent_m + 0.5;
 #else
