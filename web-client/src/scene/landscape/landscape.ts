@@ -57,7 +57,7 @@ export class Landscape {
   private readonly lights: Light[] = [];
   private readonly geometries: BufferGeometry[] = [];
 
-  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. `isLandless`: of an open sea, with a lighthouse far away. */
+  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. `isLandless`: of an open sea, with a lighthouse and a sailing boat far away. */
   constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean, isLandless = false) {
     this.add(ground, material);
     if (isLandless) {
