@@ -49,7 +49,7 @@ function withoutUnusedText() {
       if (/\/gen\/spindrift\/v1\/\w+_pb\.ts$/.test(id)) return code.replace(/(?<=fileDesc\(")[^"]+/, withoutFieldOptions);
       if (id.endsWith("/wkt/gen/google/protobuf/descriptor_pb.js")) return code.replace(kEnum, "export var $1 = /* @__PURE__ */ (function ($1) {$2return $1;\n})({});");
       if (!id.endsWith("three.module.js")) return undefined;
-      const chunks = /^var (\w+) = "(?:[^"\\\n]|\\.)*";$/gm;
+      const chunks = /^(?:var|const) ([\w$]+) = "(?:[^"\\\n]|\\.)*";$/gm;
       const count = code.match(chunks)?.length ?? 0;
       if (count < 100) throw new Error(`${id}: expected over 100 shader chunks of three's own materials, found ${count}; look at withoutUnusedText()`);
       return code.replace(chunks, 'var $1 = "";');

@@ -6,6 +6,7 @@ import type { ObstacleInfo } from "../client/codec/scene_info";
 import { addBoatLamps, lampShare } from "../src/scene/boats/boat_lamps";
 import { kLampsMax, Lamps } from "../src/scene/light/lamps";
 import { beamHeadingRad, Landscape } from "../src/scene/landscape/landscape";
+import { makeSkerry } from "../src/scene/landscape/skerry";
 
 const boat = { boatId: 1, lengthM: 2.5, beamM: 1, heightM: 0.6, draughtM: 0.2 };
 
@@ -61,6 +62,20 @@ describe("the lamps of a picture", () => {
     const reach = lamps.geometry.getAttribute("a_reach");
     const beams = Array.from({ length: 6 }, (_, n) => new Vector3(reach.getX(n), reach.getY(n), reach.getZ(n))).filter((each) => each.length() > 0);
     expect(beams[0]!.clone().add(beams[1]!).length()).toBeCloseTo(0, 5);
+    landscape.dispose();
+  });
+
+  it.each([false, true])("hold the lighthouse of a sea without land, out of reach of its boats (plain: %s)", (plain) => {
+    const landscape = new Landscape({ sideM: 80, widthM: 80, depthM: 2, beaches: [] }, new BufferGeometry(), [], new RawShaderMaterial(), plain, true);
+    const lamps = new Lamps();
+    landscape.collectLamps(lamps, 2);
+    expect(lamps.lampsCount).toBe(1 + 2);
+    const { parts, lampM } = makeSkerry(80, 2, plain);
+    expect(lampM.y).toBeGreaterThan(5);
+    for (const part of parts) {
+      const { position } = part.attributes;
+      for (let n = 0; n < position!.count; ++n) expect(Math.hypot(position!.getX(n), position!.getZ(n))).toBeGreaterThan(2 * 80);
+    }
     landscape.dispose();
   });
 });

@@ -10,7 +10,7 @@ import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
 import { addTurned } from "../meshes/shapes";
 
 /** A mark's buoy: its radius over the distance in which it counts as passed, and the bounds of it [m]; its height in radii. */
-const kMarkShare = 0.16;
+const kMarkShare = 0.12;
 const kMarkLimitsM = [0.15, 1] as const;
 const kMarkRadii = 3.4;
 /** Floats of a goal: radius over its longer side, and its bounds [m]; most floats along a side. */
@@ -18,7 +18,7 @@ const kFloatShare = 0.028;
 const kFloatLimitsM = [0.08, 0.4] as const;
 const kFloatsMax = 9;
 
-const kMark: Paint = [0.92, 0.23, 0.02, 0];
+const kMark: Paint = [0.72, 0.16, 0.02, 0];
 const kNext: Paint = [0.95, 0.74, 0.02, 0];
 const kBand: Paint = [0.86, 0.87, 0.85, 0];
 const kTeams: Record<"red" | "blue", Paint> = { red: [0.75, 0.06, 0.07, 0], blue: [0.05, 0.20, 0.78, 0] };
@@ -47,7 +47,7 @@ function makeMark(mark: CourseMark, isNext: boolean, plain: boolean): BufferGeom
   const paint = isNext ? kNext : kMark;
   const at = (up: number, radius: number, its: Paint) => ({ yM: up * r, radiusM: radius * r, paint: its });
   const builder = new MeshBuilder();
-  addTurned(builder, [0, 0, 0], [at(-0.9, 0, paint), at(-0.8, 0.8, paint), at(0, 1, paint), at(1.1, 0.94, kBand), at(1.8, 0.86, paint), at(3, 0.6, paint), at(3.25, 0.45, paint), at(kMarkRadii, 0, paint)], plain ? 8 : 18);
+  addTurned(builder, [0, 0, 0], [at(-0.9, 0, paint), at(-0.8, 0.8, paint), at(0, 1, paint), at(1.1, 0.94, kBand), at(1.8, 0.86, paint), at(2.9, 0.66, paint), at(3.2, 0.54, paint), at(3.34, 0.36, paint), at(kMarkRadii, 0, paint)], plain ? 8 : 18);
   return builder.build();
 }
 

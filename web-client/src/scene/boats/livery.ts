@@ -23,7 +23,7 @@ export const kCanvas: Paint = [0.62, 0.57, 0.47, 0.4];
 
 /** Of boats without an owner; duller than the colours that the server gives to people. */
 const kSideColors: readonly Paint[] = [
-  [0.04, 0.13, 0.30, 0], [0.30, 0.05, 0.05, 0], [0.04, 0.22, 0.16, 0], [0.62, 0.60, 0.52, 0], [0.24, 0.26, 0.28, 0], [0.03, 0.20, 0.26, 0],
+  [0.03, 0.07, 0.15, 0], [0.20, 0.045, 0.04, 0], [0.035, 0.105, 0.08, 0], [0.60, 0.57, 0.48, 0], [0.20, 0.22, 0.23, 0], [0.07, 0.145, 0.20, 0],
 ];
 /** Paint reflects less than a screen's full colour. */
 const kPaintReflects = 0.8;
@@ -50,11 +50,11 @@ export interface BoatColors {
 export function liveryOf(kind: HullKind, boatId: number, colors: BoatColors | undefined): Livery {
   const own = (colors && paintOf(colors.owner)) || kSideColors[boatId % kSideColors.length]!;
   const side = (colors?.team && paintOf(colors.team)) || own;
-  const wood: Paint = [0.40, 0.22, 0.10, 0.3];
-  const cream: Paint = [0.80, 0.78, 0.70, 0];
-  const white: Paint = [0.86, 0.87, 0.85, 0];
-  const common = { bottom: [0.30, 0.05, 0.04, 0] as Paint, stripe: side === own ? white : own, side, transom: side, roof: own };
+  const wood: Paint = [0.27, 0.15, 0.075, 0.3];
+  const cream: Paint = [0.70, 0.67, 0.58, 0];
+  const white: Paint = [0.72, 0.72, 0.69, 0];
+  const common = { bottom: [0.20, 0.045, 0.035, 0] as Paint, stripe: side === own ? white : own, side, transom: side, roof: side === own ? cream : own };
   if (kind === "dinghy") return { ...common, bottom: white, stripe: own, transom: side === own ? wood : own, strake: side === own ? wood : own, gunwale: wood, inside: [0.52, 0.33, 0.17, 0.3], deck: [0.46, 0.30, 0.16, 0.5], house: cream };
-  if (kind === "launch") return { ...common, strake: wood, gunwale: wood, inside: white, deck: [0.55, 0.40, 0.24, 0.4], house: white };
-  return { ...common, strake: kBlack, gunwale: kBlack, inside: [0.62, 0.62, 0.58, 0], deck: [0.24, 0.30, 0.27, 0.5], house: cream, roof: [0.72, 0.73, 0.70, 0] };
+  if (kind === "launch") return { ...common, strake: wood, gunwale: wood, inside: cream, deck: [0.40, 0.29, 0.19, 0.4], house: white };
+  return { ...common, strake: kBlack, gunwale: kBlack, inside: [0.62, 0.62, 0.58, 0], deck: [0.24, 0.30, 0.27, 0.5], house: cream };
 }

@@ -1,6 +1,8 @@
 // The hull of a boat as one closed surface: outside (sides, transom, gunwale) and inside (inner sides, deck or floor boards), which share
 // the edges of the gunwale.
+import { mixPaint, shaded } from "../landscape/paints";
 import { clamp } from "../maths/interpolate";
+import { hash } from "../maths/random";
 import type { MeshBuilder, Band, Paint, Point } from "../meshes/mesh_builder";
 import type { HullLines } from "./lines";
 import type { Livery } from "./livery";
@@ -17,6 +19,16 @@ export function stationsOf(lines: HullLines, count: number): number[] {
 
 export const mirrored = ([x, y, z]: Point): Point => [x, y, -z];
 const middle = (a: Point): Point => [a[0], a[1], 0];
+
+/** What sea water and weather leave on paint. */
+const kGrime: Paint = [0.13, 0.12, 0.09, 0];
+
+/** Returns a band whose paint is uneven, grimy at its lower edge and in the strake's shade at its upper one. */
+function weathered({ paint, ...band }: Band): Band {
+  const last = band.to - band.from;
+  const at = (row: number, column: number): Paint => shaded(mixPaint(paint as Paint, kGrime, (row === 0 ? 0.22 : 0.06) * (0.4 + 1.2 * hash(row, column, 81))), row === last && last > 1 ? 0.8 : 1);
+  return { ...band, paint: at };
+}
 
 /** One row of points from stern to stem: its height between keel (0) and sheer (1) at a station, and how far it stands out. */
 interface Level {
@@ -82,10 +94,11 @@ export function addOutside(builder: MeshBuilder, lines: HullLines, livery: Liver
       return share === 0 ? ([x, y, 0] as Point) : ([x, y, z] as Point);
     }),
   );
-  builder.bands(rows, bands);
-  builder.bands(rows.map((row) => row.map(mirrored).reverse()), bands);
+  const worn = bands.map(weathered);
+  builder.bands(rows, worn);
+  builder.bands(rows.map((row) => row.map(mirrored).reverse()), worn);
   const transom = rows.map(([point]): Point[] => [mirrored(point!), middle(point!), point!]);
-  builder.bands(transom, bands.map((band) => (band.paint === livery.side ? { ...band, paint: livery.transom } : band)));
+  builder.bands(transom, bands.map((band) => weathered(band.paint === livery.side ? { ...band, paint: livery.transom } : band)));
   return rows.at(-1)!;
 }
 
@@ -132,15 +145,17 @@ export function addInside(builder: MeshBuilder, lines: HullLines, livery: Livery
   const back = (row: readonly Point[]): Point[] => [...row].reverse();
   builder.grid([flip(rims), flip(outer)], livery.gunwale);
   builder.grid([outer, rims], livery.gunwale);
-  builder.grid(walls.map(back), livery.inside);
-  builder.grid(walls.map(flip), livery.inside);
+  // Less light comes down to the floor, least into its corners.
+  const shade = (row: number): Paint => shaded(livery.inside, 0.5 + 0.25 * row);
+  builder.grid(walls.map(back), shade);
+  builder.grid(walls.map(flip), shade);
   const across = (point: Point): Point[] => [point, middle(point), mirrored(point)];
   builder.grid([across(rims[0]!), across(outer[0]!)], livery.gunwale);
   const sternRows = walls.map((row) => across(row[0]!));
   sternRows[0] = [...decks[0]!.rows[0]!].reverse();
-  builder.grid(sternRows, livery.inside);
+  builder.grid(sternRows, shade);
   decks.forEach(({ rows, floor }, n) => {
-    builder.grid(rows, floor.paint);
+    builder.grid(rows, (row, column) => shaded(floor.paint, (column === 1 ? 1 : 0.6) * (0.86 + 0.14 * hash(row, column, 82))));
     const next = decks[n + 1];
     if (next) builder.grid([rows.at(-1)!, next.rows[0]!], livery.inside);
   });

@@ -14,6 +14,8 @@ const kIron: Paint = [0.13, 0.13, 0.14, 0.2];
 const kWhite: Paint = [0.82, 0.82, 0.79, 0];
 const kRope: Paint = [0.50, 0.40, 0.25, 0.4];
 const kOrange: Paint = [0.80, 0.25, 0.02, 0];
+const kCut: Paint = [0.34, 0.24, 0.13, 0.7];
+const kHeart: Paint = [0.20, 0.13, 0.07, 0.7];
 const kEye: Paint = [0.015, 0.015, 0.015, 0];
 
 /** Sides of round things and rows of balls; the second for software renderers. */
@@ -188,21 +190,22 @@ function makeBuoy({ sidesCount }: Detail): BufferGeometry {
 }
 
 /** Six logs of unequal length, two boards across, lashed with rope. */
-function makeRaft({ sidesCount, isFine }: Detail): BufferGeometry {
+function makeRaft({ isFine }: Detail): BufferGeometry {
   const builder = new MeshBuilder();
   const logsCount = 6;
   const radius = 0.35 / logsCount;
-  const sides = Math.max(sidesCount / 2, 6);
+  const sides = isFine ? 12 : 6;
   for (let n = 0; n < logsCount; ++n) {
     const z = -0.35 + radius * (2 * n + 1);
     const half = 0.5 - 0.035 * hash(n, 1, 5);
-    const bark = own(0.75 + 0.3 * hash(n, 2, 5), 0.75);
-    const cut: Paint = [0.50, 0.36, 0.20, 0.5];
-    const thick = radius * (0.96 + 0.06 * hash(n, 3, 5));
-    addLying(builder, [{ yM: -half, radiusM: 0, paint: cut }, { yM: -half, radiusM: thick, paint: bark }, { yM: half, radiusM: thick, paint: cut }, { yM: half, radiusM: 0, paint: cut }], sides, 0, z);
+    // Trunks are uneven in thickness and colour; a cut has pale wood round a dark heart.
+    const trunk = Array.from({ length: isFine ? 7 : 2 }, (_, k, of = isFine ? 6 : 1): Turn => ({ yM: half * ((2 * k) / of - 1), radiusM: radius * (0.86 + 0.16 * hash(n, k, 3)), paint: own(0.5 + 0.4 * hash(n, k, 5), 0.75) }));
+    const cut = (end: Turn, share: number, paint: Paint): Turn => ({ ...end, radiusM: share * end.radiusM, paint });
+    const [first, last] = [trunk[0]!, trunk.at(-1)!];
+    addLying(builder, [cut(first, 0, kHeart), cut(first, 0.45, kCut), ...trunk.slice(0, -1), cut(last, 1, kCut), cut(last, 0.45, kHeart), cut(last, 0, kHeart)], sides, 0, z);
   }
   for (const x of [-0.32, 0.32]) {
-    addPlate(builder, [[x - 0.05, 0.082, 0.35], [x + 0.05, 0.082, 0.35], [x + 0.05, 0.082, -0.35], [x - 0.05, 0.082, -0.35]], 0.03, own(1.15, kWoodGrain));
+    addPlate(builder, [[x - 0.05, 0.082, 0.35], [x + 0.05, 0.082, 0.35], [x + 0.05, 0.082, -0.35], [x - 0.05, 0.082, -0.35]], 0.03, own(0.9, kWoodGrain));
     if (isFine) for (const z of [-0.233, 0, 0.233]) builder.block(x, z, { yM: 0.05, halfX: 0.066, halfZ: 0.014 }, { yM: 0.09, halfX: 0.062, halfZ: 0.014 }, kRope);
   }
   return builder.build();

@@ -3,11 +3,12 @@
 import type { BufferGeometry } from "three";
 
 import type { BreakwaterInfo } from "../../../client/codec/scene_info";
-import { clamp } from "../maths/interpolate";
+import { clamp, mix } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addRod, addTurned, type Turn } from "../meshes/shapes";
 import { overgrown, shaded } from "./paints";
+import { addPierGear } from "./pier_gear";
 
 /** The light at the end of a wall. */
 export type LightKind = "lighthouse" | "beacon";
@@ -40,7 +41,7 @@ export function makeBreakwater(wall: BreakwaterInfo, depthM: number, light: Ligh
   const builder = new MeshBuilder();
   const bottomM = -depthM - 0.05;
   const capM = Math.min(0.2 * heightM, 0.25 * widthM);
-  addCaissons(builder, wall, bottomM, heightM - capM);
+  addCaissons(builder, wall, bottomM, heightM - capM, plain);
   const [halfX, halfZ] = [lengthM / 2, widthM / 2];
   const edge = 0.15 * capM;
   builder.block(0, 0, { yM: heightM - capM, halfX, halfZ }, { yM: heightM - edge, halfX, halfZ }, kCap);
@@ -53,14 +54,16 @@ export function makeBreakwater(wall: BreakwaterInfo, depthM: number, light: Ligh
   addBollards(builder, wall, plain);
   addLampPosts(builder, wall, plain);
   addCrates(builder, wall);
+  // On a shorter wall it would stand in the light's way.
+  if (!plain && lengthM > 4 * widthM) addPierGear(builder, wall);
   addArmour(builder, wall, bottomM, plain ? kStonesMax.plain : kStonesMax.full);
   const xM = halfX - 0.55 * widthM;
-  const yM = (light === "lighthouse" ? addLighthouse : addBeacon)(builder, xM, heightM, widthM, plain);
+  const yM = light === "lighthouse" ? addLighthouse(builder, xM, heightM, Math.min(2 * widthM, 5), plain) : addBeacon(builder, xM, heightM, widthM, plain);
   return { geometry: builder.build(), lamp: { xM, yM } };
 }
 
 /** Boxes side by side with joints between them, and weed at the water's level. */
-function addCaissons(builder: MeshBuilder, { lengthM, widthM, heightM }: BreakwaterInfo, bottomM: number, topM: number): void {
+function addCaissons(builder: MeshBuilder, { lengthM, widthM, heightM }: BreakwaterInfo, bottomM: number, topM: number, plain: boolean): void {
   const count = clamp(Math.round(lengthM / (1.5 * widthM)), 1, 60);
   const stepM = lengthM / count;
   const gapM = 0.012 * stepM;
@@ -70,8 +73,10 @@ function addCaissons(builder: MeshBuilder, { lengthM, widthM, heightM }: Breakwa
     const [fromM, toM] = [-lengthM / 2 + n * stepM + (n > 0 ? gapM : 0), -lengthM / 2 + (n + 1) * stepM - (n + 1 < count ? gapM : 0)];
     const paint = shaded(kConcrete, 0.86 + 0.28 * hash(n, 3, 11));
     const face = (a: readonly [number, number], b: readonly [number, number]): void => {
-      const rows = levels.map((yM): Point[] => [a, b].map(([x, z]): Point => [x, yM, z]));
-      builder.grid(rows, (row, column) => overgrown(paint, levels[row]!, weedM * (0.75 + 0.5 * hash(n, column, 17))));
+      // Water that runs down has left streaks.
+      const columnsCount = plain ? 1 : 3;
+      const rows = levels.map((yM): Point[] => Array.from({ length: columnsCount + 1 }, (_, c) => [mix(a[0], b[0], c / columnsCount), yM, mix(a[1], b[1], c / columnsCount)]));
+      builder.grid(rows, (row, column) => overgrown(shaded(paint, 1.1 - 0.4 * hash(n, column, 18) ** 2), levels[row]!, weedM * (0.75 + 0.5 * hash(n, column, 17))));
     };
     const half = widthM / 2;
     face([fromM, half], [toM, half]);
@@ -165,9 +170,8 @@ function addStone(builder: MeshBuilder, [x, y, z]: Point, sizeM: number, seed: n
   face(corner(-1, 1, 1), corner(1, 1, 1), corner(1, 1, -1), corner(-1, 1, -1));
 }
 
-/** Adds a round tower with a gallery and a lantern. Returns the height of its lamp. */
-function addLighthouse(builder: MeshBuilder, xM: number, baseM: number, widthM: number, plain: boolean): number {
-  const high = Math.min(2 * widthM, 5);
+/** Adds a round tower `high` metres high with a gallery and a lantern. Returns the height of its lamp. */
+export function addLighthouse(builder: MeshBuilder, xM: number, baseM: number, high: number, plain: boolean): number {
   const sides = plain ? 8 : 18;
   const turn = (up: number, radius: number, paint: Paint): Turn => ({ yM: up * high, radiusM: radius * high, paint });
   const tower = Array.from({ length: 6 }, (_, n) => turn(0.06 + 0.116 * n, 0.098 - 0.0065 * n, n % 2 === 0 ? kWhite : kRed));

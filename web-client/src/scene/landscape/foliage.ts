@@ -69,16 +69,19 @@ export class Foliage {
     this.clump([xM, yM + 0.48 * highM, zM], [0.11 * highM, 0.53 * highM, 0.11 * highM], leaves);
   }
 
-  /** Adds an umbrella pine: a trunk that leans, and a flat crown of three clumps. */
+  /** Adds an umbrella pine: a trunk that leans, boughs, and a flat crown of clumps. */
   pine([xM, yM, zM]: Point, highM: number, leaves: Leaves): void {
     const top: Point = [xM + this.between(-0.15, 0.15) * highM, yM + 0.8 * highM, zM + this.between(-0.15, 0.15) * highM];
-    addRod(this.builder, [xM, yM - 0.1 * highM, zM], top, 0.035 * highM, kBark, 5, 0.02 * highM);
+    const foot: Point = [xM, yM - 0.1 * highM, zM];
+    addRod(this.builder, foot, top, 0.03 * highM, kBark, 5, 0.016 * highM);
     const turnRad = this.between(0, 2 * Math.PI);
-    for (const lobe of [0, 1, 2]) {
-      const outM = lobe === 0 ? 0 : 0.2 * highM;
-      const middle: Point = [top[0] + outM * Math.cos(turnRad + 2.4 * lobe), top[1] + (0.03 - 0.05 * lobe) * highM, top[2] + outM * Math.sin(turnRad + 2.4 * lobe)];
-      const wideM = 0.29 * (1 - 0.18 * lobe) * highM;
-      this.clump(middle, [wideM, 0.11 * highM, wideM], leaves);
+    for (let lobe = 0; lobe < (this.plain ? 3 : 6); ++lobe) {
+      const outM = lobe === 0 ? 0 : this.between(0.14, 0.24) * highM;
+      const middle: Point = [top[0] + outM * Math.cos(turnRad + 2.4 * lobe), top[1] + (lobe === 0 ? 0.05 : this.between(-0.06, 0.02)) * highM, top[2] + outM * Math.sin(turnRad + 2.4 * lobe)];
+      const wideM = (this.plain ? 0.24 : this.between(0.13, 0.19)) * highM;
+      this.clump(middle, [wideM, 0.4 * wideM, wideM], leaves);
+      // A bough from the upper part of the trunk.
+      if (lobe > 0 && !this.plain) addRod(this.builder, foot.map((at, k) => mix(at, top[k]!, 0.72)) as unknown as Point, middle, 0.012 * highM, kBark, 3);
     }
   }
 

@@ -8,6 +8,7 @@ import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { makeBreakwater, type LightKind } from "./breakwater_mesh";
 import { bedPaint } from "./paints";
 import { makeRockGeometry } from "./rock_mesh";
+import { makeSkerry } from "./skerry";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
@@ -56,9 +57,14 @@ export class Landscape {
   private readonly lights: Light[] = [];
   private readonly geometries: BufferGeometry[] = [];
 
-  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. */
-  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean) {
+  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. `isLandless`: of an open sea, with a lighthouse and a sailing boat far away. */
+  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean, isLandless = false) {
     this.add(ground, material);
+    if (isLandless) {
+      const { parts, lampM } = makeSkerry(longSideM(bed), bed.depthM, plain);
+      for (const part of parts) this.add(part, material);
+      this.lights.push({ kind: "lighthouse", atM: lampM });
+    }
     // The longest breakwater has the lighthouse.
     const longestM = Math.max(...obstacles.map((each) => (each.shape === "breakwater" ? each.lengthM : 0)));
     for (const obstacle of obstacles) {

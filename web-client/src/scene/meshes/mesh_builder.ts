@@ -9,7 +9,7 @@ export type Paint = readonly [red: number, green: number, blue: number, grain: n
 export interface Band {
   from: number;
   to: number;
-  paint: Paint;
+  paint: Paint | ((row: number, column: number) => Paint);
   isSharp?: boolean;
 }
 

@@ -44,9 +44,9 @@ export function addTurned(builder: MeshBuilder, [xM, baseM, zM]: Point, turns: r
 
 /**
  * Adds a wall with a window, set in by `deepM`: corners counter-clockwise seen from outside; `frame`: width of the wall round the window,
- * as a share.
+ * as a share; `reveal`: paint of the sides of the opening.
  */
-export function addWindow(builder: MeshBuilder, corners: readonly [Point, Point, Point, Point], frame: { side: number; low: number; high: number }, deepM: number, wall: Paint, glass: Paint): void {
+export function addWindow(builder: MeshBuilder, corners: readonly [Point, Point, Point, Point], frame: { side: number; low: number; high: number }, deepM: number, wall: Paint, glass: Paint, reveal = wall): void {
   const [a, b, c, d] = corners;
   const at = (across: number, up: number): Point => mix(mix(a, b, across), mix(d, c, across), up);
   const outward = unit(cross(add(b, a, -1), add(d, a, -1)));
@@ -56,7 +56,7 @@ export function addWindow(builder: MeshBuilder, corners: readonly [Point, Point,
   for (let n = 0; n < 4; ++n) {
     const next = (n + 1) % 4;
     builder.quad(outer[n]!, outer[next]!, rim[next]!, rim[n]!, wall);
-    if (deepM > 0) builder.quad(rim[n]!, rim[next]!, pane[next]!, pane[n]!, wall);
+    if (deepM > 0) builder.quad(rim[n]!, rim[next]!, pane[next]!, pane[n]!, reveal);
   }
   builder.quad(pane[0]!, pane[1]!, pane[2]!, pane[3]!, glass);
 }

@@ -91,7 +91,8 @@ export class Surroundings {
     const cellsCount = bed.ground ? Math.min(Math.max(bed.ground.countX, bed.ground.countZ), plain ? kPlainGroundCells : kGroundCells) : plain ? kPlainBedCells : kBedCells;
     if (setting === "openSea" && wave && this.sea) {
       this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
-      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, plain), obstacles, context.solid, plain);
+      const isLandless = obstacles.length === 0 && !hasBed && Object.values(wave.sides).every((kind) => kind !== "closed");
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, plain), obstacles, context.solid, plain, isLandless);
       this.solids.push(this.landscape.group);
       return;
     }
