@@ -333,6 +333,10 @@ void main() {
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * mix(kAwayLit, kTowardLit, sun);
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
+#ifdef GLASS
+  // Through glass its bubbles are seen from near.
+  white_m *= clamp(1.8 * lumps(4.0 * surface / u_radius_m) + 0.1, 0.2, 2.0);
+#endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
 

@@ -2,7 +2,12 @@
 // heap of domes with creases between them. After u_noise, u_lace_m and sky.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn.
-const float kReliefTiles = 0.02, kReliefSlope = 5.5, kSteepest = 1.1;
+#if defined(OPEN_SEA) || defined(RIPPLES)
+const float kReliefSlope = 5.5;
+#else
+const float kReliefSlope = 2.5;  // fine froth
+#endif
+const float kReliefTiles = 0.02, kSteepest = 1.1;
 
 // Height of the lace, 0..1 around 0.5. `fresh`: 0 a network, 1 a heap.
 float laceAt(vec2 at, float fresh) {
@@ -19,7 +24,7 @@ float shownFoam(float streamed) {
   return streamed * (0.65 + 0.35 * streamed * streamed);
 #else
   // The low waves of a tank are seen from near.
-  return smoothstep(0.0, 0.65, streamed);
+  return smoothstep(0.0, 0.8, streamed);
 #endif
 }
 

@@ -39,7 +39,7 @@ uniform sampler2D u_field;
 const float kWetBandM = 0.11, kDarkBandM = 0.16;
 #endif
 // Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
-const float kLeavesGrain = 1.6, kLeavesTiles = 0.5;
+const float kLeavesGrain = 1.6, kLeavesTiles = 0.9;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
 const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 layout(location = 0) out vec4 color;

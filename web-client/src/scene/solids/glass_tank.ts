@@ -38,7 +38,7 @@ const kTableM = 0.74;
 const kTableBesideM = 0.22;
 const kPlankM = 0.09;
 /** Height of its walls as a share of that of its glass. */
-const kWallHeight = 0.85;
+const kWallHeight = 0.75;
 
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
 export const kTankTile = [0.20, 0.50, 0.60] as const;
