@@ -22,7 +22,7 @@ void lightSolid(vec3 world, vec3 normal, vec4 paint, bool is_over_water) {
   float grain = max(paint.a, 0.0);
   vec3 albedo = paint.rgb;
   if (grain > 0.0) albedo *= 1.0 + 0.55 * grain * (textureLod(u_noise, world.xz / (2.3 * u_grain_m), 0.0).r - 0.5);
-  v_leaves = vec3(vec2(world.x - 0.7 * world.z, world.y + 0.3 * world.z) / (1.1 * u_grain_m), 0.9 * step(1.6, grain));
+  v_leaves = vec3(vec2(world.x - 0.7 * world.z, world.y + 0.3 * world.z) / (1.7 * u_grain_m), 0.6 * step(1.6, grain));
   vec3 lit = albedo * (1.25 * u_sun_light * max(dot(normal, u_sun_direction), 0.0) + mix(u_ambient_down, u_ambient_up, 0.5 * normal.y + 0.5));
   // Lamps are painted brighter than white.
   lit += 1.5 * max(albedo - 1.0, 0.0);

@@ -81,13 +81,8 @@ void main() {
   float fresnel = v_shares.x * (0.02 + 0.98 * past2 * past2 * past);
   vec3 mirrored = v_ray - (2.0 * along) * normal;
   float up = abs(mirrored.y) + v_slopes.w;
-#if defined(OPEN_SEA) || defined(WALLS)
   vec3 sky = mix(u_displayed_sky[2], u_displayed_sky[1], clamp(6.0 * up, 0.0, 1.0));
   sky = mix(sky, u_displayed_sky[0], clamp(1.7 * up - 0.25, 0.0, 1.0));
-#else
-  // As kBrightestTube of mirror.glsl.
-  vec3 sky = toDisplay(min(textureLod(u_sky, vec3(mirrored.x, up, mirrored.z), 0.0).rgb, vec3(0.4)));
-#endif
   // The glow around the sun, and its image.
   float at_sun = max(mirrored.x * u_sun_direction.x + up * u_sun_direction.y + mirrored.z * u_sun_direction.z, 0.0);
 #ifdef OPEN_SEA
@@ -102,10 +97,10 @@ void main() {
   vec3 light = mix(v_under.rgb, sky, fresnel) + u_displayed_sun * glint;
   float seen = v_under.a * (1.0 - fresnel);
   light *= v_foam_light.y;
-  // Patches with a clear outline; a `strength` of 1 leaves few holes.
+  // Patches that thin out toward their outlines.
   float lace = textureLod(u_noise, (v_at - 0.6 * slope) / u_lace_m, 0.0).r;
-  float white = 0.94 * clamp(8.0 * (lace - 1.0 + v_foam_light.x), 0.0, 1.0);
-  light = mix(light, u_displayed_foam, white);
+  float white = 0.92 * clamp(2.6 * (lace - 1.0 + v_foam_light.x), 0.0, 1.0);
+  light = mix(light, (0.7 + 0.3 * lace) * u_displayed_foam, white);
   seen *= 1.0 - white;
   color = vec4(light, 1.0 - seen);
 }
