@@ -39,16 +39,17 @@ export class PageLayout {
     }).observe(this.panel);
   }
 
-  /** The part that card and panel leave free: beside and below them, on narrow screens between them. */
+  /** The part that card, panel and the buttons beside it leave free: beside and below them, on narrow screens between them. */
   freePart(): PixelRect {
     const panel = this.panel.getBoundingClientRect();
     const card = byId("card").getBoundingClientRect();
+    const buttons = byId("actions").getBoundingClientRect();
     const isShown = panel.height > 0;
     return {
       leftPx: 0,
       // The far side of the water looks narrow, so the card's corner may overlap the free part a little.
       topPx: isNarrow() ? card.bottom : 0.7 * card.bottom,
-      rightPx: isShown && !isNarrow() ? panel.left : window.innerWidth,
+      rightPx: isShown && !isNarrow() ? (buttons.width > 0 ? buttons : panel).left : window.innerWidth,
       bottomPx: isShown && isNarrow() ? panel.top : window.innerHeight,
     };
   }
