@@ -55,7 +55,7 @@ void main() {
   float width_px = 2.0 * radius_m * px_per_m;
   float length_px = width_px + min(speed_mps * kExposureS, 6.0 * radius_m) * px_per_m;
   // What is thinner than a pixel covers a part of it, and what flies covers each place for a part of the time.
-  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px / kLeastPx, 1.0), particle.foam);
+  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px * width_px / (kLeastPx * kLeastPx), 1.0), particle.foam);
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   if (!is_mist) v_strength_white.x *= sqrt(width_px / length_px);

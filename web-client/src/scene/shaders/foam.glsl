@@ -9,6 +9,9 @@ const float kReliefSlope = 2.5;  // fine froth
 #endif
 const float kReliefTiles = 0.02, kSteepest = 1.1;
 
+// Size of the billows of masses of foam, and the step over which their slope is taken, in tiles of the lace; slope per difference of the noise.
+const float kBillows = 3.1, kBillowStep = 0.12, kBillowSlope = 1.9;
+
 // Height of the lace, 0..1 around 0.5. `fresh`: 0 a network, 1 a heap.
 float laceAt(vec2 at, float fresh) {
   float wide = texture(u_noise, at / u_lace_m).r;
@@ -35,6 +38,12 @@ vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share
   float rise = laceAt(at + step_tiles * u_lace_m * toward_sun, fresh) - lace;
   float slope = clamp(kReliefSlope * rise * kReliefTiles / step_tiles, -kSteepest, kSteepest);
   vec3 bent = normalize(normal - slope * vec3(toward_sun.x, 0.0, toward_sun.y));
+#ifdef OPEN_SEA
+  // Masses of it are billows.
+  float broad = texture(u_noise, at.yx / (kBillows * u_lace_m)).r;
+  float billow = texture(u_noise, (at + kBillowStep * u_lace_m * toward_sun).yx / (kBillows * u_lace_m)).r - broad;
+  bent = normalize(bent - clamp(kBillowSlope * fresh * billow, -kSteepest, kSteepest) * vec3(toward_sun.x, 0.0, toward_sun.y));
+#endif
   // Light that enters at one side of a lump leaves it at the others.
   float sun = sunlit_share * clamp(0.25 + 0.75 * dot(bent, u_sun_direction), 0.0, 1.0);
   // Little of the sky is seen from a crease.
