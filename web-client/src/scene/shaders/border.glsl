@@ -26,7 +26,7 @@ vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
 }
 
 // Reach of the bright line where the water climbs a solid, along the ray, m, and the most of its light.
-const float kClimbingM = 0.025, kClimbingLight = 0.45;
+const float kClimbingM = 0.025, kClimbingLight = 0.25;
 
 // Share of the line's light, where the solid is `solid_m` behind the surface. None where that jumps from pixel to pixel: the line would be
 // a row of dashes.
