@@ -4,7 +4,8 @@ import { join } from "node:path";
 
 import { repository } from "./server.mjs";
 
-const shader = (name) => "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n" + readFileSync(join(repository, "web-client/src/scene/shaders", name), "utf8");
+const text = (name) => readFileSync(join(repository, "web-client/src/scene/shaders", name), "utf8").replace(/#include <(\w+)>/g, (_, part) => text(`${part}.glsl`));
+const shader = (name) => "#version 300 es\nprecision highp float;\nprecision highp sampler2D;\n" + text(name);
 
 /**
  * Draws waves that are flat at the sides of the square, and still water.
