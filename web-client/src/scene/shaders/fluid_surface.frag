@@ -65,6 +65,7 @@ const float kRoom = 1.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef GLASS
+const float kLitRadii = 26.0;
 const float kWhiteness = 0.22;  // of broken water at a pane
 #elif defined(AGAIN)
 const float kWhiteness = 0.022;  // of two sheets
@@ -331,6 +332,10 @@ void main() {
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
   vec3 scattered = waterScattered(0.25 + 0.4 * clamp(normal.y, 0.0, 1.0)) * u_water_light * mix(kAwayLit, kTowardLit, sun);
+#ifdef GLASS
+  // Light comes from above: a crest is bright, the foot of a wave is dark.
+  scattered *= 0.75 + 0.8 * smoothstep(0.0, kLitRadii, (surface.y - u_volume_min_m.y) / u_radius_m);
+#endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
 #ifdef GLASS
