@@ -104,6 +104,15 @@ describe("a tank", () => {
   });
 });
 
+describe("a tray", () => {
+  it("stands on a table, with its walls over the water", () => {
+    const { min, max } = boundsOf(makeBaseGeometry(tankSize({ sideM: 0.45, widthM: 0.45, waterExtents: { sideM: 0.45, longM: 0.45, depthM: 0.05 }, wave: undefined })));
+    expect(min.y).toBeLessThan(-0.7);
+    expect(max.y).toBeGreaterThan(0.05);
+    expect(max.x).toBeGreaterThan(0.4);
+  });
+});
+
 describe("a pool", () => {
   it("has its floor at 0, a rim above the water, and nothing inside the square above the floor", () => {
     const { tiled, planted } = makeBasinGeometries(16, 16, 1.5);
@@ -123,5 +132,7 @@ describe("a pool", () => {
       return position.count;
     });
     expect(verticesCount[1]).toBeLessThan(0.5 * verticesCount[0]!);
+    const large = makeBasinGeometries(1000, 1000, 1.5).planted.getAttribute("position").count;
+    expect(large).toBeLessThan(4 * verticesCount[0]!);
   });
 });

@@ -23,6 +23,8 @@ const kTreeM = 5.2;
 const kLawnReachM = 600;
 const kStripeM = 1.1;
 const kSmallM = 8;
+/** Shrubs on half of a side, at most: around large water they are larger. */
+const kMostShrubs = 60;
 
 const kDeck = [0.60, 0.52, 0.42] as const;
 const kSlabM = 0.8;
@@ -115,7 +117,7 @@ function addLadder(builder: MeshBuilder, at: Beside, alongM: number, waterM: num
 
 /** A border of shrubs with flowers before it; its length is that of the side with the corners. */
 function addBorder(plants: Foliage, at: Beside, longM: number, deckM: number, awayM: number, treeM: number): void {
-  const stepM = (plants.plain ? 0.4 : 0.22) * treeM;
+  const stepM = Math.max((plants.plain ? 0.4 : 0.22) * treeM, longM / kMostShrubs);
   let flower = 0;
   for (let alongM = -longM; alongM < longM; alongM += stepM * plants.between(0.8, 1.2)) {
     const sizeM = stepM * plants.between(0.6, 1.05);

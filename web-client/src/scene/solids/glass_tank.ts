@@ -1,5 +1,5 @@
 // A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table.
-import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector2, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
+import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { addGarden, deckOf } from "../landscape/garden";
@@ -173,7 +173,7 @@ export class GlassTank {
     const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
     const thickM = kGlassThickness * sizeM(size);
     const longM = Math.max(size.sideM, size.widthM);
-    this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() }, u_half_m: { value: new Vector2(halfX, halfZ) } };
+    this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() } };
     this.glass = new Mesh(
       makeGlassGeometry(size),
       makeMaterial("glass", this.uniforms, {
