@@ -7,7 +7,7 @@ import { Foliage, type Leaves } from "./foliage";
 export interface GardenSize {
   /** Half of the water, or of the free space around a tank, along x and z. */
   halfM: readonly [number, number];
-  /** Heights of the deck, and of the still water that ladders lead into; undefined: there are none. */
+  /** Heights of the deck, and of the still water in a pool; undefined: a tank, beside which nobody bathes. */
   deckM: number;
   waterM?: number;
 }
@@ -41,7 +41,7 @@ const kDaisy: Leaves = [[0.18, 0.29, 0.09, 1.8], [0.98, 0.96, 0.86, 1.8]];
 const kFlowers: readonly Leaves[] = [kLavender, kRose, kDaisy];
 const kTrees: readonly Leaves[] = [kMaple, kOlive, kBox];
 const kSteel: Paint = [0.62, 0.66, 0.70, 0];
-const kTeak: Paint = [0.42, 0.25, 0.12, 0.5];
+export const kTeak: Paint = [0.42, 0.25, 0.12, 0.5];
 const kCushion: Paint = [0.90, 0.87, 0.80, 0.15];
 const kTowels: readonly Paint[] = [[0.86, 0.30, 0.12, 0.2], [0.10, 0.42, 0.62, 0.2]];
 const kCanvas: readonly [Paint, Paint] = [[0.92, 0.88, 0.78, 0.1], [0.80, 0.26, 0.14, 0.1]];
@@ -191,8 +191,10 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     // Beside a small pool, nothing stands where the first views come from.
     if (sideM < kSmallM && side >= 2) return;
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
-    if (waterM !== undefined) addParasol(builder, at(groupM, deckM, seat + 0.9));
-    for (const n of waterM !== undefined ? [0, 1] : []) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
+    if (waterM !== undefined) {
+      addParasol(builder, at(groupM, deckM, seat + 0.9));
+      for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
+    }
     const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
     for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
   });

@@ -7,19 +7,17 @@ import { addRod } from "../meshes/shapes";
 import { addLighthouse } from "./breakwater_mesh";
 import { makeRockGeometry } from "./rock_mesh";
 
-/** Direction from the middle of the water, away from the sun of an afternoon, and distance. */
+/** The lighthouse: direction from the middle of the water, away from the sun of an afternoon, and distance; radius and height of its rocks, height of its tower. */
 const kHeadingRad = (-62 * Math.PI) / 180;
 const kAwaySides = 2.8;
-/** The same of the sailing boat, and the height of its mast. */
-const kSailHeadingRad = (-101 * Math.PI) / 180;
-const kSailAwaySides = 2.2;
-const kMastSides = 0.16;
-/** How far the wind heels it. */
-const kHeelRad = 0.12;
-/** Radius and height of its rocks, and height of its tower. */
 const kRadiusSides = 0.3;
 const kHighSides = 0.075;
 const kTowerSides = 0.22;
+/** The sailing boat: direction and distance, height of its mast, and how far the wind heels it. */
+const kSailHeadingRad = (-101 * Math.PI) / 180;
+const kSailAwaySides = 2.2;
+const kMastSides = 0.16;
+const kHeelRad = 0.12;
 
 const kHull: Paint = [0.10, 0.12, 0.16, 0];
 const kSail: Paint = [0.86, 0.84, 0.78, 0.1];

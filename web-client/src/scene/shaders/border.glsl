@@ -1,5 +1,5 @@
-// Include, after sky.glsl: what a pool's water meets. The garden around it, as the water mirrors it: the limits are those of gardenReach()
-// in landscape/garden.ts. And what stands in the water, at which it climbs.
+// Include, after sky.glsl: what the water of a pool or a tank meets. The garden around it, as the water mirrors it: the limits are those of
+// gardenReach() in landscape/garden.ts. And what stands in the water, at which it climbs.
 
 // Colour of shrubs and trees that are not on the screen, and the heights of directions in which they give way to the sky.
 const vec3 kShrubs = vec3(0.09, 0.15, 0.05);

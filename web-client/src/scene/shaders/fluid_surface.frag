@@ -65,7 +65,7 @@ const float kRoom = 1.0;
 const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef GLASS
-const float kLitRadii = 26.0;
+const float kLitRadii = 26.0;  // height over the floor above which water is lit fully, in particle radii
 const float kWhiteness = 0.22;  // of broken water at a pane
 #elif defined(AGAIN)
 const float kWhiteness = 0.022;  // of two sheets

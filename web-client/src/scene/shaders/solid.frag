@@ -1,5 +1,5 @@
 // Sun and sky light on painted or grainy solids. Wet stone and sand are darker. CAUSTICS: under water, waves focus the sunlight.
-// TANK: indoors, where only what is inside the water's sides is under water.
+// TANK: where only what is inside the water's sides is under water.
 // SHORE: the ground is wet where water was, mirrors the sky as long as a film stands on it, and carries the lace of the swash.
 // FIELD: what stands upright in the water is wet and darker above the water's surface, and less of the sky lights it there.
 // INSTANCES: the grain turns with the object. The plain tiers have solid_plain.frag. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
@@ -49,7 +49,6 @@ void main() {
   vec3 albedo = v_color.rgb;
   float grain = max(v_color.a, 0.0);
   float wet_film = 0.0;
-  float leaves = 0.5;
 #ifdef TANK
   float over_water_m = any(greaterThan(abs(v_world.xz), 0.5 * u_extent_m)) ? 1e3 : v_world.y;
 #else
@@ -74,8 +73,7 @@ void main() {
     if (grain > kLeavesGrain) {
       // Leaves before the shade between them: the outline is torn where one looks along it.
       vec2 leaves_at = at / (kLeavesTiles * grain_m);
-      leaves = texture(u_noise, leaves_at).r;
-      leaves = smoothstep(0.3, 0.7, 0.6 * leaves + 0.4 * texture(u_noise, leaves_at.yx / 2.3).r);
+      float leaves = smoothstep(0.3, 0.7, 0.6 * texture(u_noise, leaves_at).r + 0.4 * texture(u_noise, leaves_at.yx / 2.3).r);
       vec3 toward = normalize(u_camera_m - v_world);
       if (dot(normal, toward) < 0.45 * (0.85 - leaves)) discard;
       albedo *= 0.45 + 1.1 * leaves;

@@ -2,7 +2,7 @@
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
-import { addGarden, deckOf } from "../landscape/garden";
+import { addGarden, deckOf, kTeak } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
 import { addRod } from "../meshes/shapes";
@@ -43,7 +43,6 @@ const kWallHeight = 0.75;
 /** Of the tiles in the tank, and of its floor where it is not on the screen. */
 export const kTankTile = [0.20, 0.50, 0.60] as const;
 const kBase: Paint = [0.42, 0.43, 0.42, 0.6];
-const kTeak: Paint = [0.42, 0.25, 0.12, 0.5];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
 const kCutEdge: Paint = [1, 1, 1, 1];
