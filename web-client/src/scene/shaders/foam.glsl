@@ -2,7 +2,7 @@
 // heap of domes with creases between them. After u_noise, u_lace_m and sky.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn.
-#if defined(OPEN_SEA) || defined(RIPPLES)
+#ifndef GLASS
 const float kReliefSlope = 5.5;
 #else
 const float kReliefSlope = 2.5;  // fine froth
@@ -23,7 +23,7 @@ float laceAt(vec2 at, float fresh) {
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
 float shownFoam(float streamed) {
-#if defined(OPEN_SEA) || defined(RIPPLES)
+#ifndef GLASS
   return streamed * (0.65 + 0.35 * streamed * streamed);
 #else
   // The low waves of a tank are seen from near.

@@ -1,4 +1,4 @@
-// Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, RIPPLES, SKIRT, MIRROR as there.
+// Include in water.frag, behind its uniforms: what the surface mirrors. OPEN_SEA, SKIRT, MIRROR as there.
 #ifndef OPEN_SEA
 #include <border>
 #endif

@@ -4,7 +4,7 @@
 // SHORE: it moves over its ground, ends between cells where its depth is 0, and thin water is as clear as its depth says.
 // OPEN_SEA: the simulated water blends into the sea around it, which becomes deeper and hazier with the distance.
 // UNEVEN: straight crests are drawn uneven.
-// SKIRT: the side of the water in a tank, through which one looks into it. RIPPLES: of a pool, whose walls others draw. RAIN: with the rings of rain.
+// GLASS: water in a tank. SKIRT: its side, through which one looks into it. RIPPLES: waves too short for the simulation. RAIN: with the rings of rain.
 // White water where the noise tile ("lace") is above a threshold that falls with the foam. FOAM: the server sends foam; otherwise
 // there is only the page's own froth.
 #include <sky>
@@ -81,7 +81,7 @@ const float kSpillM = 0.34;
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
 const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
-// A pool's finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
+// Between walls the finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
 #ifdef RIPPLES
 const float kSunSpread = 6.0;
 #else
@@ -201,7 +201,7 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
-#if (defined(OPEN_SEA) || defined(RIPPLES)) && !defined(SKIRT)
+#ifndef GLASS
   // What stands in the water is close behind its surface; the bed below shallow water is not meant.
   float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float contact = 1.0 - smoothstep(0.0, kContactM, solid_m);
@@ -211,7 +211,7 @@ void main() {
   // A band narrower than a pixel would be a row of dots.
   contact *= 1.0 - smoothstep(0.4, 1.6, fwidth(solid_m) / kContactM);
 #elif !defined(SKIRT)
-  // The floor and the panes of a tank are close everywhere.
+  // The floor and the panes are close everywhere.
   const float contact = 0.0;
 #endif
 
@@ -330,7 +330,7 @@ void main() {
 #else
   vec2 place = v_world.xz / u_extent_m + 0.5;
 #endif
-#ifdef RIPPLES
+#if !defined(OPEN_SEA) && !defined(GLASS)
   float foam = 0.0;
   water = mix(water, meniscusLight(), climbingShare(solid_m));
 #else

@@ -97,8 +97,12 @@ void main() {
   vec3 light = mix(v_under.rgb, sky, fresnel) + u_displayed_sun * glint;
   float seen = v_under.a * (1.0 - fresnel);
   light *= v_foam_light.y;
-  // Patches that thin out toward their outlines.
-  float lace = textureLod(u_noise, (v_at - 0.6 * slope) / u_lace_m, 0.0).r;
+  // Patches that thin out toward their outlines. Large breakers tear them; small, steep waves would fold them into rings.
+  vec2 lace_at = v_at;
+#ifdef OPEN_SEA
+  lace_at -= 0.6 * slope;
+#endif
+  float lace = textureLod(u_noise, lace_at / u_lace_m, 0.0).r;
   float white = 0.92 * clamp(2.6 * (lace - 1.0 + v_foam_light.x), 0.0, 1.0);
   light = mix(light, (0.7 + 0.3 * lace) * u_displayed_foam, white);
   seen *= 1.0 - white;

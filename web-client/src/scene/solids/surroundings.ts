@@ -53,9 +53,8 @@ export function isTank({ setting }: GreetingInfo): boolean {
   return setting === "glassTank" || setting === "flume";
 }
 
-/** Root mean square slope of the ripples in a pool, and on water of particles alone. */
-const kPoolSlope = 0.016;
-const kParticlesSlope = 0.035;
+/** Root mean square slope of the ripples in a pool, in a flume, where waves break, and on water of particles alone. */
+const kPoolSlope = 0.016, kFlumeSlope = 0.03, kParticlesSlope = 0.035;
 /** Particles alone carry no waves shorter than those of a grid with so many cells along x. */
 const kParticlesCells = 112;
 const kClosed = { "+x": "closed", "-x": "closed", "+z": "closed", "-z": "closed" } as const;
@@ -63,8 +62,9 @@ const kClosed = { "+x": "closed", "-x": "closed", "+z": "closed", "-z": "closed"
 /** Returns the waves that the simulation does not have: the sea around an open sea's square, and ripples. The caller disposes it. */
 export function makeSea({ setting, wave, wind, sideM, widthM, waterExtents }: GreetingInfo, quality: Quality): OpenSea | undefined {
   if (wave && setting === "openSea") return new OpenSea(wave, wind, quality);
-  if (quality.plain || (wave && setting !== "pool")) return undefined;
-  if (wave) return new OpenSea(wave, undefined, quality, kPoolSlope);
+  // The simulation of a tray has the shortest waves too.
+  if (quality.plain || (wave && setting === "glassTank")) return undefined;
+  if (wave) return new OpenSea(wave, undefined, quality, setting === "pool" ? kPoolSlope : kFlumeSlope);
   const box = { sideM, widthM, depthM: waterExtents.depthM, resolutionCount: kParticlesCells, sides: kClosed, spongeWidthM: 0, periodicX: false, periodicZ: false };
   return new OpenSea(box, undefined, quality, kParticlesSlope);
 }

@@ -94,8 +94,7 @@ export class WaterPass implements Pass {
       u_froth: { value: froth },
       ...foam,
       ...rain,
-      ...(edge.kind === "sea" && edge.sea),
-      ...(edge.kind === "walls" && edge.ripples),
+      ...(edge.kind === "sea" ? edge.sea : edge.ripples),
       ...(this.ground && { u_ground: { value: this.ground } }),
     };
     const defines: Record<string, number> = {};
@@ -108,8 +107,9 @@ export class WaterPass implements Pass {
     if (hasSolids(greeting) && quality.mirrorStepsCount > 0) defines["MIRROR"] = quality.mirrorStepsCount;
     if (shadow) defines["SHADOWS"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
+    else if (edge.ripples) defines["RIPPLES"] = 1;
     if (edge.kind === "sea" && !quality.plain && isDrawnUneven(greeting)) defines["UNEVEN"] = 1;
-    if (edge.kind === "walls" && edge.ripples) defines["RIPPLES"] = 1;
+    if (edge.kind === "cut") defines["GLASS"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
     // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.
     const surface = (side: Side, more: Record<string, number> = {}): RawShaderMaterial =>
