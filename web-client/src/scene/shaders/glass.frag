@@ -24,6 +24,6 @@ void main() {
   color = vec4(mirrored * mirrored + kTint, 0.98 * (1.0 - fresnel));
   if (v_color.a > 0.5) {
     vec3 edge = toDisplay(vec3(0.04, 0.13, 0.13) * (u_ambient_up + 0.4 * u_sun_light) + 0.12 * textureLod(u_sky, reflect(ray, normal), 4.0).rgb);
-    color = vec4(0.7 * edge, 0.3);
+    color = vec4(0.4 * edge, 0.5);
   }
 }
