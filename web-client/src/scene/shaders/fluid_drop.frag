@@ -26,11 +26,13 @@ void main() {
   vec3 mirrored_ray = reflect(-toward, normal);
   // A ball of water turns a ray by twice the difference of its angles to the normal in air and in water.
   vec3 inward = mat3(u_camera_world) * vec3(-screen, 0.0);
-  vec3 lens = textureLod(u_sky, inward * (0.55 + 0.45 * away2 * away2) - toward, 1.0).rgb;
+  vec3 lens = (0.8 - 0.7 * screen.y) * textureLod(u_sky, inward * (0.55 + 0.45 * away2 * away2) - toward, 1.0).rgb;
   vec3 mirrored = textureLod(u_sky, mirrored_ray, 2.0).rgb;
   vec3 glint = u_sun_sharp * u_sun_light * pow(max(dot(mirrored_ray, u_sun_direction), 0.0), 30.0) * 4.0;
   vec3 light = mix(lens, mirrored, 0.06 + 0.9 * away2 * away2) + glint;
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   vec3 froth = kFroth * (u_sun_light * mix(0.6, 1.2, sun * sun) + u_ambient_up);
-  color = vec4(toDisplay(mix(light, froth, 0.2 + 0.6 * v_strength_white.y)), v_strength_white.x * smoothstep(1.0, 0.6, away2));
+  float white = 0.1 + 0.7 * v_strength_white.y;
+  // Through the middle of a clear drop one sees about what is behind it.
+  color = vec4(toDisplay(mix(light, froth, white)), v_strength_white.x * smoothstep(1.0, 0.6, away2) * mix(0.45 + 0.5 * away2, 1.0, white));
 }

@@ -18,6 +18,8 @@ const float kDense = 0.7;
 // A drop is drawn as long as it flies in this time.
 const float kExposureS = 0.012;
 const float kLeastPx = 1.6;
+// Widths of drops from white ones, whose inside cannot be made out, to clear ones.
+const vec2 kClearPx = vec2(1.6, 4.0);
 const float kLargeM = 0.07;
 // Share of what is behind it that the mist around a white particle hides.
 const float kMist = 0.12;
@@ -44,7 +46,7 @@ void main() {
   vec3 center_m = particle.center_m + (3.0 + 5.0 * strength * strength) * u_radius_m * (random.xyz - 0.5);
   // Few are large. The first stands for the mist among them.
   bool is_mist = u_drop == 0.0;
-  float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.03, 0.3, random.w * random.w * random.w * random.w);
+  float radius_m = is_mist ? 1.7 * u_radius_m : min(u_radius_m, kLargeM) * mix(0.03, 0.36, pow(random.w, 8.0));
   if (is_mist) center_m = particle.center_m;
   vec3 seen_m = (viewMatrix * vec4(center_m, 1.0)).xyz;
   if (-seen_m.z < 4.0 * u_radius_m) return;
@@ -55,7 +57,7 @@ void main() {
   float width_px = 2.0 * radius_m * px_per_m;
   float length_px = width_px + min(speed_mps * kExposureS, 6.0 * radius_m) * px_per_m;
   // What is thinner than a pixel covers a part of it, and what flies covers each place for a part of the time.
-  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px * width_px / (kLeastPx * kLeastPx), 1.0), particle.foam);
+  v_strength_white = is_mist ? vec2(strength * kMist * particle.foam, 2.0) : vec2(strength * min(width_px * width_px / (kLeastPx * kLeastPx), 1.0), particle.foam * (1.0 - smoothstep(kClearPx.x, kClearPx.y, width_px)));
   width_px = max(width_px, kLeastPx);
   length_px = max(length_px, width_px);
   if (!is_mist) v_strength_white.x *= sqrt(width_px / length_px);
