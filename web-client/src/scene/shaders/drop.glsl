@@ -13,7 +13,7 @@ flat out float v_round;  // 0: a soft point; 1: so large that its shape is seen
 #define MOST_SHARE 0.0013  // drops near the eye are not larger than this share of their distance: they would be flakes
 #endif
 const float kSoft = 1.7;          // a soft point seems narrower than it is
-const float kLeastPx = 2.3;
+const float kLeastPx = 1.7;
 const vec2 kRoundPx = vec2(3.0, 5.5);  // widths of drops between which their shape is seen
 
 void noDrop() {

@@ -59,5 +59,5 @@ void main() {
   const float sunlit = 0.6;
 #endif
   if (is_mist) drawDrop(center_m, particle.velocity_mps, kMistRadii * radius_m, true, strength * kMist * particle.foam, sunlit);
-  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.035, 0.2, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
+  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.03, 0.26, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
 }
