@@ -4,13 +4,11 @@
 #include <cmath>
 #include <system_error>
 
-#include <google/protobuf/stubs/logging.h>
-#include <google/protobuf/text_format.h>
-
 #include <spindrift/core/files.h>
 #include <spindrift/scene/fidelity.h>
 #include <spindrift/scene/fields.h>
 #include <spindrift/scene/scene_rules.h>
+#include <spindrift/textproto/parsed_text.h>
 
 namespace spindrift::scene {
 namespace {
@@ -155,11 +153,8 @@ core::Result<v1::FidelityErrors> loadFidelityErrors(const std::filesystem::path&
   if (!std::filesystem::exists(file, error)) return out;
   const auto text = core::readText(file, kMaxBytes, "a file of errors", "`./dev study --update` writes it");
   if (!text) return text.error();
-  const google::protobuf::LogSilencer silencer;
-  if (!google::protobuf::TextFormat::ParseFromString(*text, &out)) {
-    return core::invalid(file.string() +
-                         " is not a spindrift.v1.FidelityErrors in text form: `./dev study --update` writes it");
-  }
+  if (const textproto::ParsedText parsed(*text, out); !parsed.errors().empty())
+    return core::invalid(parsed.report(file.string()) + "\n`./dev study --update` writes this file");
   for (const v1::FidelityErrorsOfScene& scene : out.scenes()) {
     const auto& ratios = scene.error_ratios();
     const bool is_valid = ratios.size() == std::ssize(kFidelities) &&

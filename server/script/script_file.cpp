@@ -2,31 +2,13 @@
 #include <set>
 
 #include <fmt/format.h>
-#include <google/protobuf/io/tokenizer.h>
-#include <google/protobuf/text_format.h>
 
 #include <spindrift/core/files.h>
-#include <spindrift/core/text.h>
 #include <spindrift/script/script.h>
+#include <spindrift/textproto/parsed_text.h>
 
 namespace spindrift::script {
 namespace {
-
-using core::Error;
-
-class FirstError final : public google::protobuf::io::ErrorCollector {
- public:
-  explicit FirstError(const std::string& label) : label_(label) {}
-  void AddError(int line, google::protobuf::io::ColumnNumber column, const std::string& message) override {
-    if (text.empty())
-      text = fmt::format("{}:{}:{}: {}", label_, line + 1, column + 1, core::quoteText(message, kMessageMaxBytes));
-  }
-  std::string text;
-
- private:
-  static constexpr std::size_t kMessageMaxBytes = 1000;
-  const std::string& label_;
-};
 
 std::string checkTime(const char* field, double time_s) {
   if (!std::isfinite(time_s) || time_s < 0) return fmt::format("{} has to be 0 or more", field);
@@ -105,10 +87,8 @@ std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& n
 
 core::Result<v1::Script> parseScript(const std::string& text, const std::string& label) {
   v1::Script script;
-  FirstError errors(label);
-  google::protobuf::TextFormat::Parser parser;
-  parser.RecordErrorsTo(&errors);
-  if (!parser.ParseFromString(text, &script)) return core::invalid(errors.text);
+  if (const textproto::ParsedText parsed(text, script); !parsed.errors().empty())
+    return core::invalid(parsed.report(label));
   const auto refuse = [&](const std::string& why) { return core::invalid(label + ": " + why); };
   if (script.clients_size() == 0) script.add_clients()->set_name("client");
   if (script.clients_size() > kScriptClientMaxCount) {
@@ -139,7 +119,7 @@ core::Result<v1::Script> parseScript(const std::string& text, const std::string&
 core::Result<v1::Script> loadScript(const std::filesystem::path& file) {
   constexpr std::size_t kFileMaxBytes = 4u << 20;
   const auto text = core::readText(file, kFileMaxBytes, "a script", "give fewer steps");
-  if (!text) return Error{text.error().code, file.string() + ": " + text.error().message};
+  if (!text) return core::Error{text.error().code, file.string() + ": " + text.error().message};
   return parseScript(*text, file.string());
 }
 

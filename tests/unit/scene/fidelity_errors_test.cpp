@@ -18,7 +18,7 @@ TEST(FidelityErrors, InvalidFileIsNamed) {
   folder.write(kFidelityErrorsFile, "measured_on: \"2026-11-25\"\nscene {}");
   auto errors = loadFidelityErrors(folder.path());
   ASSERT_FALSE(errors);
-  EXPECT_THAT(errors.error().message, HasSubstr("fidelity_errors.txtpb is not a spindrift.v1.FidelityErrors"));
+  EXPECT_THAT(errors.error().message, HasSubstr("fidelity_errors.txtpb:2:1: "));
   for (const char* ratios : {"[1, 1, 1]", "[1, 1, 1, 1, 1]", "[1, 1, 1, nan]", "[1, -1, 1, 1]"}) {
     folder.write(kFidelityErrorsFile, std::string("scenes { name: 'pond' error_ratios: ") + ratios + " }");
     errors = loadFidelityErrors(folder.path());

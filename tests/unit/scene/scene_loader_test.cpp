@@ -62,7 +62,7 @@ const BadScene kBadScenes[] = {
     {"WrongType", "wave {\n  depth_m: \"deep\"\n}\n", "pool.textproto:2:12: ", {"deep"}},
     {"NegativeCount", "wave {\n  resolution_count: -64\n}\n", "pool.textproto:2:", {}},
     {"FractionalCount", "particles {\n\n  count: 2.5\n}\n", "pool.textproto:3:10: ", {"2.5"}},
-    {"UnknownEnum", "particles {\n  boundary_x: BOUNDARY_SPONGE\n}\n", "pool.textproto:2:15: ", {"BOUNDARY_SPONGE"}},
+    {"UnknownEnum", "particles {\n  boundary_x: BOUNDARY_SPONGE\n}\n", "pool.textproto:2:15: ", {"BOUNDARY_SPONGE", "Write BOUNDARY_PERIODIC, BOUNDARY_WALL."}},
     {"UnknownEnumNumber",
      "particles {\n  boundary_x: 7\n}\n",
      "pool.textproto:2:3: particles.boundary_x: 7",

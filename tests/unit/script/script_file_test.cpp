@@ -41,6 +41,13 @@ TEST(ScriptFile, WhatTheClockDoesNotAllowIsRefused) {
               HasSubstr("rooms \"x\" and \"y\""));
 }
 
+TEST(ScriptFile, MistakesAreNamedWithTheirPlaces) {
+  const std::string error = errorOf("steps { at_s: 1\n  later_s: 2\n  subscribe { level: LEVEL_BEST }\n}\n");
+  EXPECT_THAT(error, HasSubstr("test:2:3: "));
+  EXPECT_THAT(error, HasSubstr("later_s"));
+  EXPECT_THAT(errorOf(std::string(300'000, '{')), HasSubstr("nest deeper than 32"));
+}
+
 TEST(ScriptFile, TimesAreBounded) {
   for (const char* bad : {"-1", "nan", "inf"}) {
     EXPECT_THAT(errorOf(std::string("steps { at_s: ") + bad + " wait {} }"), HasSubstr("at_s has to be 0 or more"));
