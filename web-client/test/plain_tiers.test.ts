@@ -1,6 +1,6 @@
 // What a picture of the plain tiers may cost, counted: draw calls, targets, vertices, and the textures that a pixel reads. A software renderer pays
 // for each of them.
-import { FloatType, WebGLCoordinateSystem, type Object3D, type Vector2, type WebGLRenderer, type WebGLRenderTarget } from "three";
+import { FloatType, type Object3D, type Vector2, type WebGLRenderTarget } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../client/codec/greeting";
@@ -14,6 +14,7 @@ import solidPlain from "../src/scene/shaders/solid_plain.frag?raw";
 import waterPlain from "../src/scene/shaders/water_plain.frag?raw";
 import { gridLines } from "../src/scene/water/water_grid";
 import { WaterScene } from "../src/scene/water_scene";
+import { fakeRenderer } from "./fake_renderer";
 
 const kSizePx = [1280, 720] as const;
 const kOpen = { "-x": "open", "+x": "open", "-z": "closed", "+z": "open" } as const;
@@ -73,10 +74,7 @@ interface Draw {
 function drawsOf(tier: TierName, picturesCount: number, room = kHarbor): Draw[] {
   const draws: Draw[] = [];
   let target: WebGLRenderTarget | null = null;
-  const calls: Record<string, unknown> = {
-    xr: { enabled: false },
-    coordinateSystem: WebGLCoordinateSystem,
-    autoClear: true,
+  const renderer = fakeRenderer({
     getDrawingBufferSize: (size: Vector2) => size.set(...kSizePx),
     getRenderTarget: () => target,
     setRenderTarget: (next: WebGLRenderTarget | null) => void (target = next),
@@ -86,10 +84,10 @@ function drawsOf(tier: TierName, picturesCount: number, room = kHarbor): Draw[] 
       materials.delete("");
       draws.push({ targetPx: target ? target.width * target.height : undefined, materials });
     },
-  };
-  const renderer = new Proxy(calls, { get: (from, key: string) => (key in from ? from[key] : () => null) }) as unknown as WebGLRenderer;
+  });
   const scene = new WaterScene(renderer, { ...kTiers[tier], texelType: FloatType }, () => {});
   scene.enter(room, false);
+  draws.length = 0;
   scene.camera.position.set(0, 5, 20);
   for (let n = 0; n <= picturesCount; ++n) {
     const timeS = 1 + 0.1 * n;

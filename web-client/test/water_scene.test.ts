@@ -1,5 +1,5 @@
 // The list of passes of every kind of room, with a renderer that draws nothing.
-import { HalfFloatType, WebGLCoordinateSystem, type WebGLRenderer } from "three";
+import { HalfFloatType } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { GreetingInfo } from "../client/codec/greeting";
@@ -9,15 +9,7 @@ import { chooseLook, looksOf, type LookName } from "../src/scene/looks/looks";
 import type { Pass } from "../src/scene/drawing/pass";
 import { kTiers, type TierName } from "../src/scene/drawing/quality";
 import { WaterScene } from "../src/scene/water_scene";
-
-/** Takes every call; only what WaterScene reads has a value. */
-function fakeRenderer(): WebGLRenderer {
-  const values: Record<string, unknown> = { xr: { enabled: false }, coordinateSystem: WebGLCoordinateSystem, autoClear: true };
-  return new Proxy(values, {
-    get: (target, key: string) => (key in target ? target[key] : () => null),
-    set: (target, key: string, value) => ((target[key] = value), true),
-  }) as unknown as WebGLRenderer;
-}
+import { fakeRenderer } from "./fake_renderer";
 
 const kOpen: Record<"-x" | "+x" | "-z" | "+z", SideKind> = { "-x": "open", "+x": "open", "-z": "open", "+z": "open" };
 const kWave: WaveInfo = { resolutionCount: 32, countZ: 32, sideM: 16, widthM: 16, depthM: 2, periodicX: false, periodicZ: false, sides: kOpen, spongeWidthM: 2, dampingPerS: 0, isNonlinear: false };

@@ -43,6 +43,7 @@ export class Display {
   private greeting: GreetingInfo | undefined;
   /** False until the water's height is known: without a wave it comes with the first frame of particles. */
   private isBoxKnown = true;
+  private hasEntered = false;
 
   constructor(
     private readonly renderer: WebGLRenderer,
@@ -61,7 +62,9 @@ export class Display {
           this.applyQuality();
           this.hooks.qualityChanged();
         }
-        this.draw();
+        // The first frames have come while the room was built, and are taken before the next picture.
+        if (this.hasEntered) this.hasEntered = false;
+        else this.draw();
       },
       measured: (framesPerS) => hooks.measured(framesPerS, this.scene.clock.delayS()),
       contextRestored: () => this.scene.contextRestored(),
@@ -112,6 +115,7 @@ export class Display {
     // Tanks have a resolution of their own.
     this.resize();
     if (isSameWater) return;
+    this.hasEntered = true;
     const box = this.scene.viewedBox();
     this.isBoxKnown = box !== undefined;
     this.views.enter(box ?? { sideM: greeting.sideM, widthM: greeting.widthM, minYM: -0.25 * greeting.sideM, maxYM: 0 }, this.scene.diveWater());

@@ -25,6 +25,7 @@ import type { GreetingInfo } from "../../client/codec/greeting";
 import type { Pass } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
 import { EverySecond } from "./drawing/every_second";
+import type { WarmUp } from "./drawing/warm_up";
 import { makeFluidPasses } from "./fluid/fluid";
 import type { StreamedFrames } from "./frames/streamed_frames";
 import type { Sky } from "./light/sky";
@@ -58,6 +59,8 @@ export interface RoomTools {
   /** Outlives the passes of a room, so that another quality keeps wet ground. */
   wetness: ShoreWetness;
   ripple: LocalRipple;
+  /** Starts the translation of programs that take long. */
+  warmUp: WarmUp;
 }
 
 /** What all looks of a room share. `field` undefined: there is no wave. */
@@ -76,7 +79,7 @@ export interface RoomWater {
   dispose(): void;
 }
 
-export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness, ripple }: RoomTools): RoomBase {
+export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness, ripple, warmUp }: RoomTools): RoomBase {
   const { wave, sideM, widthM } = greeting;
   const cellsOf = shoreOf(greeting);
   const field = wave && new FieldPass(wave, frames.surfaces, ripple, quality, cellsOf);
@@ -86,13 +89,13 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const isPool = greeting.setting === "pool";
   const caustics = (field || isPool) && quality.caustics ? new CausticsPass(field?.texture, sea, sky, { sideM, widthM, depthM: wave?.depthM ?? greeting.waterExtents.depthM, isPool }, quality.caustics) : undefined;
   const shadow = quality.shadows && new ShadowPass(greeting, sky, field?.texture, quality.shadows.texelsCount);
-  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality);
+  const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality, warmUp);
   shadow?.setCasters(solids);
   const shownSea = sea && (quality.sparing ? new EverySecond(sea, 0) : sea);
   return { field, foam, solids, passes: [field, shore, foam, shownSea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
-export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality }: RoomTools): RoomWater {
+export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality, warmUp }: RoomTools): RoomWater {
   const { glass } = solids.surroundings;
   const white = field && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
   const { ringTexelsCount, streaksCount } = quality.rain;
@@ -100,7 +103,7 @@ export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }
   const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
-  const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality }, inputs);
+  const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality, warmUp }, inputs);
   const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality) : { before: [], after: [] };
   const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;

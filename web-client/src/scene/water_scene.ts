@@ -13,6 +13,7 @@ import type { BoatColors } from "./boats/livery";
 import { makeNoiseTexture } from "./drawing/noise_texture";
 import type { Pass, Picture } from "./drawing/pass";
 import type { Quality } from "./drawing/quality";
+import { makeWarmUp, type WarmUp } from "./drawing/warm_up";
 import type { BodyPose } from "../../client/codec/bodies";
 import type { FloaterPose } from "../../client/codec/floaters";
 import { elevationAtM, elevationRangeM } from "./frames/height_field";
@@ -62,6 +63,7 @@ export class WaterScene {
   private lookRoom: LookRoom | undefined;
   /** Those of the above whose results are used, in the order in which they are drawn. */
   private passes: readonly Pass[] = [];
+  private warmUp: WarmUp;
   private darknessShare = 0;
   private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
   private game: { kind: GameInfo["kind"] | undefined; nextMark: number | undefined } = { kind: undefined, nextMark: undefined };
@@ -81,6 +83,7 @@ export class WaterScene {
     this.noise = makeNoiseTexture(quality.plain);
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
+    this.warmUp = makeWarmUp(renderer);
   }
 
   get clock() {
@@ -111,6 +114,8 @@ export class WaterScene {
     this.base.solids.setGauges(this.gauges);
     this.base.solids.darkness.value = this.darknessShare;
     this.makeWater();
+    // From now on the canvas shows a picture, and most programs are known.
+    this.warmUp = () => {};
     this.findFloor();
     // A long channel is looked at from as near as it is wide.
     const { sideM, widthM } = greeting;
@@ -318,8 +323,8 @@ export class WaterScene {
   }
 
   private get tools(): RoomTools {
-    const { frames, sky, noise, quality, wetness, ripple } = this;
-    return { frames, sky, noise, quality, wetness, ripple };
+    const { frames, sky, noise, quality, wetness, ripple, warmUp } = this;
+    return { frames, sky, noise, quality, wetness, ripple, warmUp };
   }
 
   private makeWater(): void {

@@ -4,6 +4,7 @@
 import {
   BackSide,
   BoxGeometry,
+  type BufferGeometry,
   CubeCamera,
   LinearFilter,
   LinearMipmapLinearFilter,
@@ -41,7 +42,7 @@ export class Sky {
   readonly sunDirection = new Vector3();
   /** For every material that is lit or reflects the sky. */
   readonly uniforms: Uniforms;
-  readonly dome: Mesh;
+  readonly dome: Mesh<BufferGeometry, RawShaderMaterial>;
   private readonly cube: WebGLCubeRenderTarget;
   private readonly domeUniforms: Uniforms;
   private readonly bakeUniforms: Uniforms;

@@ -2,7 +2,7 @@
 // frames of boats and objects.
 // Writes the solids' colour (linear light) and depth; in the plain tiers, where a room has a wave, the canvas instead, and the textures only for
 // passes that need them.
-import { Color, DepthTexture, Scene, SRGBColorSpace, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture, type WebGLRenderer } from "three";
+import { Color, DepthTexture, Mesh, Scene, SRGBColorSpace, UnsignedIntType, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial, type Texture, type WebGLRenderer } from "three";
 
 import type { GameInfo } from "../../../client/codec/game";
 import type { BoatDetail, GreetingInfo } from "../../../client/codec/greeting";
@@ -13,6 +13,7 @@ import { CourseMarks } from "../boats/course_marks";
 import type { BoatColors } from "../boats/livery";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
+import type { WarmUp } from "../drawing/warm_up";
 import { Floaters } from "../floaters/floaters";
 import type { BodyPose } from "../../../client/codec/bodies";
 import type { FloaterPose } from "../../../client/codec/floaters";
@@ -24,6 +25,7 @@ import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
 import { displayed } from "../light/light";
 import { clamp } from "../maths/interpolate";
+import { MeshBuilder } from "../meshes/mesh_builder";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
@@ -93,6 +95,7 @@ export class SolidsPass implements Pass {
     sea: OpenSea | undefined,
     private readonly frames: Pick<StreamedFrames, "bodies" | "floaters">,
     quality: Quality,
+    warmUp: WarmUp,
   ) {
     const { sideM, widthM } = greeting;
     this.floorAlbedo.set(...kFloors[greeting.setting]);
@@ -116,11 +119,15 @@ export class SolidsPass implements Pass {
     if (quality.plain) defines["VERTEX_LIT"] = 1;
     const program = quality.plain ? "solidPlain" : "solid";
     this.material = makeMaterial(program, uniforms, { defines });
+    const lidMaterial = makeMaterial(program, uniforms, { defines, colorWrite: false });
+    const block = new MeshBuilder().block(0, 0, { yM: 0, halfX: 1, halfZ: 1 }, { yM: 1, halfX: 1, halfZ: 1 }, [1, 1, 1, 1]).build();
+    warmUp([sky.dome, ...(greeting.hasBoats ? [this.material, lidMaterial] : [this.material]).map((material) => new Mesh(block, material))]);
+    block.dispose();
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, sea, haze: this.haze, solid: this.material, quality });
     this.gauges = new GaugePoles(greeting, this.material);
     this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
     if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material, makeMaterial(program, uniforms, { defines, colorWrite: false }), quality.plain);
+      this.boats = new Boats(this.scene, this.material, lidMaterial, quality.plain);
       this.boats.setBoats(greeting.boats);
     }
     if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, makeMaterial(program, uniforms, { defines: { ...defines, INSTANCES: 1 } }), greeting, quality.plain);

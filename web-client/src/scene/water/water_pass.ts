@@ -8,6 +8,7 @@ import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { SurfaceFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
+import type { WarmUp } from "../drawing/warm_up";
 import { makeGroundTexture } from "../landscape/ground_texture";
 import { bedOf, bedUniformValues, longSideM } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
@@ -36,6 +37,7 @@ interface WaterTools {
   sky: Sky;
   noise: Texture;
   quality: Quality;
+  warmUp: WarmUp;
 }
 
 interface WaterInputs {
@@ -63,7 +65,7 @@ export class WaterPass implements Pass {
   private readonly plain: { surface: RawShaderMaterial; dived: RawShaderMaterial } | undefined;
   private readonly ground: DataTexture | undefined;
 
-  constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
+  constructor(greeting: GreetingInfo, solids: SolidsPass, { sky, noise, quality, warmUp }: WaterTools, { field, foam, froth, rain, newest }: WaterInputs) {
     const bed = bedOf(greeting);
     const { depthM, beaches } = bed;
     const { widthsM, shoreDepthsM } = bedUniformValues(bed);
@@ -117,6 +119,7 @@ export class WaterPass implements Pass {
         ? makeMaterial("waterPlain", this.uniforms, { side: FrontSide, transparent: true, premultipliedAlpha: true, defines: { ...defines, ...more, VERTEX_LIT: 1 } })
         : makeMaterial("water", this.uniforms, { side, defines: { ...defines, ...more } });
     this.grid = new Mesh(top, surface(DoubleSide));
+    warmUp([this.grid]);
     if (quality.plain) this.plain = { surface: this.grid.material, dived: surface(FrontSide, { DIVED: 1 }) };
     this.below = new BelowSurface(solids.floorAlbedo, isTank(greeting), this.uniforms, { ...defines, ...(caustics && { CAUSTICS: 1 }) }, newest, bed);
     this.underside = new Mesh(top, this.below.surface);
