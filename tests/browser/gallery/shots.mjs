@@ -20,7 +20,7 @@ const kDefault = { tick: 180 };
 const kShots = {
   beach: { tick: 510, historyTicks: 300 },
   boat_wake: { tick: 300 },
-  boat_wake_particles: { tick: 138 },
+  boat_wake_particles: { tick: 474 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 500 },
