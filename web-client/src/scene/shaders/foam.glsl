@@ -1,5 +1,5 @@
-// Include in water.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that has just begun is a
-// heap of domes with creases between them. After sky.glsl and water_optics.glsl.
+// Include in water.frag and fluid_surface.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that
+// has just begun is a heap of domes with creases between them. After u_noise, u_lace_m, sky.glsl and water_optics.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn.
 #if defined(OPEN_SEA) || defined(RIPPLES)
