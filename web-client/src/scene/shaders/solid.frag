@@ -41,6 +41,8 @@ const float kWetBandM = 0.15, kDarkBandM = 0.2;
 #endif
 // Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
 const float kLeavesGrain = 1.6, kLeavesTiles = 0.9;
+// A mown lawn has more grain than this.
+const float kLawnGrain = 1.05, kLeavesShadeM = 0.3;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
 const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 // Farthest that paint mirrors the waves beside it, m; slopes of their ripples, and the size of those, m.
@@ -81,7 +83,7 @@ void main() {
       if (dot(normal, toward) < 0.45 * (0.85 - leaves)) discard;
       albedo *= 0.45 + 1.1 * leaves;
     }
-    if (u_haze_m > 0.0 && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
+    if (u_haze_m > 0.0 && grain < kLawnGrain && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
       // What grows on open land: scrub on dry sand, and woods and hedges on grass.
       float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71, kSharper).r;
       float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19, kSharper).r;
@@ -161,6 +163,8 @@ void main() {
   }
 #endif
 #ifdef SHADOWS
+  // Leaves let light through: on a lawn their shade has no edge.
+  if (grain > kLawnGrain && normal.y > 0.99) soft_m = kLeavesShadeM;
   if (sun > 0.0) sun *= sunShare(lit_at, lit_normal, soft_m);
 #endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
