@@ -21,6 +21,7 @@ import { StreamedFrames } from "./frames/streamed_frames";
 import { Daylight } from "./light/daylight";
 import { darknessOf, type Light } from "./light/light";
 import { Sky } from "./light/sky";
+import { isTank } from "./landscape/terrain";
 import { LookRoom, type Legend, type Reading } from "./looks/look_room";
 import { looksOf, type LookName } from "./looks/looks";
 import { makeBase, makeNaturalWater, usedPasses, type RoomBase, type RoomTools, type RoomWater } from "./room_passes";
@@ -29,7 +30,7 @@ import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
 import type { Pole } from "./solids/gauge_poles";
 import { shownHeightM } from "./solids/glass_tank";
-import { isTank, viewOf } from "./solids/surroundings";
+import { viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
 
