@@ -4,7 +4,7 @@ import { describe, expect, it } from "vitest";
 import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
 import { makePose } from "../src/scene/frames/bodies";
 import { DiffuseParticles, kFloatsPerParticle, kinds, kLandedShare, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
-import { MovingSurface } from "../src/scene/whitewater/moving_surface";
+import { MovingSurface, restingSurface, type Surface } from "../src/scene/whitewater/moving_surface";
 import { ramp } from "../src/scene/maths/interpolate";
 import { makeFastRandom } from "../src/scene/maths/random";
 import { addCrests, addHulls, addRims, rimOf, type Births } from "../src/scene/whitewater/sources";
@@ -173,11 +173,18 @@ describe("breaking crests", () => {
 
 describe("hulls", () => {
   const hulls = new Map([[1, { boatId: 1, lengthM: 2.5, beamM: 1, heightM: 0.8, draughtM: 0.2 }]]);
-  const run = (speedMps: number, stepS: number, steps: number): Births => {
+  const run = (speedMps: number, stepS: number, steps: number, surface: Surface = moving(0)): Births => {
     const made = births();
-    for (let n = 0; n < steps; ++n) addHulls(made, [{ ...makePose(), boatId: 1, speedMps }, { ...makePose(), boatId: 9, speedMps: 9 }], hulls, moving(0), 9.81, stepS);
+    for (let n = 0; n < steps; ++n) addHulls(made, [{ ...makePose(), boatId: 1, speedMps }, { ...makePose(), boatId: 9, speedMps: 9 }], hulls, surface, 9.81, stepS);
     return made;
   };
+
+  it("leave foam at the resting level of particles, as far as their water reaches", () => {
+    const { particles } = run(2, 0.05, 20, restingSurface(kSideM, kSideM));
+    expect(particles.countOf(kinds.foam)).toBeGreaterThan(20);
+    for (let n = 0; n < particles.count; ++n) if (Math.floor(valuesOf(particles, n)[3]!) === kinds.foam) expect(valuesOf(particles, n)[1]).toBe(0);
+    expect(run(2, 0.05, 20, restingSurface(1, 1)).particles.count).toBe(0);
+  });
 
   it("throw more spray the faster they are, none when slow, and leave foam behind them", () => {
     expect(run(0.9, 0.05, 20).particles.countOf(kinds.spray)).toBe(0);

@@ -20,7 +20,7 @@ const kDefault = { tick: 180 };
 const kShots = {
   beach: { tick: 510, historyTicks: 300 },
   boat_wake: { tick: 300 },
-  boat_wake_particles: { tick: 138 },
+  boat_wake_particles: { tick: 474 },
   boat_wake_wave: { tick: 300 },
   breaking_wave: { tick: 105 },
   breaking_wave_particles: { tick: 500 },
@@ -28,7 +28,7 @@ const kShots = {
   dam_break: { tick: 104 },
   flume: { tick: 903 },
   flotsam: { tick: 300 },
-  harbor: { tick: 330 },
+  harbor: { tick: 546 },
   island: { tick: 510, historyTicks: 300 },
   kelvin: { tick: 840 },
   open_water: { tick: 300 },

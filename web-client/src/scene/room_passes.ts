@@ -12,7 +12,7 @@
 //   rain rings   time -> rings on the water, under the open sky; in the tiers from medium on
 //   water        field, foam, froth, rain, sea, shadow, solids -> canvas
 //   present      solids -> canvas where there is no water
-//   fluid        particles, solids -> canvas (fluid/fluid.ts)
+//   fluid        particles, froth, solids -> canvas (fluid/fluid.ts)
 //   spray        drops, solids -> canvas
 //   rain streaks solids -> canvas
 //   lamps        solids, field -> canvas, in the dark
@@ -97,15 +97,15 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality, warmUp }: RoomTools): RoomWater {
   const { glass } = solids.surroundings;
-  const white = field && makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater);
+  const white = field || (greeting.hasBoats && !quality.plain) ? makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater) : undefined;
   const { ringTexelsCount, streaksCount } = quality.rain;
   const isRainedOn = field !== undefined && greeting.wind !== undefined;
   const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;
   const streaks = isRainedOn ? new RainStreaksPass(greeting, solids, sky, streaksCount) : undefined;
   const inputs = field && white && { field: field.texture, foam: foam?.uniforms, froth: white.froth.texture, rain: rings?.uniforms, newest: () => frames.surfaces.newest() };
   const water = inputs && new WaterPass(greeting, solids, { sky, noise, quality, warmUp }, inputs);
-  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, greeting, quality) : { before: [], after: [] };
-  const flatShadow = white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
+  const fluid = greeting.hasParticles ? makeFluidPasses(frames, solids, sky, noise, field?.texture, white?.froth.texture, greeting, quality) : { before: [], after: [] };
+  const flatShadow = field && white && !quality.shadows ? new FlatShadowPass(solids, sky, white.froth.target, greeting) : undefined;
   const lamps = greeting.hasBoats || greeting.obstacles.length > 0 ? new LampsPass(solids, field?.texture, greeting) : undefined;
   const edges = quality.plain ? undefined : new EdgesPass();
   if (quality.plain && water) solids.use = plainUse(water);

@@ -19,6 +19,7 @@ import type { FloaterPose } from "../../client/codec/floaters";
 import { elevationAtM, elevationRangeM } from "./frames/height_field";
 import type { Ray, WaterShape } from "./frames/pick";
 import { StreamedFrames } from "./frames/streamed_frames";
+import { isTank } from "./landscape/terrain";
 import { Daylight } from "./light/daylight";
 import { darknessOf, type Light } from "./light/light";
 import { Sky } from "./light/sky";
@@ -30,7 +31,7 @@ import { withParameter } from "./sea/sea_state";
 import { ShoreWetness } from "./shore/shore_wetness";
 import type { Pole } from "./solids/gauge_poles";
 import { shownHeightM } from "./solids/glass_tank";
-import { isTank, viewOf } from "./solids/surroundings";
+import { viewOf } from "./solids/surroundings";
 import { LocalRipple } from "./water/local_ripple";
 import { kinds } from "./whitewater/diffuse_particles";
 

@@ -5,7 +5,7 @@ import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import { clearanceM } from "../landscape/clearance";
 import { coastHeightM } from "../landscape/coast";
-import { bedOf, groundHeightM } from "../landscape/terrain";
+import { bedOf, groundHeightM, isTank } from "../landscape/terrain";
 import { clamp } from "../maths/interpolate";
 
 /** Least depth for a camera, and its distance from ground, walls and obstacles, in near planes. */
@@ -36,8 +36,7 @@ export function diveWater(greeting: GreetingInfo, nearM: number): DiveWater | un
   const bed = bedOf(greeting);
   const coast = { bed, sides: wave.sides };
   const groundM = setting === "openSea" ? (xM: number, zM: number): number => coastHeightM(coast, xM, zM) : (xM: number, zM: number): number => groundHeightM(bed, xM, zM);
-  const isTank = setting === "glassTank" || setting === "flume";
-  const outsideM = isTank ? -kOutsideDepths * wave.depthM : kAboveNears * nearM;
+  const outsideM = isTank(greeting) ? -kOutsideDepths * wave.depthM : kAboveNears * nearM;
   return { sideM, widthM, depthM: wave.depthM, nearM, outsideM, obstacles, groundM };
 }
 

@@ -33,8 +33,8 @@ interface FluidPasses {
 /** Drops for each particle that flies apart where drops are all that is drawn. */
 const kSparingDropsCount = 3;
 
-/** `field` undefined: no wave around the particles. */
-export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, greeting: GreetingInfo, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
+/** `field` undefined: no wave around the particles. `froth`: foam that boats leave. */
+export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, froth: Texture | undefined, greeting: GreetingInfo, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, greeting);
   // The wave shows most of the water.
   if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount, true)] };
@@ -43,9 +43,9 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const tiles = new FluidTilesPass(particles, volume);
   // A wave has no floor of its own.
   const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, greeting, { ...quality, texelType, plain });
-  const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms };
+  const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms, froth: field ? undefined : froth };
   const surface = new FluidSurfacePass(inputs, field ? 1 : colourRatio(greeting), quality, plain);
-  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined);
+  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined, inputs.froth);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };
 }

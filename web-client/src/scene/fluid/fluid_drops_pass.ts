@@ -1,6 +1,6 @@
 // Draws what flies apart from the liquid as drops, over the picture. Reads the particles, the volume, the solids' depth and the canvas.
 // Writes the canvas.
-import { NormalBlending, Vector2, type Matrix4, type RawShaderMaterial } from "three";
+import { NormalBlending, Vector2, type Matrix4, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
@@ -11,7 +11,7 @@ import type { FluidVolumePass } from "./fluid_volume_pass";
 
 export class FluidDropsPass implements Pass {
   readonly name = "fluid drops";
-  readonly reads = ["particles", "fluidVolume", "solids", "canvas"] as const;
+  readonly reads = ["particles", "fluidVolume", "froth", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly material: RawShaderMaterial;
 
@@ -23,11 +23,12 @@ export class FluidDropsPass implements Pass {
     sky: Sky,
     private readonly dropsCount: number,
     isOverWave: boolean,
+    froth?: Texture,
   ) {
-    const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth } };
+    const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth }, u_froth: { value: froth } };
     const uniforms = { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own };
     const blended = { blending: NormalBlending, transparent: true, depthWrite: false };
-    this.material = makeMaterial(isOverWave ? "fluidSpray" : "fluidDrop", uniforms, { defines: volume ? { VOLUME: 1 } : {}, ...blended });
+    this.material = makeMaterial(isOverWave ? "fluidSpray" : "fluidDrop", uniforms, { defines: { ...(volume && { VOLUME: 1 }), ...(froth && { FROTH: 1 }) }, ...blended });
   }
 
   draw({ renderer, camera, sizePx }: Picture): void {

@@ -21,11 +21,16 @@ interface FluidSurfaceInputs {
   particleUniforms: Uniforms;
   /** Of FluidShadowPass; undefined: the liquid is one body with a wave, whose textures are in `particleUniforms`. */
   floorUniforms: Uniforms | undefined;
+  /** Foam that boats leave, from above. */
+  froth: Texture | undefined;
 }
+
+/** Size of one tile of the foam's lace. */
+const kLaceM = 0.6;
 
 export class FluidSurfacePass implements Pass {
   readonly name = "fluid surface";
-  readonly reads = ["fluidTiles", "fluidVolume", "fluidFloor", "sea", "solids", "canvas"] as const;
+  readonly reads = ["fluidTiles", "fluidVolume", "fluidFloor", "sea", "froth", "solids", "canvas"] as const;
   readonly writes = ["canvas"] as const;
   private readonly tiles: FluidTilesPass;
   private readonly solids: SolidsPass;
@@ -35,7 +40,7 @@ export class FluidSurfacePass implements Pass {
   private readonly small: { target: WebGLRenderTarget; material: RawShaderMaterial } | undefined;
 
   /** `colourRatio`: water_optics.ts. */
-  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms }: FluidSurfaceInputs, colourRatio: number, { scale }: FluidQuality, plain: boolean) {
+  constructor({ tiles, volume, solids, sky, noise, particleUniforms, floorUniforms, froth }: FluidSurfaceInputs, colourRatio: number, { scale }: FluidQuality, plain: boolean) {
     this.tiles = tiles;
     this.solids = solids;
     this.scale = scale;
@@ -61,8 +66,10 @@ export class FluidSurfacePass implements Pass {
         u_floor_m: { value: 0 },
         u_noise: { value: noise },
         u_colour_ratio: { value: colourRatio },
+        u_froth: { value: froth },
+        u_lace_m: { value: kLaceM },
       },
-      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "cut" && { GLASS: 1 }) }, transparent: true },
+      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "cut" && { GLASS: 1 }), ...(froth && { FROTH: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

@@ -17,7 +17,7 @@ const kCells = { garden: [10, 18, 0.35], land: [6, 10, 0.35], plain: [4, 7, 0.15
 export class Foliage {
   private readonly random = makeFastRandom(4242);
 
-  constructor(private readonly builder: MeshBuilder, private readonly cells: keyof typeof kCells) {}
+  constructor(readonly builder: MeshBuilder, private readonly cells: keyof typeof kCells) {}
 
   get plain(): boolean {
     return this.cells === "plain";

@@ -28,8 +28,8 @@ const kMostShrubs = 60;
 
 const kDeck = [0.60, 0.52, 0.42] as const;
 const kSlabM = 0.8;
-const kLawns: readonly [Paint, Paint] = [[0.15, 0.25, 0.062, 0.9], [0.20, 0.31, 0.085, 0.9]];
-const kMeadow: Paint = [0.17, 0.26, 0.08, 1.4];
+const kLawns: readonly [Paint, Paint] = [[0.15, 0.25, 0.062, 1.1], [0.20, 0.31, 0.085, 1.1]];
+const kMeadow: Paint = [0.17, 0.26, 0.08, 1];
 const kBox: Leaves = [[0.10, 0.21, 0.045, 1.8], [0.21, 0.34, 0.075, 1.8]];
 const kOlive: Leaves = [[0.16, 0.22, 0.10, 1.8], [0.33, 0.38, 0.20, 1.8]];
 const kMaple: Leaves = [[0.13, 0.25, 0.05, 1.8], [0.33, 0.42, 0.10, 1.8]];
@@ -46,6 +46,11 @@ const kCushion: Paint = [0.90, 0.87, 0.80, 0.15];
 const kTowels: readonly Paint[] = [[0.86, 0.30, 0.12, 0.2], [0.10, 0.42, 0.62, 0.2]];
 const kCanvas: readonly [Paint, Paint] = [[0.92, 0.88, 0.78, 0.1], [0.80, 0.26, 0.14, 0.1]];
 const kClay: Paint = [0.60, 0.27, 0.14, 0.5];
+const kSoil: Paint = [0.085, 0.06, 0.04, 1];
+/** Light of the sky on the deck around what stands there: reach, relative to its foot, and share. */
+const kShade = [[0, 0.35], [0.85, 0.4], [1.15, 0.7], [1.8, 1]] as const;
+/** Of what lies on the deck or the lawn, so that it does not flicker. */
+const kLiftM = 0.004;
 
 /** Returns the distance of the border from the water, and how high trees are over the deck. */
 export function gardenReach(sideM: number): { awayM: number; treeM: number } {
@@ -60,6 +65,12 @@ export function deckOf(sideM: number): { widthM: number; paint: Paint } {
 
 /** Positions beside one side of the water: along it, height, and outward from its edge. */
 type Beside = (alongM: number, yM: number, outM: number) => Point;
+
+/** Darkens the deck around a foot of half this length and width. */
+function addShade(deck: MeshBuilder, at: Beside, alongM: number, yM: number, outM: number, [halfAlongM, halfOutM]: readonly [number, number], [red, green, blue, tile]: Paint): void {
+  const rows = kShade.map(([reach]) => Array.from({ length: 17 }, (_, n) => at(alongM + reach * halfAlongM * Math.cos((Math.PI * n) / 8), yM + kLiftM, outM - reach * halfOutM * Math.sin((Math.PI * n) / 8))));
+  deck.grid(rows, (row) => { const share = kShade[row]![1]; return [share * red, share * green, share * blue, tile]; });
+}
 
 /** A sun bed whose head is outward, with a towel. */
 function addSunBed(builder: MeshBuilder, at: Beside, alongM: number, deckM: number, outM: number, towel: Paint): void {
@@ -118,6 +129,8 @@ function addLadder(builder: MeshBuilder, at: Beside, alongM: number, waterM: num
 /** A border of shrubs with flowers before it; its length is that of the side with the corners. */
 function addBorder(plants: Foliage, at: Beside, longM: number, deckM: number, awayM: number, treeM: number): void {
   const stepM = Math.max((plants.plain ? 0.4 : 0.22) * treeM, longM / kMostShrubs);
+  const soil = (alongM: number, outM: number): Point => at(alongM, deckM + kLiftM, awayM + outM * stepM);
+  plants.builder.quad(soil(-longM, -1.5), soil(longM, -1.5), soil(longM, 1), soil(-longM, 1), kSoil);
   let flower = 0;
   for (let alongM = -longM; alongM < longM; alongM += stepM * plants.between(0.8, 1.2)) {
     const sizeM = stepM * plants.between(0.6, 1.05);
@@ -152,12 +165,13 @@ function addLawn(builder: MeshBuilder, yM: number, inner: readonly [number, numb
   strip(reachM, far, -reachM, reachM, kMeadow);
 }
 
-/** Adds everything that stands on the deck and on the lawn. `deckWidthM`: of the deck around the water. */
-export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: number, plain: boolean): void {
+/** Adds everything that stands on the deck and on the lawn, and its shade on the deck, whose paint this is. */
+export function addGarden(builder: MeshBuilder, deck: MeshBuilder, paint: Paint, size: GardenSize, plain: boolean): void {
   const { deckM, waterM, halfM } = size;
   const [halfX, halfZ] = halfM;
   const sideM = 2 * Math.max(halfX, halfZ);
   const { awayM, treeM } = gardenReach(sideM);
+  const { widthM: deckWidthM } = deckOf(sideM);
   const plants = new Foliage(builder, plain ? "plain" : "garden");
   const lawnM = deckM - 0.03;
   addLawn(builder, lawnM, [halfX + deckWidthM - 0.02, halfZ + deckWidthM - 0.02], Math.max(halfX, halfZ) + 3 * awayM);
@@ -190,12 +204,21 @@ export function addGarden(builder: MeshBuilder, size: GardenSize, deckWidthM: nu
     if (waterM !== undefined && (side === 0 || (isOpen && sideM > kSmallM))) addLadder(builder, at, 0.5 * half, waterM, deckM);
     // Beside a small pool, nothing stands where the first views come from.
     if (sideM < kSmallM && side >= 2) return;
+    const shade = (alongM: number, outM: number, foot: readonly [number, number]): void => addShade(deck, at, alongM, deckM, outM, foot, paint);
     const groupM = (side === 0 ? -0.15 : 0.2) * half;
     if (waterM !== undefined) {
       addParasol(builder, at(groupM, deckM, seat + 0.9));
-      for (const n of [0, 1]) addSunBed(builder, at, groupM + (n === 0 ? -1.0 : 0.75), deckM, seat - 0.3, kTowels[(side + n) % 2]!);
+      shade(groupM, seat + 0.9, [0.3, 0.3]);
+      for (const n of [0, 1]) {
+        const alongM = groupM + (n === 0 ? -1.0 : 0.75);
+        addSunBed(builder, at, alongM, deckM, seat - 0.3, kTowels[(side + n) % 2]!);
+        shade(alongM, seat + 0.6, [0.42, 1.05]);
+      }
     }
     const potsM = sideM < kSmallM ? [-half - 0.7, half + 0.6] : [-0.62 * half, 0.78 * half];
-    for (const alongM of potsM) addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
+    for (const alongM of potsM) {
+      addPot(builder, plants, at(alongM, deckM, seat), alongM < 0 ? kOlive : kRose);
+      shade(alongM, seat, [0.24, 0.24]);
+    }
   });
 }

@@ -61,8 +61,8 @@ export class Landscape {
   constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean, isLandless = false) {
     this.add(ground, material);
     if (isLandless) {
-      const { parts, lampM } = makeSkerry(longSideM(bed), bed.depthM, plain);
-      for (const part of parts) this.add(part, material);
+      const { geometry, lampM } = makeSkerry(longSideM(bed), bed.depthM, plain);
+      this.add(geometry, material);
       this.lights.push({ kind: "lighthouse", atM: lampM });
     }
     // The longest breakwater has the lighthouse.

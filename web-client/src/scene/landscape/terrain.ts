@@ -30,6 +30,11 @@ export function bedOf(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterEx
   return { sideM, widthM, depthM: waterExtents.depthM, beaches, ground };
 }
 
+/** Returns whether the water is seen through glass. */
+export function isTank({ setting }: Pick<GreetingInfo, "setting">): boolean {
+  return setting === "glassTank" || setting === "flume";
+}
+
 /** The size by which what is around the water is scaled. */
 export function longSideM({ sideM, widthM }: Sides): number {
   return Math.max(sideM, widthM);

@@ -1,5 +1,6 @@
 // Drops of a tank: what flies apart from the liquid. A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
 // around it and stretched along their flight. They keep their places while it flies freely: their hash is that of its level velocity.
+// FROTH: none beside hulls, where they would hang before the boat.
 #include <fluid_words>
 #include <fluid_volume>
 
@@ -7,6 +8,9 @@ uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
 uniform vec2 u_target_px;
 uniform float u_drop;
+#ifdef FROTH
+uniform sampler2D u_froth;
+#endif
 
 flat out vec3 v_flight;    // unit direction on the screen, and width over length
 flat out vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
@@ -38,6 +42,9 @@ void main() {
   v_flight = vec3(1.0, 0.0, 1.0);
   v_strength_white = vec2(0.0);
   if (particle.density > kDense) return;
+#ifdef FROTH
+  if (textureLod(u_froth, particle.center_m.xz / (u_volume_max_m.xz - u_volume_min_m.xz) + 0.5, 0.0).g > 0.01) return;
+#endif
   float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
   vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));

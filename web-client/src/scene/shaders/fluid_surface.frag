@@ -4,7 +4,7 @@
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
 // volume is a pool, or with GLASS a tank. AGAIN: a ray that has left the liquid may enter it again. RIPPLES: the
-// surface mirrors with waves too short for particles.
+// surface mirrors with waves too short for particles. FROTH: boats leave foam.
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>
@@ -37,6 +37,11 @@ uniform vec2 u_extent_m;       // length and width of the wave
 uniform sampler2D u_floor_light;  // the floor of the tank from above
 uniform vec2 u_floor_size_m;
 const float kMapped = 0.485;   // share of the map without the rim, which hides the floor from above
+#endif
+#ifdef FROTH
+uniform sampler2D u_froth;
+uniform float u_lace_m;        // size of one tile of the foam's lace
+#include <foam>
 #endif
 layout(location = 0) out vec4 color;
 
@@ -367,7 +372,15 @@ void main() {
     fresnel = min(fresnel / max(1.0 - kept, 0.02), 1.0);
   }
 #endif
-  color = vec4(toDisplay(mix(mix(under, mirrored_light, fresnel) + glint * u_sun_light, froth, mist)), alpha);
+  vec3 light = mix(under, mirrored_light, fresnel) + glint * u_sun_light;
+#ifdef FROTH
+  if (!is_pane) {
+    vec2 foam_shade = textureLod(u_froth, surface.xz / (u_volume_max_m.xz - u_volume_min_m.xz) + 0.5, 0.0).rg;
+    light *= 1.0 - foam_shade.g;
+    if (foam_shade.r > 0.01) light = withFoam(light, surface.xz, foam_shade.r, 1.0, normal, 1.0);
+  }
+#endif
+  color = vec4(toDisplay(mix(light, froth, mist)), alpha);
   gl_FragDepth = clamp(0.5 * (u_projection[3][2] / ahead_m - u_projection[2][2]) + 0.5, 0.0, 1.0);
 #ifdef WAVE
   // Drawn in front of the wave's surface, from which it can hardly be told.

@@ -1,5 +1,5 @@
-// Include in water.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that has just begun is a
-// heap of domes with creases between them. After u_noise, u_lace_m and sky.glsl.
+// Include in water.frag and fluid_surface.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that
+// has just begun is a heap of domes with creases between them. After u_noise, u_lace_m, sky.glsl and water_optics.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn.
 #ifndef GLASS
@@ -49,4 +49,25 @@ vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share
   // Little of the sky is seen from a crease.
   float open = mix(0.3 + 1.0 * lace, 0.8, smoothstep(0.05, 0.3, blur));
   return vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
+}
+
+// Water with `foam` on it, more than 0. `bubbles`: share of those below it that are drawn.
+vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float sunlit_share) {
+  // The water's motion draws the lace out and curls it.
+  vec2 curl = vec2(texture(u_noise, at.yx / (2.9 * u_lace_m) + 0.13).r, texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r);
+  at += 0.2 * u_lace_m * (curl - 0.5);
+  // Far away the lace is finer than a pixel, and its edges would be dots.
+  vec2 at_step = fwidth(at);
+  float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
+  // Thinning foam comes apart in patches; fresh foam is one body.
+  foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
+  float cover = min(foam, 1.0);
+  float fresh = smoothstep(0.45, 0.9, cover);
+  float lace = laceAt(at, fresh);
+  // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
+  float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+  float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
+  // Bubbles below the surface reach further than the froth on it.
+  water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));
+  return mix(water, foamLight(at, lace, fresh, normal, sunlit_share, blur), white);
 }

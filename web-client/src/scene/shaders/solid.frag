@@ -4,6 +4,7 @@
 // FIELD: what stands upright in the water is wet and darker above the water's surface, and less of the sky lights it there.
 // INSTANCES: the grain turns with the object. The plain tiers have solid_plain.frag. Distant land fades into the haze. Lamps (grain below 0) shine by themselves in the dark.
 #include <sky>
+#include <water_optics>
 
 in vec3 v_world;
 in vec3 v_normal;
@@ -40,8 +41,12 @@ const float kWetBandM = 0.15, kDarkBandM = 0.2;
 #endif
 // Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
 const float kLeavesGrain = 1.6, kLeavesTiles = 0.9;
+// A mown lawn has more grain than this.
+const float kLawnGrain = 1.05, kLeavesShadeM = 0.3;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
 const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
+// Farthest that paint mirrors the waves beside it, m; slopes of their ripples, and the size of those, m.
+const float kMirrorsM = 6.0, kMirroredSlope = 0.8, kMirroredM = 1.7;
 layout(location = 0) out vec4 color;
 
 void main() {
@@ -78,7 +83,7 @@ void main() {
       if (dot(normal, toward) < 0.45 * (0.85 - leaves)) discard;
       albedo *= 0.45 + 1.1 * leaves;
     }
-    if (u_haze_m > 0.0 && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
+    if (u_haze_m > 0.0 && grain < kLawnGrain && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
       // What grows on open land: scrub on dry sand, and woods and hedges on grass.
       float broad = texture(u_noise, at.yx / (31.0 * grain_m) + 0.71, kSharper).r;
       float middle = texture(u_noise, at / (9.0 * grain_m) + 0.19, kSharper).r;
@@ -137,7 +142,8 @@ void main() {
     upright *= smoothstep(-0.3, -0.02, over_line_m);
     wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * (0.45 + 1.1 * ragged))));
     seen_sky = 1.0 - 0.5 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
-    albedo *= 1.0 - 0.55 * wet_band;
+    // Paint hardly darkens, it shines.
+    albedo *= 1.0 - mix(0.15, 0.55, min(2.0 * grain, 1.0)) * wet_band;
   }
 #endif
   float sun = max(dot(normal, u_sun_direction), 0.0);
@@ -157,6 +163,8 @@ void main() {
   }
 #endif
 #ifdef SHADOWS
+  // Leaves let light through: on a lawn their shade has no edge.
+  if (grain > kLawnGrain && normal.y > 0.99) soft_m = kLeavesShadeM;
   if (sun > 0.0) sun *= sunShare(lit_at, lit_normal, soft_m);
 #endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
@@ -177,11 +185,26 @@ void main() {
   }
 #endif
   float away = 1.0 - clamp(-dot(normal, ray), 0.0, 1.0);
-  float shine = (0.03 + 0.30 * away * away * away * away) * (1.0 - min(grain, 1.0) * (1.0 - wet_band)) * seen_sky;
+  // Paint is varnished: Fresnel's equations by eye, for varnish that is not even.
+  float shine = (0.09 + 0.80 * away * away * away * away) * (1.0 - min(grain, 1.0) * (1.0 - wet_band)) * (1.0 + wet_band) * seen_sky;
   if (shine > 0.01 && over_water_m > 0.0) {
     vec3 mirrored = reflect(ray, normal);
+    float mirrors = 1.0;
+    vec3 water = vec3(0.0);
+    if (mirrored.y < 0.0) {
+      // The waves beside it, which mirror the sky in turn.
+      vec2 wave_at = v_world.xz + mirrored.xz * min(over_water_m / -mirrored.y, kMirrorsM);
+      vec2 slopes = kMirroredSlope * (vec2(texture(u_noise, wave_at / kMirroredM).r, texture(u_noise, wave_at.yx / (1.3 * kMirroredM)).r) - 0.5);
+#ifdef FIELD
+      slopes += textureLod(u_field, wave_at / u_extent_m + 0.5, 0.0).gb;
+#endif
+      vec3 up = normalize(vec3(-slopes.x, 1.0, -slopes.y));
+      mirrors = waterFresnel(clamp(-dot(up, mirrored), 0.0, 1.0));
+      water = waterScattered(0.4) * u_water_light;
+      mirrored = reflect(mirrored, up);
+    }
     mirrored.y = abs(mirrored.y);
-    lit += shine * skyLight(mirrored) + (1.0 - grain) * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
+    lit += shine * mix(water, skyLight(mirrored), mirrors) + (1.0 - grain) * mirrors * u_sun_light * 0.5 * pow(max(dot(mirrored, u_sun_direction), 0.0), 80.0);
   }
   if (u_haze_m > 0.0) {
     float hazy = max(distance_m - 2.0 * max(u_extent_m.x, u_extent_m.y), 0.0) / u_haze_m;

@@ -368,27 +368,12 @@ void main() {
     // Large breakers tear it; small, steep waves would fold it into rings.
     at -= 0.6 * field.gb;
 #endif
-    // The water's motion draws the lace out and curls it.
-    vec2 curl = vec2(texture(u_noise, at.yx / (2.9 * u_lace_m) + 0.13).r, texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r);
-    at += 0.2 * u_lace_m * (curl - 0.5);
-    // Far away the lace is finer than a pixel, and its edges would be dots.
-    vec2 at_step = fwidth(at);
-    float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
-    // Thinning foam comes apart in patches; fresh foam is one body.
-    foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
-    float cover = min(foam, 1.0);
-    float fresh = smoothstep(0.45, 0.9, cover);
-    float lace = laceAt(at, fresh);
-    // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-    float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
-    float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
-    // Bubbles below the surface reach further than the froth on it.
-    float clouded = 0.42 * cover * (0.35 + 0.65 * lace);
 #ifdef SHORE
-    clouded *= smoothstep(0.0, 0.25, deep_m);
+    float bubbles = smoothstep(0.0, 0.25, deep_m);
+#else
+    const float bubbles = 1.0;
 #endif
-    water = mix(water, u_bubbly * u_water_light, clouded);
-    water = mix(water, foamLight(at, lace, fresh, normal, sunlit_share, blur), white);
+    water = withFoam(water, at, foam, bubbles, normal, sunlit_share);
   }
 #endif
 #ifdef OPEN_SEA

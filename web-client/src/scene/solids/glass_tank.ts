@@ -143,17 +143,16 @@ function makeGarden(size: TankSize, plain: boolean): { deck: BufferGeometry; pla
   const halfM = [size.sideM, size.widthM].map((lengthM) => Math.max(lengthM / 2 + kFreeBesideM, kFreeHalfM)) as [number, number];
   const sideM = 2 * Math.max(...halfM);
   const { widthM, paint } = deckOf(sideM);
+  const slabs: Paint = [paint[0], paint[1], paint[2], (paint[3] * sideM) / Math.max(size.sideM, size.widthM)];
   const planted = new MeshBuilder();
-  addGarden(planted, { halfM, deckM: deckM(size) }, widthM, plain);
-  const slab = (paint[3] * sideM) / Math.max(size.sideM, size.widthM);
-  return { deck: level(halfM[0] + widthM, deckM(size), halfM[1] + widthM, [paint[0], paint[1], paint[2], slab]), planted: planted.build() };
+  const deck = level(halfM[0] + widthM, deckM(size), halfM[1] + widthM, slabs);
+  addGarden(planted, deck, slabs, { halfM, deckM: deckM(size) }, plain);
+  return { deck: deck.build(), planted: planted.build() };
 }
 
 /** A level rectangle around the middle. */
-function level(xM: number, yM: number, zM: number, paint: Paint): BufferGeometry {
-  const builder = new MeshBuilder();
-  builder.quad([-xM, yM, zM], [xM, yM, zM], [xM, yM, -zM], [-xM, yM, -zM], paint);
-  return builder.build();
+function level(xM: number, yM: number, zM: number, paint: Paint): MeshBuilder {
+  return new MeshBuilder().quad([-xM, yM, zM], [xM, yM, zM], [xM, yM, -zM], [-xM, yM, -zM], paint);
 }
 
 export class GlassTank {
@@ -189,7 +188,7 @@ export class GlassTank {
     const { deck, planted } = makeGarden(size, quality.plain);
     this.planted = new Mesh(planted, solid);
     this.floors = [
-      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, ((greeting.wave ? kNoTile : kTileShare) * sizeM(size)) / longM]), makeTiles(greeting, context)),
+      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, ((greeting.wave ? kNoTile : kTileShare) * sizeM(size)) / longM]).build(), makeTiles(greeting, context)),
       new Mesh(deck, makeTiles(greeting, context, true)),
     ];
     for (const mesh of [this.glass, this.base, this.planted, ...this.floors]) mesh.frustumCulled = false;

@@ -89,7 +89,7 @@ export function makeBasinGeometries(lengthM: number, widthM: number, depthM: num
   const { widthM: deckM, paint } = deckOf(sideM);
   addRing(deck, rimM, grown(outerM), grown(deckM), paint);
   const planted = new MeshBuilder();
-  addGarden(planted, { halfM: half, waterM: depthM, deckM: rimM }, deckM, plain);
+  addGarden(planted, deck, paint, { halfM: half, waterM: depthM, deckM: rimM }, plain);
   return { tiled: tiled.build(), deck: deck.build(), planted: planted.build() };
 }
 

@@ -19,7 +19,7 @@ import type { BodyPose } from "../../../client/codec/bodies";
 import type { FloaterPose } from "../../../client/codec/floaters";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import { kTankBed } from "../landscape/landscape";
-import { bedOf } from "../landscape/terrain";
+import { bedOf, isTank } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
 import { hazeM } from "../light/weather";
@@ -30,7 +30,7 @@ import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
 import { kTankTile } from "./glass_tank";
-import { isTank, Surroundings } from "./surroundings";
+import { Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
 const kGrainSides = 1 / 16;

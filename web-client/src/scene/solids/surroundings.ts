@@ -6,7 +6,7 @@ import type { SettingName, SideName } from "../../../client/codec/scene_info";
 import type { ViewedBox } from "../camera/framing";
 import { makeCoastGeometry } from "../landscape/coast";
 import { Landscape, makeGroundGeometry } from "../landscape/landscape";
-import { bedOf } from "../landscape/terrain";
+import { bedOf, isTank } from "../landscape/terrain";
 import type { Quality } from "../drawing/quality";
 import type { Lamps } from "../light/lamps";
 import { OpenSea } from "../sea/open_sea";
@@ -47,10 +47,6 @@ export function viewOf({ setting, wave, firstView }: GreetingInfo): Pick<ViewedB
   const closed = (side: SideName): number => Number(wave.sides[side] === "closed");
   const seenFrom = kSeenFrom.find((side) => closed(side) === 0) ?? "+z";
   return { ...view, seenFrom, lean: { x: kLeanFromLand.x * (closed("-x") - closed("+x")), z: kLeanFromLand.z * (closed("-z") - closed("+z")) } };
-}
-
-export function isTank({ setting }: GreetingInfo): boolean {
-  return setting === "glassTank" || setting === "flume";
 }
 
 /** Root mean square slope of the ripples in a pool, in a flume, where waves break, and on water of particles alone. */

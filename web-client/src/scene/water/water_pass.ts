@@ -10,13 +10,12 @@ import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { WarmUp } from "../drawing/warm_up";
 import { makeGroundTexture } from "../landscape/ground_texture";
-import { bedOf, bedUniformValues, longSideM } from "../landscape/terrain";
+import { bedOf, bedUniformValues, isTank, longSideM } from "../landscape/terrain";
 import type { Sky } from "../light/sky";
 import { colourRatio } from "../light/water_optics";
 import { clamp } from "../maths/interpolate";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
-import { isTank } from "../solids/surroundings";
 import { BelowSurface } from "./below_surface";
 import { makeWaterGeometries } from "./water_grid";
 

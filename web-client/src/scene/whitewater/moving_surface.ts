@@ -10,6 +10,16 @@ interface SurfaceMotion {
   slopeZ: number;
 }
 
+/** What white water has to know of the surface. */
+export type Surface = Pick<MovingSurface, "elevationAtM" | "motionAt">;
+
+/** Returns the surface of a room without a wave: particles have no level of their own, and boats swim at the resting one. */
+export function restingSurface(sideM: number, widthM: number): Surface {
+  const elevationAtM = (xM: number, zM: number): number | undefined => (Math.abs(xM) < sideM / 2 && Math.abs(zM) < widthM / 2 ? 0 : undefined);
+  const motion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0 };
+  return { elevationAtM, motionAt: (xM, zM) => (elevationAtM(xM, zM) === undefined ? undefined : motion) };
+}
+
 export class MovingSurface {
   private readonly sideM: number;
   private readonly widthM: number;

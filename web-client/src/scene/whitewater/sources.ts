@@ -7,7 +7,7 @@ import type { FoamFrame } from "../../net/messages";
 import type { BodyPose } from "../../../client/codec/bodies";
 import { clamp, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
-import type { MovingSurface } from "./moving_surface";
+import type { Surface } from "./moving_surface";
 
 /** What the sources add to. `scale`: 1 for the densities below, less where fewer particles are wanted. */
 export interface Births {
@@ -54,7 +54,7 @@ const kCrestSpeedsMps = [0.25, 1.2] as const;
 const kMostCrestMps = 6;
 
 /** Breaking crests: foam that grew from one frame to the next. */
-export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: MovingSurface): void {
+export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: Surface): void {
   const n = to.resolutionCount;
   if (from.resolutionCount !== n || from.countZ !== to.countZ) return;
   const { particles, random, scale } = births;
@@ -93,7 +93,7 @@ const kWakeFrothPerMS = 70;
 const kSideFrothPerMS = 130;
 
 /** Bow waves and wakes. `poses` are the first `boats.length` or fewer boats drawn now. */
-export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: MovingSurface, gravityMps2: number, stepS: number): void {
+export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: Surface, gravityMps2: number, stepS: number): void {
   const { particles, random, scale } = births;
   for (const { boatId, xM, zM, headingRad, speedMps } of poses) {
     const hull = hulls.get(boatId);
@@ -191,7 +191,7 @@ const kRimDropsPerMS = 160;
 const kRimSpeedsMps = [0.3, 1.3] as const;
 
 /** Water that rises against rocks and breakwaters. */
-export function addRims(births: Births, rim: readonly RimPoint[], surface: MovingSurface, stepS: number): void {
+export function addRims(births: Births, rim: readonly RimPoint[], surface: Surface, stepS: number): void {
   const { particles, random, scale } = births;
   for (const { xM, zM, normalX, normalZ, lengthM } of rim) {
     const motion = surface.motionAt(xM, zM);

@@ -24,10 +24,10 @@ interface WhitewaterPasses {
   particles: DiffuseParticles;
 }
 
-/** For a room with a wave. */
+/** For a room with a wave, or with boats among particles, which have bubbles of their own. */
 export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFrames, solids: SolidsPass, sky: Sky, quality: WhitewaterQuality): WhitewaterPasses {
   const whitewater = new WhitewaterPass(greeting, frames, solids, quality);
   const { points } = whitewater;
   const froth = new FrothPass(points, greeting, quality.frothTexelsCount);
-  return { before: [whitewater, froth, new BubblesPass(points, solids, sky)], after: [new SprayPass(points, solids, sky)], froth, particles: whitewater.particles };
+  return { before: [whitewater, froth, ...(greeting.wave ? [new BubblesPass(points, solids, sky)] : [])], after: [new SprayPass(points, solids, sky)], froth, particles: whitewater.particles };
 }

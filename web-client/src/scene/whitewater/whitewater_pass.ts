@@ -8,7 +8,7 @@ import type { StreamedFrames } from "../frames/streamed_frames";
 import { makeFastRandom } from "../maths/random";
 import type { SolidsPass } from "../solids/solids_pass";
 import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, kMostHulls, type Medium } from "./diffuse_particles";
-import { MovingSurface } from "./moving_surface";
+import { MovingSurface, restingSurface, type Surface } from "./moving_surface";
 import { addCrests, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
 
@@ -54,12 +54,13 @@ export class WhitewaterPass implements Pass {
 
   /** Brings the white water to a time. */
   private follow(shownS: number | undefined): void {
+    const { wave, sideM, widthM } = this.greeting;
     const surfaces = shownS === undefined ? undefined : this.frames.surfaces.around(shownS);
-    if (!surfaces) return;
-    const stepS = shownS! - (this.lastS ?? shownS!);
+    if (shownS === undefined || (wave && !surfaces)) return;
+    const stepS = shownS - (this.lastS ?? shownS);
     this.lastS = shownS;
     if (stepS < 0 || stepS > kGapS) this.particles.clear();
-    else if (stepS > 0) this.advance(shownS!, Math.min(stepS, kLongestS), new MovingSurface(surfaces));
+    else if (stepS > 0) this.advance(shownS, Math.min(stepS, kLongestS), surfaces ? new MovingSurface(surfaces) : restingSurface(sideM, widthM));
   }
 
   /** Writes the boats behind the particles, for the foam and the shade around their hulls (whitewater.vert). Returns how many. */
@@ -78,7 +79,7 @@ export class WhitewaterPass implements Pass {
     this.points.dispose();
   }
 
-  private advance(shownS: number, stepS: number, surface: MovingSurface): void {
+  private advance(shownS: number, stepS: number, surface: Surface): void {
     const { births, frames, greeting } = this;
     const gravityMps2 = greeting.wind?.gravityMps2 ?? 9.81;
     const foam = frames.foam.around(shownS);
@@ -93,7 +94,7 @@ export class WhitewaterPass implements Pass {
     for (let leftS = stepS; leftS > 1e-6; leftS -= kMaxStepS) this.particles.step(Math.min(leftS, kMaxStepS), medium);
   }
 
-  private medium(surface: MovingSurface, gravityMps2: number): Medium {
+  private medium(surface: Surface, gravityMps2: number): Medium {
     const { levelRatio = 0, speedMps = 0, directionDeg = 0 } = this.greeting.wind ?? {};
     const angle = (directionDeg * Math.PI) / 180;
     const blowsMps = levelRatio * speedMps;
