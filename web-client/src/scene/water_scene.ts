@@ -84,7 +84,7 @@ export class WaterScene {
     this.noise = makeNoiseTexture(quality.plain);
     this.picture = { renderer, camera: this.camera, sizePx: new Vector2(), shownS: undefined };
     renderer.autoClear = false;
-    this.warmUp = makeWarmUp(renderer);
+    this.warmUp = makeWarmUp(renderer, quality.plain);
   }
 
   get clock() {
