@@ -6,7 +6,7 @@ import { leadsToFront } from "./front/entrance";
 import { IdentityStore, sessionStorageIfAny } from "./net/identity_store";
 import { requestRooms, type RoomSummary } from "../client/rest/rooms";
 import { roomOf, wishOf } from "./net/room_address";
-import { prepareWorker, socketUrl } from "./net/water_client";
+import { prepareConnection, prepareWorker, socketUrl } from "./net/water_client";
 import { translation } from "./net/translation";
 import { languageNow } from "./ui/language";
 
@@ -37,6 +37,7 @@ async function openRoomOrFront(): Promise<void> {
   setTimeout(showPanels, kMostHiddenMs);
   // Most addresses lead to water, and whoever comes to the front page opens a room next.
   const water = import("./app/water_page");
+  prepareWorker();
   const url = socketUrl(location.href);
   // Only looked at: the page that is opened takes it out of the address.
   const identity = new IdentityStore(sessionStorageIfAny(), url).peek(takeLinkToken(location, { replaceState: () => {} }));
@@ -51,7 +52,7 @@ async function openRoomOrFront(): Promise<void> {
   void rooms.then((all) => showPoster(all.find(({ name }) => name === (roomOf(location.search) || kFirstRoom))?.scene ?? wish?.scene));
   // The connection is there before the page is, which takes longer: frames, projectors and exhibits make their own.
   const isVisitor = ![isEmbeddedAddress, isProjectorAddress, isKioskAddress].some((isOne) => isOne(location));
-  prepareWorker(isVisitor ? { url, identity, wish } : undefined);
+  if (isVisitor) prepareConnection({ url, identity, wish });
   const { openWaterPage } = await water;
   openWaterPage();
 }

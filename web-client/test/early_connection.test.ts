@@ -2,7 +2,7 @@
 import { afterEach, beforeEach, describe, expect, it, vi } from "vitest";
 
 import type { PageEvent, PageEventHandlers, WorkerRequest } from "../src/net/messages";
-import { abandonWorker, openWaterClient, prepareWorker } from "../src/net/water_client";
+import { abandonWorker, openWaterClient, prepareConnection, prepareWorker } from "../src/net/water_client";
 
 class FakeWorker {
   static made: FakeWorker[] = [];
@@ -27,6 +27,11 @@ const kUrl = "ws://host/ws";
 const kIdentity = { name: "Ada", token: "", resumeKey: "key" };
 const frame = (layer: string, tick: number) => ({ kind: "frame", frame: { layer, tick, buffer: new ArrayBuffer(8) } });
 
+function prepare(): void {
+  prepareWorker();
+  prepareConnection({ url: kUrl, identity: kIdentity });
+}
+
 function client() {
   const taken: PageEvent[] = [];
   const handlers = new Proxy({}, { get: () => (event: PageEvent) => void taken.push(event) }) as PageEventHandlers;
@@ -42,7 +47,7 @@ describe("the early connection", () => {
   afterEach(() => vi.unstubAllGlobals());
 
   it("starts at once, and once", () => {
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     const [worker] = FakeWorker.made;
     expect(worker!.posted).toMatchObject([{ kind: "start", url: kUrl, identity: kIdentity, language: "en" }, { kind: "want", wishes: { frameRateHz: 10 } }]);
     client().client.start(kUrl, kIdentity);
@@ -50,8 +55,16 @@ describe("the early connection", () => {
     expect(FakeWorker.made).toHaveLength(1);
   });
 
+  it("starts with the page where nothing was connected before", () => {
+    prepareWorker();
+    expect(FakeWorker.made[0]!.posted).toEqual([]);
+    client().client.start(kUrl, kIdentity);
+    expect(FakeWorker.made).toHaveLength(1);
+    expect(FakeWorker.made[0]!.posted).toMatchObject([{ kind: "start", url: kUrl }]);
+  });
+
   it("hands on in order what came before the page, and then what comes", () => {
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     const [worker] = FakeWorker.made;
     worker!.send({ kind: "greeting" }, { kind: "welcome" }, frame("surface", 1));
     const rig = client();
@@ -63,7 +76,7 @@ describe("the early connection", () => {
   });
 
   it("keeps the newest frame of each layer and returns the others, so that nothing piles up", () => {
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     const [worker] = FakeWorker.made;
     for (let tick = 1; tick <= 100; ++tick) worker!.send(frame("surface", tick), frame("foam", tick));
     expect(worker!.posted.filter(({ kind }) => kind === "release")).toHaveLength(198);
@@ -73,7 +86,7 @@ describe("the early connection", () => {
   });
 
   it("is not taken for another room, nor by a second client", () => {
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     client().client.start("ws://host/ws/other", kIdentity);
     expect(FakeWorker.made[0]!.posted.filter(({ kind }) => kind === "start")).toMatchObject([{ url: kUrl }, { url: "ws://host/ws/other" }]);
     client().client.start(kUrl, kIdentity);
@@ -81,9 +94,9 @@ describe("the early connection", () => {
   });
 
   it("ends where no water is drawn, and where no page takes what it sends", () => {
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     abandonWorker();
-    prepareWorker({ url: kUrl, identity: kIdentity });
+    prepare();
     const [abandoned, ignored] = FakeWorker.made;
     for (let k = 0; k < 1000; ++k) ignored!.send({ kind: "people" });
     expect([abandoned!.isEnded, ignored!.isEnded]).toEqual([true, false]);

@@ -20,8 +20,8 @@ const kWaitingRateHz = 10;
 /** Events that wait for the page at most: more come only where none will be. */
 const kMostWaiting = 1000;
 
-/** Starts the worker, and with `start` its connection, while the page loads and makes its WebGL context: in software that takes as long. */
-export function prepareWorker(start?: StartParameters): void {
+/** Starts the worker while the page loads. */
+export function prepareWorker(): void {
   const waiting: PageEvent[] = [];
   const worker = newWorker();
   worker.onmessage = ({ data: event }: MessageEvent<PageEvent>) => {
@@ -30,8 +30,14 @@ export function prepareWorker(start?: StartParameters): void {
     if (superseded?.kind === "frame") release(worker, superseded.frame);
     if (waiting.push(event) > kMostWaiting) abandonWorker();
   };
-  prepared = { worker, url: start?.url, waiting };
-  if (!start) return;
+  prepared = { worker, url: undefined, waiting };
+}
+
+/** Starts the connection of the prepared worker while the page makes its WebGL context: in software that takes as long. */
+export function prepareConnection(start: StartParameters): void {
+  if (!prepared) return;
+  prepared.url = start.url;
+  const { worker } = prepared;
   worker.postMessage(startRequest(start));
   // What nobody draws yet: the page asks for as many as its quality needs.
   worker.postMessage({ kind: "want", wishes: { frameRateHz: kWaitingRateHz } } satisfies WorkerRequest);
