@@ -28,7 +28,7 @@ const kShots = {
   dam_break: { tick: 104 },
   flume: { tick: 903 },
   flotsam: { tick: 300 },
-  harbor: { tick: 546 },
+  harbor: { tick: 1410 },
   island: { tick: 510, historyTicks: 300 },
   kelvin: { tick: 840 },
   open_water: { tick: 300 },

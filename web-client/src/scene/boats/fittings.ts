@@ -172,7 +172,7 @@ function fitLaunch(builder: MeshBuilder, lines: HullLines, livery: Livery, { isF
   if (isFine) for (const [along, z, n] of [[0.2, -0.24, 0], [0.29, -0.3, 1], [0.19, 0.26, 1]] as const) onSole(along, z, [0.036, 0.17, 0.075], kFishBoxes[n]!, kCanvas);
   addPerson(builder, [backM - 0.075 * lengthM, soleM, 0.13 * beamM], kPersonBeams * beamM, false, isFine);
   const sternM = lines.sheerM(0.03);
-  addFlag(builder, [lines.xM(0.03, sternM) + 0.02 * lengthM, sternM, 0], 0.55 * heightM, livery.side);
+  addFlag(builder, [lines.xM(0.03, sternM) + 0.02 * lengthM, sternM, 0], 0.55 * heightM, livery.flag);
   const mastX = backM + 0.04 * lengthM;
   const mastM = highM + 0.6 * heightM;
   addRod(builder, [mastX, highM, 0], [mastX, mastM, 0], 0.016 * beamM, livery.gunwale, 5, 0.009 * beamM);
@@ -269,7 +269,7 @@ function fitCutter(builder: MeshBuilder, lines: HullLines, livery: Livery, { sid
   const hatchM = lines.deckM(0.73);
   builder.block(hatchX, 0, { yM: hatchM - 0.05 * heightM, halfX: 0.035 * lengthM, halfZ: 0.1 * beamM }, { yM: hatchM + 0.09 * heightM, halfX: 0.032 * lengthM, halfZ: 0.09 * beamM }, livery.house, livery.gunwale);
   const sternM = lines.sheerM(0.02);
-  addFlag(builder, [lines.xM(0.02, sternM) + 0.015 * lengthM, sternM, 0], 0.5 * heightM, livery.side);
+  addFlag(builder, [lines.xM(0.02, sternM) + 0.015 * lengthM, sternM, 0], 0.5 * heightM, livery.flag);
   if (isFine) {
     addRailing(builder, lines, 0.74, 0.98, 0.2 * heightM, 5, 0.94);
     addRigging(builder, lines, [mastX - 0.03 * lengthM, mastM, 0]);

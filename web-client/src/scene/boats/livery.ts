@@ -6,6 +6,7 @@ export interface Livery {
   bottom: Paint;
   stripe: Paint;
   side: Paint;
+  flag: Paint;
   transom: Paint;
   strake: Paint;
   gunwale: Paint;
@@ -25,6 +26,8 @@ export const kCanvas: Paint = [0.62, 0.57, 0.47, 0.4];
 const kSideColors: readonly Paint[] = [
   [0.03, 0.07, 0.15, 0], [0.20, 0.045, 0.04, 0], [0.035, 0.105, 0.08, 0], [0.60, 0.57, 0.48, 0], [0.20, 0.22, 0.23, 0], [0.07, 0.145, 0.20, 0],
 ];
+/** Cloth of the flag of a boat without an owner: it is seen before any hull. */
+const kFlag: Paint = [0.48, 0.04, 0.035, 0.7];
 /** Paint reflects less than a screen's full colour. */
 const kPaintReflects = 0.8;
 
@@ -50,10 +53,11 @@ export interface BoatColors {
 export function liveryOf(kind: HullKind, boatId: number, colors: BoatColors | undefined): Livery {
   const own = (colors && paintOf(colors.owner)) || kSideColors[boatId % kSideColors.length]!;
   const side = (colors?.team && paintOf(colors.team)) || own;
+  const flag: Paint = colors ? [own[0], own[1], own[2], kFlag[3]] : kFlag;
   const wood: Paint = [0.27, 0.15, 0.075, 0.3];
   const cream: Paint = [0.70, 0.67, 0.58, 0];
   const white: Paint = [0.72, 0.72, 0.69, 0];
-  const common = { bottom: [0.20, 0.045, 0.035, 0] as Paint, stripe: side === own ? white : own, side, transom: side, roof: side === own ? cream : own };
+  const common = { bottom: [0.20, 0.045, 0.035, 0] as Paint, stripe: side === own ? white : own, side, flag, transom: side, roof: side === own ? cream : own };
   if (kind === "dinghy") return { ...common, bottom: white, stripe: own, transom: side === own ? wood : own, strake: side === own ? wood : own, gunwale: wood, inside: [0.52, 0.33, 0.17, 0.3], deck: [0.46, 0.30, 0.16, 0.5], house: cream };
   if (kind === "launch") return { ...common, strake: wood, gunwale: wood, inside: cream, deck: [0.40, 0.29, 0.19, 0.4], house: white };
   return { ...common, strake: kBlack, gunwale: kBlack, inside: [0.62, 0.62, 0.58, 0], deck: [0.24, 0.30, 0.27, 0.5], house: cream };
