@@ -42,6 +42,6 @@ vec3 mirroredSun(vec3 ray, vec2 slopes, vec2 pixel_slopes, float variance, float
   float steep = halfway.y * halfway.y;
   vec2 share = vec2(glints, gleam) * (waterFresnel(max(-dot(halfway, ray), 0.0)) / (4.0 * max(facing, 0.06) * steep * steep));
   // Brighter than white is only white: glints keep a middle and a rim.
-  share /= 1.0 + vec2(0.6, 1.4) * share;
+  share /= 1.0 + vec2(1.6, 2.4) * share;
   return u_sun_light * (1.25 * mix(share.x, share.y, kGleam));
 }
