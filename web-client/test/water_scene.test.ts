@@ -245,3 +245,18 @@ describe("the look of the water", () => {
     scene.dispose();
   });
 });
+
+describe("programs before the first picture", () => {
+  it.each([["minimal", 2], ["high", 0]] as const)("are linked while the room is built, in %s drawn with %i times, and not again for a second room", (tier, drawsCount) => {
+    const calls: string[] = [];
+    const renderer = fakeRenderer({ compile: () => void calls.push("compile"), render: () => void calls.push("render") });
+    const scene = new WaterScene(renderer, { ...kTiers[tier], texelType: HalfFloatType }, () => {});
+    scene.enter({ ...kRoom, ...kRooms["a harbor with everything"] }, false);
+    expect(calls.filter((call) => call === "compile")).toHaveLength(2);
+    expect(calls.filter((call) => call === "render")).toHaveLength(drawsCount);
+    calls.length = 0;
+    scene.enter({ ...kRoom, ...kRooms["a pool"] }, false);
+    expect(calls).toEqual([]);
+    scene.dispose();
+  });
+});
