@@ -36,7 +36,7 @@ const kCrestM = 1.6;
 const kCrestShare = 0.34;
 
 /** Way through a tank, for its colour (m). */
-const kTankWayM = 5;
+const kTankWayM = 7;
 
 /** Depth of a pool whose lengths count as they are (m). */
 const kPoolDeepM = 1.5;
