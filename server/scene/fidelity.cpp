@@ -153,7 +153,7 @@ core::Result<v1::FidelityErrors> loadFidelityErrors(const std::filesystem::path&
   if (!std::filesystem::exists(file, error)) return out;
   const auto text = core::readText(file, kMaxBytes, "a file of errors", "`./dev study --update` writes it");
   if (!text) return text.error();
-  if (const textproto::ParsedText parsed(*text, out); !parsed.errors().empty())
+  if (const textproto::ParsedText parsed(*text, out); parsed.hasErrors())
     return core::invalid(parsed.report(file.string()) + "\n`./dev study --update` writes this file");
   for (const v1::FidelityErrorsOfScene& scene : out.scenes()) {
     const auto& ratios = scene.error_ratios();

@@ -49,7 +49,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
   }
   v1::Scene scene;
   textproto::ParsedText parsed(std::string(text), scene);
-  const bool text_is_fine = parsed.errors().empty();
+  const bool text_is_fine = !parsed.hasErrors();
 
   std::vector<FieldIssue> issues;
   checkFields(scene, "", issues);
@@ -69,7 +69,7 @@ core::Result<v1::Scene> parseSceneText(std::string_view text, const std::string&
     }
   }
   for (const FieldIssue& issue : issues) parsed.addError(issue.path, issue.message);
-  if (!parsed.errors().empty()) return core::invalid(parsed.report(file_label));
+  if (parsed.hasErrors()) return core::invalid(parsed.report(file_label));
   return scene;
 }
 

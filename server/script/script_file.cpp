@@ -87,8 +87,7 @@ std::string checkStep(const v1::ScriptStep& step, const std::set<std::string>& n
 
 core::Result<v1::Script> parseScript(const std::string& text, const std::string& label) {
   v1::Script script;
-  if (const textproto::ParsedText parsed(text, script); !parsed.errors().empty())
-    return core::invalid(parsed.report(label));
+  if (const textproto::ParsedText parsed(text, script); parsed.hasErrors()) return core::invalid(parsed.report(label));
   const auto refuse = [&](const std::string& why) { return core::invalid(label + ": " + why); };
   if (script.clients_size() == 0) script.add_clients()->set_name("client");
   if (script.clients_size() > kScriptClientMaxCount) {

@@ -150,9 +150,9 @@ bool nestsTooDeep(std::string_view text) {
 }  // namespace
 
 ParsedText::ParsedText(std::string text, google::protobuf::Message& message) : type_(message.GetDescriptor()) {
-  tree_ = std::make_unique<TextFormat::ParseInfoTree>();
   if (nestsTooDeep(text)) {
-    errors_.push_back({{}, fmt::format("braces nest deeper than {}", kMaxNestingDepth)});
+    errors_.push_back(
+        {{}, fmt::format("braces nest deeper than {}; look for a brace that is not closed", kMaxNestingDepth)});
     return;
   }
   for (;;) {

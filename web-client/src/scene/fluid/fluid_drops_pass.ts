@@ -15,7 +15,10 @@ export class FluidDropsPass implements Pass {
   readonly writes = ["canvas"] as const;
   private readonly material: RawShaderMaterial;
 
-  /** `volume` undefined: all particles over the wave are drops. `isOverWave`: they are not in a tank. `dropsCount`: drawn for each particle. */
+  /**
+   * `volume` undefined: all particles over the wave are drops. `isOverWave`: they are not in a tank. `dropsCount`: drawn for each particle.
+   * `froth`: foam and shade of hulls, beside which drops are not drawn.
+   */
   constructor(
     private readonly particles: FluidParticles,
     volume: FluidVolumePass | undefined,

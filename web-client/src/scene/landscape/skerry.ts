@@ -1,6 +1,7 @@
 // A lighthouse on rocks and a sailing boat, far outside the water of an open sea without land, so that the eye has something to rest on.
 // Distances are sides of the water's square. The server does not know them, and no boat comes so far.
-import { BufferAttribute, BufferGeometry, Vector3 } from "three";
+import { Vector3, type BufferGeometry } from "three";
+import { mergeGeometries } from "three/addons/utils/BufferGeometryUtils.js";
 
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addRod } from "../meshes/shapes";
@@ -43,15 +44,6 @@ function makeSloop(): BufferGeometry {
   return builder.build();
 }
 
-/** Returns the triangles of several meshes as one, which is drawn by one call. */
-function merged(parts: readonly BufferGeometry[]): BufferGeometry {
-  const whole = new BufferGeometry();
-  const loose = parts.map((part) => (part.index ? part.toNonIndexed() : part));
-  for (const [name, size] of [["position", 3], ["normal", 3], ["color", 4]] as const)
-    whole.setAttribute(name, new BufferAttribute(new Float32Array(loose.flatMap((part) => [...part.getAttribute(name).array])), size));
-  return whole;
-}
-
 /** Returns the rocks, the tower and the boat, and where the tower's lamp is. */
 export function makeSkerry(sideM: number, depthM: number, plain: boolean): { geometry: BufferGeometry; lampM: Vector3 } {
   const [xM, zM] = [Math.cos(kHeadingRad), Math.sin(kHeadingRad)].map((share) => share * kAwaySides * sideM) as [number, number];
@@ -63,5 +55,6 @@ export function makeSkerry(sideM: number, depthM: number, plain: boolean): { geo
   const mastM = kMastSides * sideM;
   const sloop = makeSloop().rotateX(kHeelRad).scale(mastM, mastM, mastM).rotateY(0.5);
   sloop.translate(Math.cos(kSailHeadingRad) * kSailAwaySides * sideM, 0, Math.sin(kSailHeadingRad) * kSailAwaySides * sideM);
-  return { geometry: merged([rocks, tower, sloop]), lampM: new Vector3(xM, lampM + 0.9 * heightM, zM) };
+  const geometry = mergeGeometries([rocks, tower, sloop].map((part) => (part.index ? part.toNonIndexed() : part)));
+  return { geometry, lampM: new Vector3(xM, lampM + 0.9 * heightM, zM) };
 }

@@ -30,12 +30,12 @@ class ParsedText {
   /// deep.
   ParsedText(std::string text, google::protobuf::Message& message);
 
-  /// By the order in which they were found, at most 101.
-  const std::vector<LocatedError>& errors() const { return errors_; }
+  bool hasErrors() const { return !errors_.empty(); }
   /// Adds what is wrong with the field at a path ("events[1].effect.splash"), at its place or, if it was left out, at
   /// that of its innermost part.
   void addError(std::string_view path, std::string_view message);
-  /// Returns the errors with `label`, usually the file's name, and their places, one per line in the order of the text.
+  /// Returns the errors, at most 100, with `label`, usually the file's name, and their places, one per line in the
+  /// order of the text.
   std::string report(const std::string& label) const;
 
  private:
