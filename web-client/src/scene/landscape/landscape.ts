@@ -19,15 +19,19 @@ const kConcrete: Paint = [0.64, 0.61, 0.55, 0.35];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
-/** Returns the bed as a grid with vertical faces on all sides, down to the floor. */
+/** Returns the bed as a grid with vertical faces on all sides, down to the floor; `cellsCount`: along its longer side. */
 export function makeGroundGeometry(bed: Bed, cellsCount: number, isTank = false): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
   const floorM = -bed.depthM - kFloorDropSides * longSideM(bed);
-  const columns = Array.from({ length: cellsCount + 1 }, (_, i) => minXM + ((maxXM - minXM) * i) / cellsCount);
-  // From near to far: rows go up and columns go right, seen from above.
-  const lines = Array.from({ length: cellsCount + 1 }, (_, k) => maxZM - ((maxZM - minZM) * k) / cellsCount);
+  const cellM = Math.max(maxXM - minXM, maxZM - minZM) / cellsCount;
+  const lines = (fromM: number, toM: number): number[] => {
+    const count = Math.ceil(Math.abs(toM - fromM) / cellM - 1e-6);
+    return Array.from({ length: count + 1 }, (_, n) => fromM + ((toM - fromM) * n) / count);
+  };
+  const columns = lines(minXM, maxXM);
   const at = (xM: number, zM: number): Point => [xM, groundHeightM(bed, xM, zM), zM];
-  const rows = lines.map((zM) => columns.map((xM) => at(xM, zM)));
+  // From near to far: rows go up and columns go right, seen from above.
+  const rows = lines(maxZM, minZM).map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
   builder.grid(rows, isTank ? kPainted : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
