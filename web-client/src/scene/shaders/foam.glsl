@@ -10,15 +10,15 @@ const float kReliefSlope = 2.5;  // fine froth
 const float kReliefTiles = 0.02, kSteepest = 1.1;
 
 // Size of the billows of masses of foam, and the step over which their slope is taken, in tiles of the lace; slope per difference of the noise.
-const float kBillows = 3.1, kBillowStep = 0.12, kBillowSlope = 1.9;
+const float kBillows = 1.7, kBillowStep = 0.12, kBillowSlope = 1.9;
 
 // Height of the lace, 0..1 around 0.5. `fresh`: 0 a network, 1 a heap.
-float laceAt(vec2 at, float fresh) {
-  float wide = texture(u_noise, at / u_lace_m).r;
-  float middle = texture(u_noise, at.yx / (0.31 * u_lace_m)).r;
+float laceAt(vec2 at, vec2 drawn_m, float fresh) {
+  float wide = texture(u_noise, (at + drawn_m) / u_lace_m).r;
+  float middle = texture(u_noise, (at + 0.4 * drawn_m).yx / (0.31 * u_lace_m)).r;
   float fine = texture(u_noise, at / (0.11 * u_lace_m)).r;
-  float broad = texture(u_noise, at.yx / (2.7 * u_lace_m)).r;
-  return mix(0.5 * wide + 0.34 * middle + 0.16 * fine, 1.0 - (0.3 * broad + 0.34 * wide + 0.24 * middle + 0.12 * fine), fresh);
+  float broad = texture(u_noise, (at + drawn_m).yx / (2.7 * u_lace_m)).r;
+  return mix(0.42 * wide + 0.34 * middle + 0.24 * fine, 1.0 - (0.22 * broad + 0.26 * wide + 0.26 * middle + 0.26 * fine), fresh);
 }
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
@@ -32,10 +32,10 @@ float shownFoam(float streamed) {
 }
 
 // Light of foam of this `lace` on water with this `normal`. `blur`: width of a pixel in tiles of the lace.
-vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share, float blur) {
+vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, float sunlit_share, float blur) {
   vec2 toward_sun = u_sun_direction.xz * inversesqrt(dot(u_sun_direction.xz, u_sun_direction.xz) + 1e-4);
   float step_tiles = max(kReliefTiles, 0.7 * blur);
-  float rise = laceAt(at + step_tiles * u_lace_m * toward_sun, fresh) - lace;
+  float rise = laceAt(at + step_tiles * u_lace_m * toward_sun, drawn_m, fresh) - lace;
   float slope = clamp(kReliefSlope * rise * kReliefTiles / step_tiles, -kSteepest, kSteepest);
   vec3 bent = normalize(normal - slope * vec3(toward_sun.x, 0.0, toward_sun.y));
 #ifdef OPEN_SEA
@@ -55,7 +55,7 @@ vec3 foamLight(vec2 at, float lace, float fresh, vec3 normal, float sunlit_share
 vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float sunlit_share) {
   // The water's motion draws the lace out and curls it.
   vec2 curl = vec2(texture(u_noise, at.yx / (2.9 * u_lace_m) + 0.13).r, texture(u_noise, at / (2.3 * u_lace_m) + 0.41).r);
-  at += 0.2 * u_lace_m * (curl - 0.5);
+  vec2 drawn_m = 0.2 * u_lace_m * (curl - 0.5);
   // Far away the lace is finer than a pixel, and its edges would be dots.
   vec2 at_step = fwidth(at);
   float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
@@ -63,11 +63,11 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
   float cover = min(foam, 1.0);
   float fresh = smoothstep(0.45, 0.9, cover);
-  float lace = laceAt(at, fresh);
+  float lace = laceAt(at, drawn_m, fresh);
   // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
   float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
   float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
   // Bubbles below the surface reach further than the froth on it.
   water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));
-  return mix(water, foamLight(at, lace, fresh, normal, sunlit_share, blur), white);
+  return mix(water, foamLight(at, drawn_m, lace, fresh, normal, sunlit_share, blur), white);
 }

@@ -176,6 +176,10 @@ void main() {
   float far_out = smoothstep(0.5, 6.0, length(sea_at) / max(u_extent_m.x, u_extent_m.y));
   variance = dot(u_slope_variances, lost * vec2(1.0 - v_share_away.x, 1.0)) + 0.012 * far_out + min(kFinestVariance, u_slope_variances.y);
   field.gb = mix(texture(u_swell, sea_at / u_tiles_m.x).gb, field.gb, v_share_away.x);
+#endif
+  // Foam lies on the waves and damps what is finer.
+  vec2 foam_slopes = field.gb;
+#ifdef OPEN_SEA
   field.gb += rippleSlopes(sea_at);
 #endif
 #ifdef RIPPLES
@@ -364,16 +368,19 @@ void main() {
 #endif
   if (foam > 0.01) {
     vec2 at = v_world.xz;
-#ifdef OPEN_SEA
-    // Large breakers tear it; small, steep waves would fold it into rings.
-    at -= 0.6 * field.gb;
+#ifdef UNEVEN
+    // The face of a breaker is steep: its height counts as a way along it.
+    at -= v_shoreward * v_top_m;
+#elif defined(OPEN_SEA)
+    // Elsewhere breakers tear it.
+    at -= 0.25 * foam_slopes;
 #endif
 #ifdef SHORE
     float bubbles = smoothstep(0.0, 0.25, deep_m);
 #else
     const float bubbles = 1.0;
 #endif
-    water = withFoam(water, at, foam, bubbles, normal, sunlit_share);
+    water = withFoam(water, at, foam, bubbles, normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y)), sunlit_share);
   }
 #endif
 #ifdef OPEN_SEA
