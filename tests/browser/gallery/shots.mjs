@@ -22,7 +22,7 @@ const kShots = {
   boat_wake: { tick: 300 },
   boat_wake_particles: { tick: 474 },
   boat_wake_wave: { tick: 300 },
-  breaking_wave: { tick: 105 },
+  breaking_wave: { tick: 111 },
   breaking_wave_particles: { tick: 500 },
   breaking_wave_wave: { tick: 105 },
   dam_break: { tick: 104 },

@@ -10,7 +10,7 @@ flat out float v_round;  // 0: a soft point; 1: so large that its shape is seen
 
 #ifndef EXPOSURE_S
 #define EXPOSURE_S 0.01  // drops are drawn as long as they fly in this time
-#define MOST_SHARE 0.0013  // drops near the eye are not larger than this share of their distance: they would be flakes
+#define MOST_SHARE 0.0008  // drops near the eye are not larger than this share of their distance: they would be flakes
 #endif
 const float kSoft = 1.7;          // a soft point seems narrower than it is
 const float kLeastPx = 1.7;

@@ -18,6 +18,7 @@ uniform float u_foam_mix;
 #ifdef OPEN_SEA
 uniform vec2 u_slope_variances;  // of the swell and of the ripples
 uniform float u_haze_m;
+const float kSpillM = 0.4;  // reach of a crest's foam
 #endif
 
 out vec4 v_under;   // light from below the surface times its share; share of the solids below that is seen
@@ -47,7 +48,10 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   foam_shade.r = max(foam_shade.r, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
 #endif
 #ifdef OPEN_SEA
-  foam_shade.r = max(foam_shade.r, crestFoam(v_top_m, curvature));
+  // It spills down from the crest, which lies uphill (water.frag).
+  float torn = 1.0 + smoothstep(0.003, 0.012, u_slope_variances.y);
+  vec4 crest = textureLod(u_field, place + kSpillM * slope / (max(length(slope), 0.1) * u_extent_m), 0.0);
+  foam_shade.r = max(foam_shade.r, max(crestFoam(v_top_m, torn * curvature), 0.75 * crestFoam(crest.r, torn * crest.a)));
 #endif
 #ifdef OPEN_SEA
   // Waves smaller than a pixel widen the reflection instead of tilting it.

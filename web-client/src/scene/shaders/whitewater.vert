@@ -58,7 +58,7 @@ void main() {
 #ifdef SPRAY
   bool is_mist = a_motion.w > kMistRadiusM;
   // Mist that hangs in the air is too thin to be seen.
-  float strength = is_mist ? 0.04 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
+  float strength = is_mist ? 0.09 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
   drawDrop(position.xyz, a_motion.xyz, is_mist ? a_motion.w * (1.0 + 1.5 * age) : a_motion.w, is_mist, strength, 0.6);
 #elif defined(FROTH)
   // Foam spreads and fades; patches add up where many begin.

@@ -25,12 +25,12 @@ function countOf(expected: number, random: () => number): number {
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
 /** Share of the drops that are puffs of mist, where water meets something hard or falls over. */
-const kMistShare = 0.1;
+const kMistShare = 0.2;
 
 /** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
 function dropRadiusM(random: () => number): number {
   const u = random();
-  return u < kMistShare ? 0.06 + 0.08 * random() : 0.004 + 0.016 * u * u * u;
+  return u < kMistShare ? 0.12 + 0.25 * random() : 0.004 + 0.016 * u * u * u;
 }
 
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
@@ -48,7 +48,7 @@ function froth(random: () => number, xM: number, yM: number, zM: number, vxMps: 
 /** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
 export const kNewFoam = 24;
 /** Per m^2 of water whose foam grows from none to white. */
-const kCrestDropsPerM2 = 30;
+const kCrestDropsPerM2 = 90;
 const kCrestBubblesPerM2 = 12;
 const kCrestSpeedsMps = [0.25, 1.2] as const;
 const kMostCrestMps = 6;
