@@ -146,10 +146,10 @@ describe("breaking crests", () => {
   it("throw drops ahead where foam grew and the surface rises, with bubbles below", () => {
     const made = births();
     addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(1, -0.5));
-    // 30 drops and 12 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
+    // 90 drops and 12 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
     const drops = made.particles.countOf(kinds.spray);
-    expect(drops).toBeGreaterThan(0.8 * 30 * 256 * ramp(0.25, 1.2, 1));
-    expect(drops).toBeLessThan(1.2 * 30 * 256 * ramp(0.25, 1.2, 1));
+    expect(drops).toBeGreaterThan(0.8 * 90 * 256 * ramp(0.25, 1.2, 1));
+    expect(drops).toBeLessThan(1.2 * 90 * 256 * ramp(0.25, 1.2, 1));
     expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.8 * 12 * 256);
     let forward = 0;
     for (let n = 0; n < made.particles.count; ++n) {
