@@ -3,7 +3,7 @@
 import type { BufferGeometry } from "three";
 
 import { hasRockyShores, kSideNames, type SideKind, type SideName } from "../../../client/codec/scene_info";
-import { clamp, smoothstep } from "../maths/interpolate";
+import { clamp, mix, smoothstep } from "../maths/interpolate";
 import { hash } from "../maths/random";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { Foliage } from "./foliage";
@@ -50,7 +50,10 @@ const kGrass: Paint = [0.17, 0.185, 0.085, 1.0];
 const kFarGrass: Paint = [0.085, 0.125, 0.075, 0.6];
 const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
 const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
-const kCliff: Paint = [0.22, 0.2, 0.18, 1.0];
+const kCliff: Paint = [0.3, 0.27, 0.23, 1.0];
+/** Rows of boulders before a rocky shore, and how far they reach, in its height. */
+const kBoulderRows = 6;
+const kBoulderReach = 0.7;
 
 /** Gentle rolling in -1..1: sines with no common period. */
 function rolling(x: number, z: number): number {
@@ -245,6 +248,19 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number, de
       return [x, Math.max(y, -deepestM), z];
     });
     const high = ordered.map((t, i): Point => [low[i]![0], Math.max(at(t, true)[1], low[i]![1]), low[i]![2]]);
-    builder.grid([low, high], hasRockyShores(coast.bed.beaches) ? kCliff : kQuayWall);
+    if (!hasRockyShores(coast.bed.beaches)) {
+      builder.grid([low, high], kQuayWall);
+      continue;
+    }
+    // Boulders that have fallen before the shore: the lower, the further.
+    const rows = Array.from({ length: kBoulderRows + 1 }, (_, row) =>
+      low.map(([x, lowM, z], i): Point => {
+        const share = row / kBoulderRows;
+        const rise = row === 0 || row === kBoulderRows ? share : share * (0.85 + 0.3 * hash(i, row, 84));
+        const outM = (1 - share) * kBoulderReach * (high[i]![1] - lowM) * (0.35 + hash(i, row, 83));
+        return [x - (side[1] === "x" ? sign * outM : 0), mix(lowM, high[i]![1], rise), z - (side[1] === "z" ? sign * outM : 0)];
+      }),
+    );
+    builder.grid(rows, (row, column) => kCliff.map((each, n) => (n < 3 ? each * (0.65 + 0.7 * hash(column, row, 85)) : each)) as unknown as Paint);
   }
 }
