@@ -51,9 +51,9 @@ const kFarGrass: Paint = [0.085, 0.125, 0.075, 0.6];
 const kPaving: Paint = [0.45, 0.42, 0.37, 0.8];
 const kQuayWall: Paint = [0.34, 0.31, 0.27, 1.0];
 const kCliff: Paint = [0.3, 0.27, 0.23, 1.0];
-/** Rows of boulders before a rocky shore, and how far they reach, in its height. */
+/** Rows of boulders before a rocky shore, and how far they reach into the water, m: the simulated side is a wall. */
 const kBoulderRows = 6;
-const kBoulderReach = 0.7;
+const kBoulderReachM = 0.6;
 
 /** Gentle rolling in -1..1: sines with no common period. */
 function rolling(x: number, z: number): number {
@@ -252,12 +252,11 @@ function addQuayWalls(coast: Coast, builder: MeshBuilder, cellsCount: number, de
       builder.grid([low, high], kQuayWall);
       continue;
     }
-    // Boulders that have fallen before the shore: the lower, the further.
     const rows = Array.from({ length: kBoulderRows + 1 }, (_, row) =>
       low.map(([x, lowM, z], i): Point => {
         const share = row / kBoulderRows;
         const rise = row === 0 || row === kBoulderRows ? share : share * (0.85 + 0.3 * hash(i, row, 84));
-        const outM = (1 - share) * kBoulderReach * (high[i]![1] - lowM) * (0.35 + hash(i, row, 83));
+        const outM = row === kBoulderRows ? 0 : kBoulderReachM * (1 - 0.5 * share) * hash(i, row, 83);
         return [x - (side[1] === "x" ? sign * outM : 0), mix(lowM, high[i]![1], rise), z - (side[1] === "z" ? sign * outM : 0)];
       }),
     );
