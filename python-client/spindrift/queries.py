@@ -7,9 +7,6 @@ import numpy as np
 
 from .v1 import wire_pb2 as wire
 
-MAX_POINTS = 1024
-"""Of one client, in all its queries that wait or stream."""
-
 
 @dataclass(frozen=True)
 class Answer:

@@ -3,13 +3,12 @@ import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { after, before, describe, it } from "node:test";
 
-import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { kPhone, launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { layoutFaults } from "./layout_faults.mjs";
-import { startClass } from "./server.mjs";
+import { ended, startClass } from "./server.mjs";
 
 const kAxe = readFileSync(new URL("node_modules/axe-core/axe.min.js", import.meta.url), "utf8");
 const kDesk = { viewport: { width: 1280, height: 720 } };
-const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
 /** Windows of 1280 x 720 at a zoom of 200 %, and of a phone whose width is 320 CSS pixels. */
 const kZoomed = {
@@ -53,10 +52,7 @@ describe("access", { skip, timeout: 20 * WAIT_MS, concurrency: 1 }, () => {
     ({ server, token } = await startClass());
     browser = await launch();
   });
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   async function open(path, options) {
     const page = await (await browser.newContext(options)).newPage();

@@ -1,20 +1,19 @@
 // The page at other addresses than the root: under a path behind a proxy, and what its address holds. A room that does not exist: front.test.mjs.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { cameraAtRest, launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { startPathProxy } from "./path_proxy.mjs";
-import { repository, startServer } from "./server.mjs";
+import { repository, startServer, temporaryFolder } from "./server.mjs";
 import { panelsShown } from "./two_people.mjs";
 
 const slow = { timeout: 4 * WAIT_MS };
 
 describe("the page's address", { skip, concurrency: 1 }, () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-address-"));
+  const folder = temporaryFolder("address");
   let server;
   let proxy;
   let browser;

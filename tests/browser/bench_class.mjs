@@ -4,11 +4,9 @@
 import { setTimeout as sleep } from "node:timers/promises";
 import { parseArgs } from "node:util";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { kPhone, launch } from "./chromium.mjs";
 import { Crowd } from "./crowd.mjs";
-import { startClass } from "./server.mjs";
+import { command, startClass } from "./server.mjs";
 
 const kWaitMs = 120_000;
 const kSettleMs = 8000;
@@ -24,18 +22,18 @@ if (!(padsCount >= 2 && padsCount <= 90 && seconds > 0)) {
 
 const { server, token } = await startClass(["--device", "software"]);
 const origin = `http://127.0.0.1:${server.port}`;
-const operator = (action) => fetch(`${origin}/api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json", Authorization: `Bearer ${token}` }, body: JSON.stringify(action) }).then(async (answer) => answer.ok || Promise.reject(new Error(`${JSON.stringify(action)}: ${await answer.text()}`)));
 const browsers = [];
 let crowd;
 try {
   const pages = [];
   const shown = values.pages.split(",");
   if (shown.includes("projector")) pages.push(await open("projector", { viewport: { width: 1280, height: 720 } }, `?class&quality=${values.quality}#token=${token}`));
-  if (shown.includes("pad")) pages.push(await open("pad", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }, "pad"));
+  if (shown.includes("pad")) pages.push(await open("pad", kPhone, "pad"));
   crowd = await Crowd.open({ port: server.port, boats: Math.ceil(padsCount / 2), drawers: Math.floor(padsCount / 2), watches: true });
   crowd.launch();
   await sleep(1000);
-  await operator({ start_game: { kind: "GAME_KIND_RACE", countdown_s: 1 } });
+  const race = await command(server, { start_game: { kind: "GAME_KIND_RACE", countdown_s: 1 } }, { token });
+  if (!race.ok) throw new Error(await race.text());
   crowd.start();
   await sleep(kSettleMs);
   const [frames, simTimeS] = [framesOf(crowd), crowd.simTimeS];
@@ -61,7 +59,7 @@ function framesOf({ pads }) {
 
 /** Opens a page in a browser of its own, as on another machine, that counts its pictures and the longest time between two of them. */
 async function open(name, options, path) {
-  const browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+  const browser = await launch();
   browsers.push(browser);
   const page = await (await browser.newContext(options)).newPage();
   const errors = [];

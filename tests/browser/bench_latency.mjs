@@ -4,9 +4,7 @@
 import { setTimeout as sleep } from "node:timers/promises";
 import { parseArgs } from "node:util";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch, waitFor } from "./chromium.mjs";
 import { repository, startServer } from "./server.mjs";
 import { pixelOf } from "./two_people.mjs";
 
@@ -62,7 +60,7 @@ function watch() {
 const server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--device", "software"]);
 const browsers = [];
 const open = async () => {
-  const browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+  const browser = await launch();
   browsers.push(browser);
   const page = await (await browser.newContext({ viewport: { width, height } })).newPage();
   await page.addInitScript(watch);

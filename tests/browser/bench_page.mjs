@@ -1,8 +1,7 @@
 // Measures the page in headless Chromium against the real server, with software WebGL: time to the first picture, pictures per second, and
 // the time of each pass, and the processor time of the browser per picture, which depends little on what else runs on the machine. `npm run bench:page` in web-client builds the page and calls this. The server must be built (`./dev build`).
 //   bench_page.mjs [--scenes A,B] [--qualities minimal,high,automatic] [--seconds S] [--size 1280x720]
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { rmSync } from "node:fs";
 import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { parseArgs } from "node:util";
@@ -11,7 +10,7 @@ import { chromium } from "playwright-core";
 
 import { executable, kChromiumArgs } from "./chromium.mjs";
 import { cpuSecondsOf } from "./cpu_time.mjs";
-import { startServer } from "./server.mjs";
+import { startServer, temporaryFolder } from "./server.mjs";
 
 const kWaitMs = 120_000;
 /** The browser is open before the page is asked for, as a visitor's: its own start takes half a second more. */
@@ -50,7 +49,7 @@ for (const scene of values.scenes.split(",")) {
 }
 
 async function measure(scene, quality, url) {
-  const profile = mkdtempSync(join(tmpdir(), "spindrift-chromium-"));
+  const profile = temporaryFolder("chromium");
   const context = await chromium.launchPersistentContext(profile, { executablePath: executable, headless: true, viewport: { width, height }, args: kChromiumArgs });
   try {
     const page = await context.newPage();

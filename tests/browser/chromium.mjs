@@ -17,6 +17,8 @@ export const kChromiumArgs = [
   "--disable-component-update",
   "--disable-sync",
 ];
+/** What a phone is for a browser. */
+export const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 /** False, or why tests in Chromium cannot run here. */
 export const skip = existsSync(executable) ? false : `Chromium is missing (${executable}); set CHROMIUM or install it`;
 export const launch = () => chromium.launch({ executablePath: executable, args: kChromiumArgs });

@@ -3,9 +3,9 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 
 import jsQR from "jsqr";
-import { launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { kPhone, launch, skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
-import { startClass } from "./server.mjs";
+import { ended, startClass } from "./server.mjs";
 
 describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   let server;
@@ -30,10 +30,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
     browser = await launch();
     projector = await open({ viewport: { width: 1280, height: 720 } }, `?class&quality=minimal#token=${token}`);
   });
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   it("shows a QR code of the address that the server names", async () => {
     const canvas = projector.getByTestId("join-qr");
@@ -51,7 +48,7 @@ describe("a class", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   });
 
   it("launches a boat from a pad, which the projector shows", async () => {
-    pad = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }, "pad");
+    pad = await open(kPhone, "pad");
     await pad.getByTestId("pad-tool-boat").tap();
     await pad.getByTestId("pad-launch").tap();
     const { myBoat } = await waitFor(pad, "its boat", ({ myBoat }) => myBoat > 0);

@@ -1,14 +1,13 @@
 // The package spindrift-client in a worker of a browser, bundled by Vite as a project of others would, in a page of another origin.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
 import { build } from "../../web-client/node_modules/vite/dist/node/index.js";
 import { launch, skip, WAIT_MS } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
+import { repository, startServer, temporaryFolder } from "./server.mjs";
 
 /** What the worker does: the first heights, a command, a refusal, five frames of a loop. */
 const kWorker = (url) => `
@@ -28,7 +27,7 @@ const kWorker = (url) => `
 `;
 
 describe("the package in a worker", { skip }, () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-worker-"));
+  const folder = temporaryFolder("worker");
   let http;
   let server;
   let browser;

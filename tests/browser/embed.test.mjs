@@ -1,15 +1,14 @@
 // Rooms in the page of another origin by <spindrift-water>: what that page may do, and what no other page may.
 import assert from "node:assert/strict";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createServer } from "node:http";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
+import { kPhone, launch, skip, until, WAIT_MS } from "./chromium.mjs";
 import { measure } from "./pixels.mjs";
-import { repository, startServer } from "./server.mjs";
+import { repository, startServer, temporaryFolder } from "./server.mjs";
 
 const slow = { timeout: 4 * WAIT_MS };
 const kTokens = { viewer: "a-viewer-of-the-test", player: "a-player-of-the-test" };
@@ -32,7 +31,7 @@ async function startPages() {
 }
 
 describe("a page of another origin", { skip, concurrency: 1 }, () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-embed-"));
+  const folder = temporaryFolder("embed");
   let listed;
   let hostile;
   let server;
@@ -85,7 +84,7 @@ describe("a page of another origin", { skip, concurrency: 1 }, () => {
   const statsOf = (frame) => frame.evaluate(() => window.spindrift?.stats());
   const parametersOf = async (room) => (await (await fetch(`${server.url}api/v1/rooms/${room}/parameters`)).json()).parameters;
 
-  for (const [name, options] of [["a window", {}], ["a phone", { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true }]]) {
+  for (const [name, options] of [["a window", {}], ["a phone", kPhone]]) {
     it(`shows two rooms in ${name}, and its own sliders change the water`, slow, async () => {
       listed.pages.set("/", readFileSync(`${repository}/web-client/element/example.html`, "utf8"));
       await open(`${listed.url}/?quality=minimal&server=${server.url}`, options);

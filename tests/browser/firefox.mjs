@@ -1,12 +1,13 @@
 // Firefox with software WebGL, driven by WebDriver BiDi, which every Firefox speaks. Without a window Firefox has no WebGL 2 here (its headless
 // mode finds no GL driver), so it gets an X server of its own.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 
 import { WebSocket } from "ws";
+
+import { temporaryFolder } from "./server.mjs";
 
 const executable = process.env.FIREFOX ?? ["/usr/bin/firefox-esr", "/usr/bin/firefox"].find(existsSync) ?? "/usr/bin/firefox-esr";
 const kXvfb = "/usr/bin/Xvfb";
@@ -51,7 +52,7 @@ export class FirefoxPage {
   static async open(viewport) {
     const page = new FirefoxPage();
     page.#children = [];
-    page.#profile = mkdtempSync(join(tmpdir(), "spindrift-firefox-"));
+    page.#profile = temporaryFolder("firefox");
     try {
       await page.#start(viewport);
     } catch (error) {

@@ -7,7 +7,7 @@ import { setTimeout as sleep } from "node:timers/promises";
 import { PNG } from "pngjs";
 
 import { FirefoxPage, skip } from "./firefox.mjs";
-import { repository, startServer } from "./server.mjs";
+import { ended, repository, startServer } from "./server.mjs";
 
 const WAIT_MS = 120_000;
 
@@ -20,10 +20,7 @@ describe("the page in Firefox", { skip, timeout: 6 * WAIT_MS, concurrency: 1 }, 
     page = await FirefoxPage.open({ width: 900, height: 600 });
     await page.goto(`${server.url}?quality=minimal&lang=en`);
   });
-  after(async () => {
-    await page?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(page, server));
 
   /** Waits until the page's numbers are as wanted, and returns them. */
   async function waitFor(what, accept) {

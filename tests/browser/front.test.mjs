@@ -2,13 +2,12 @@
 import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 
-import { launch, skip, until, WAIT_MS } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
+import { kPhone, launch, skip, until, WAIT_MS } from "./chromium.mjs";
+import { command, ended, post, repository, startServer } from "./server.mjs";
 
 const slow = { timeout: 8 * WAIT_MS };
 const kScenes = `${repository}/tests/browser`;
 const kDesk = { viewport: { width: 1280, height: 720 } };
-const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true };
 
 describe("the front page", { skip, concurrency: 1 }, () => {
   let server;
@@ -19,10 +18,7 @@ describe("the front page", { skip, concurrency: 1 }, () => {
     server = await startServer(0, ["--scene", `${kScenes}/scene.textproto`, "--room", `marina=${kScenes}/marina.textproto`, "--room", `sea=${kScenes}/sea.textproto`]);
     browser = await launch();
   }, slow);
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   async function open(query = "", options = kDesk, first = () => {}) {
     const page = await browser.newPage(options);
@@ -35,15 +31,12 @@ describe("the front page", { skip, concurrency: 1 }, () => {
 
   const ask = async (path, init) => fetch(`${server.url}api/v1/${path}`, init);
   const sessionsIn = async (room) => (await (await ask(`rooms/${room}`)).json()).session_count;
-  const splash = async (room) => {
-    const body = JSON.stringify({ splash: { x_m: 1, z_m: 0.5, radius_m: 1, depth_m: 0.3 } });
-    assert.equal((await ask(`rooms/${room}/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body })).status, 200);
-  };
+  const splash = async (room) => assert.equal((await command(server, { splash: { x_m: 1, z_m: 0.5, radius_m: 1, depth_m: 0.3 } }, { room })).status, 200);
 
   const sessions = (what, wanted) => until(what, () => Promise.all(Object.keys(wanted).map(sessionsIn)), (counts) => Object.values(wanted).every((count, k) => counts[k] === count));
   /** A busy server answers 504 and opens the room a little later. */
   const openRoom = async (name) => {
-    const { status } = await ask("rooms", { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ name, scene: "wave_only" }) });
+    const { status } = await post(server, "api/v1/rooms", { name, scene: "wave_only" });
     assert.ok([201, 504].includes(status), `status ${status}`);
     await until(`the room ${name}`, async () => (await ask(`rooms/${name}`)).status, (answer) => answer === 200);
   };

@@ -3,8 +3,8 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, describe, it } from "node:test";
 
-import { launch, skip, WAIT_MS, waitFor as waitForNumbers } from "./chromium.mjs";
-import { startServer } from "./server.mjs";
+import { kPhone, launch, skip, WAIT_MS, waitFor as waitForNumbers } from "./chromium.mjs";
+import { ended, startServer } from "./server.mjs";
 
 const kGauges = ["maker", "toe", "slope", "breakers", "shore"];
 const kFingerPx = 44;
@@ -24,10 +24,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
     browser = await launch();
     desk = await open({ viewport: { width: 1280, height: 720 } });
   }, slow);
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   async function open(options) {
     const page = await (await browser.newContext(options)).newPage();
@@ -154,7 +151,7 @@ describe("the gauges", { skip, concurrency: 1 }, () => {
   });
 
   it("are in the sheet of a phone: a chart to read, and controls for fingers", slow, async () => {
-    const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    const phone = await open(kPhone);
     await phone.getByTestId("gauges").waitFor();
     assert.equal(await phone.locator("#panel-toggle").getAttribute("aria-expanded"), "false");
     await openPanel(phone, (button) => button.tap());
@@ -179,12 +176,9 @@ describe("gauges of one's own", { skip, concurrency: 1 }, () => {
     server = await startServer(0, ["--scene", "pool", "--guests", "player", "--grace-s", "1"]);
     browser = await launch();
     desk = await open({ viewport: { width: 1280, height: 720 } });
-    phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    phone = await open(kPhone);
   }, slow);
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   async function open(options) {
     const page = await (await browser.newContext(options)).newPage();

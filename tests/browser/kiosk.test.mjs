@@ -5,7 +5,7 @@ import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { cameraAtRest, launch, skip, until, WAIT_MS } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
+import { ended, repository, startServer } from "./server.mjs";
 
 const slow = { timeout: 8 * WAIT_MS };
 const kHours = Number(process.env.KIOSK_HOURS ?? 1);
@@ -38,10 +38,7 @@ describe("a kiosk", { skip, concurrency: 1 }, () => {
     await shown();
     await page.evaluate(() => void (window.mark = 1));
   }, slow);
-  after(async () => {
-    await browser?.close();
-    await server?.stop("SIGTERM");
-  });
+  after(() => ended(browser, server));
 
   /** While a page loads, what is read of it fails. */
   const whenThere = (what, read, accept) => until(what, () => read().catch((error) => error.message), accept);

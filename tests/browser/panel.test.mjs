@@ -7,6 +7,7 @@ import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
 import { twoPeople } from "./two_people.mjs";
+import { pressed } from "./visit.mjs";
 
 const kFingerPx = 44;
 
@@ -91,9 +92,7 @@ describe("the panel", { skip, timeout: 10 * WAIT_MS, concurrency: 1 }, () => {
   });
 
   it("says nothing of a splash that worked", async () => {
-    const { lastAck } = await waitFor(desk, "a page", () => true);
-    await desk.getByTestId("splash").click();
-    await waitFor(desk, "the splash", (stats) => (stats.lastAck?.commandId ?? 0) > (lastAck?.commandId ?? 0));
+    await pressed(desk, "splash");
     assert.equal(await desk.getByTestId("toast").textContent(), "");
   });
 

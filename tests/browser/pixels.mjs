@@ -1,5 +1,14 @@
 // Measures screenshots. The browser decodes the PNG, so no library is needed.
 
+/** Draws a PNG in the page. @returns {Promise<import("playwright-core").JSHandle<OffscreenCanvasRenderingContext2D>>} */
+const drawn = (page, png) =>
+  page.evaluateHandle(async (base64) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
+    context.drawImage(bitmap, 0, 0);
+    return context;
+  }, png.toString("base64"));
+
 /** Returns a PNG of the middle of the canvas, which no panel covers. */
 export async function shootWater(page) {
   const box = await page.locator("canvas").first().boundingBox();
@@ -14,17 +23,8 @@ export async function shootWater(page) {
  */
 export async function measure(page, png, other = png) {
   return page.evaluate(
-    async ([first, second]) => {
-      const decode = async (base64) => {
-        const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-        const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-        const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
-        const context = canvas.getContext("2d");
-        context.drawImage(bitmap, 0, 0);
-        return context.getImageData(0, 0, bitmap.width, bitmap.height).data;
-      };
-      const a = await decode(first);
-      const b = await decode(second);
+    (pictures) => {
+      const [a, b] = pictures.map((picture) => picture.getImageData(0, 0, picture.canvas.width, picture.canvas.height).data);
       const brightness = (data, i) => 0.2126 * data[i] + 0.7152 * data[i + 1] + 0.0722 * data[i + 2];
       const colours = new Set();
       let sum = 0;
@@ -41,40 +41,26 @@ export async function measure(page, png, other = png) {
       const mean = sum / count;
       return { colour_count: colours.size, deviation: Math.sqrt(Math.max(0, squares / count - mean * mean)), changed_ratio: changed / count, brightness: mean };
     },
-    [png.toString("base64"), other.toString("base64")],
+    [await drawn(page, png), await drawn(page, other)],
   );
 }
 
 /** Returns red, green and blue (0..255) of one pixel of a PNG. */
 export async function colourAt(page, png, x, y) {
-  return page.evaluate(
-    async ([base64, at_x, at_y]) => {
-      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-      context.drawImage(bitmap, 0, 0);
-      return [...context.getImageData(Math.round(at_x), Math.round(at_y), 1, 1).data].slice(0, 3);
-    },
-    [png.toString("base64"), x, y],
-  );
+  return page.evaluate(([picture, ...at]) => [...picture.getImageData(...at, 1, 1).data].slice(0, 3), [await drawn(page, png), Math.round(x), Math.round(y)]);
 }
 
 /** Returns the brightness (0..255) of a PNG at points in pixels, each the mean of 3 x 3. */
 export async function brightnessAt(page, png, points) {
   return page.evaluate(
-    async ([base64, places]) => {
-      const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-      const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-      const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext("2d");
-      context.drawImage(bitmap, 0, 0);
-      return places.map(([x, y]) => {
-        const { data } = context.getImageData(Math.round(x) - 1, Math.round(y) - 1, 3, 3);
+    ([picture, places]) =>
+      places.map(([x, y]) => {
+        const { data } = picture.getImageData(Math.round(x) - 1, Math.round(y) - 1, 3, 3);
         let sum = 0;
         for (let i = 0; i < data.length; i += 4) sum += 0.2126 * data[i] + 0.7152 * data[i + 1] + 0.0722 * data[i + 2];
         return sum / 9;
-      });
-    },
-    [png.toString("base64"), points],
+      }),
+    [await drawn(page, png), points],
   );
 }
 
@@ -85,13 +71,9 @@ export async function brightnessAt(page, png, points) {
  *   left, right, above and below (0..255), where all of them are water
  */
 export async function measureBody(page, png) {
-  return page.evaluate(async (base64) => {
-    const bytes = Uint8Array.from(atob(base64), (letter) => letter.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    const { width, height } = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext("2d");
-    context.drawImage(bitmap, 0, 0);
-    const { data } = context.getImageData(0, 0, width, height);
+  return page.evaluate((picture) => {
+    const { width, height } = picture.canvas;
+    const { data } = picture.getImageData(0, 0, width, height);
     const isWater = (x, y) => data[4 * (y * width + x) + 2] - data[4 * (y * width + x)] > 12;
     const brightness = (x, y) => [0.2126, 0.7152, 0.0722].reduce((sum, share, i) => sum + share * data[4 * (y * width + x) + i], 0);
     const apart = 4;
@@ -114,5 +96,5 @@ export async function measureBody(page, png) {
       }
     }
     return { water_ratio: water / (width * height), filled_ratio: water / Math.max(between, 1), roughness: rough / Math.max(inner, 1) };
-  }, png.toString("base64"));
+  }, await drawn(page, png));
 }

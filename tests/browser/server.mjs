@@ -1,7 +1,10 @@
 // The real server as a child process: waits for its ready line, stops it by signal.
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
+import { mkdtempSync } from "node:fs";
 import { createServer } from "node:net";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { setTimeout as sleep } from "node:timers/promises";
 import { fileURLToPath } from "node:url";
@@ -87,6 +90,12 @@ async function stop(child, ended, signal) {
   return { code, signal: last_signal };
 }
 
+/** Closes the browser and the server of a test, as far as they were opened. */
+export async function ended(browser, server) {
+  await browser?.close();
+  await server?.stop("SIGTERM");
+}
+
 /** Reads until `accept` takes the value, and returns it; the failure has the last one. */
 export async function until(what, read, accept = Boolean, patienceMs = WAIT_MS) {
   let value;
@@ -105,3 +114,15 @@ export async function freePort() {
   await new Promise((resolve) => probe.close(resolve));
   return port;
 }
+
+/** Makes a temporary folder, which the caller removes; returns its path. */
+export const temporaryFolder = (name) => mkdtempSync(join(tmpdir(), `spindrift-${name}-`));
+
+/** Sends a value as JSON to a path of the server, with a token if there is one; returns the answer. */
+export function post({ port }, path, value, token) {
+  const headers = { "Content-Type": "application/json", ...(token && { Authorization: `Bearer ${token}` }) };
+  return fetch(`http://127.0.0.1:${port}/${path}`, { method: "POST", headers, body: JSON.stringify(value) });
+}
+
+/** Sends a command to a room. */
+export const command = (server, action, { room = "main", token } = {}) => post(server, `api/v1/rooms/${room}/commands`, action, token);

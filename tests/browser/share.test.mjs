@@ -1,18 +1,16 @@
 // Links: the Share card, and what a link shows elsewhere.
 import assert from "node:assert/strict";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { after, before, describe, it } from "node:test";
 
-import { launch, skip, WAIT_MS } from "./chromium.mjs";
+import { kPhone, launch, skip, WAIT_MS } from "./chromium.mjs";
 import { measure, shootWater } from "./pixels.mjs";
-import { repository, startServer } from "./server.mjs";
+import { command, repository, startServer, temporaryFolder } from "./server.mjs";
 
 /** A room is opened within seconds, or minutes on a machine that builds at the same time. */
 const slow = { timeout: 8 * WAIT_MS };
 const kNetworkUrl = "http://192.168.1.20:8080/water";
-const kPhone = { viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true, deviceScaleFactor: 1 };
 
 describe("a shared link", { skip, concurrency: 1 }, () => {
   let server;
@@ -127,7 +125,7 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
   let browser;
 
   before(async () => {
-    folder = mkdtempSync(join(tmpdir(), "spindrift-links-"));
+    folder = temporaryFolder("links");
     writeFileSync(join(folder, "tokens"), `operator ${kOperator}\n`);
     server = await startServer(0, ["--scene", `${repository}/tests/browser/scene.textproto`, "--tokens-file", join(folder, "tokens"), "--max-rooms", "3"]);
     browser = await launch();
@@ -182,8 +180,8 @@ describe("a link with a scene", { skip, concurrency: 1 }, () => {
   it("holds what an operator changes, and opens no room beyond the limit or with impossible values", slow, async () => {
     const page = await open(`${server.url}?quality=minimal&room=main#token=${kOperator}`);
     await state(page, "live");
-    const answer = await fetch(`${server.url}api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json", Authorization: `Bearer ${kOperator}` }, body: JSON.stringify({ set_parameter: { path: "wave.depth_m", value: 1.25 } }) });
-    assert.equal(answer.status, 200);
+    const deeper = { set_parameter: { path: "wave.depth_m", value: 1.25 } };
+    assert.equal((await command(server, deeper, { token: kOperator })).status, 200);
     await page.waitForURL(/set=wave\.depth_m:1\.25/, { timeout: WAIT_MS });
     const { searchParams } = new URL(page.url());
     assert.deepEqual([searchParams.get("room"), searchParams.get("scene"), searchParams.get("set")], ["main", "browser_test", "wave.depth_m:1.25"]);

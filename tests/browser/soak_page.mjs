@@ -3,15 +3,10 @@
 //   soak_page.mjs [--minutes M] [--scenes A,B]
 // Exits with 1 if the last third of the rounds always has more WebGL objects of a kind than the first third ever had, or if the heap grew by
 // more than kMostGrowthMB.
-import { mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { setTimeout as sleep } from "node:timers/promises";
 import { parseArgs } from "node:util";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "./chromium.mjs";
+import { launch } from "./chromium.mjs";
 import { countGlObjects } from "./gl_objects.mjs";
 import { startServer } from "./server.mjs";
 
@@ -29,15 +24,13 @@ if (!(minutes > 0) || Object.keys(values).length > 2) {
 }
 
 const server = await startServer(0, ["--scene", "harbor"]);
-const profile = mkdtempSync(join(tmpdir(), "spindrift-chromium-"));
-let context;
+let browser;
 try {
-  context = await chromium.launchPersistentContext(profile, { executablePath: executable, headless: true, viewport: { width: 480, height: 300 }, args: kChromiumArgs });
-  process.exitCode = (await soak(await context.newPage())) ? 0 : 1;
+  browser = await launch();
+  process.exitCode = (await soak(await browser.newPage({ viewport: { width: 480, height: 300 } }))) ? 0 : 1;
 } finally {
-  await context?.close();
+  await browser?.close();
   await server.stop("SIGTERM");
-  rmSync(profile, { recursive: true, force: true, maxRetries: 10 });
 }
 
 async function soak(page) {

@@ -3,10 +3,11 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { cameraAtRest, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, twoPeople } from "./two_people.mjs";
+import { acknowledged, startView } from "./visit.mjs";
 
 /** RMS of the output that counts as silence, and as a splash. */
 const kSilentRms = 0.0005;
@@ -144,9 +145,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
       navigator.vibrate = (ms) => window.felt.push(ms);
     });
     const tap = async () => {
-      const { lastAck } = await phone.evaluate(() => window.spindrift.stats());
-      await phone.touchscreen.tap(...(await pixelOf(phone, 0, 0)));
-      await waitFor(phone, "the splash", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
+      await acknowledged(phone, async () => phone.touchscreen.tap(...(await pixelOf(phone, 0, 0))), "the splash");
       return phone.evaluate(() => window.felt.length);
     };
     assert.equal(await tap(), 1);
@@ -168,9 +167,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     const { sound } = await waitFor(desk, "the sound", () => true);
     await press(9);
     await waitFor(desk, "the sound to change", (stats) => stats.sound.isOn !== sound.isOn);
-    await desk.getByTestId("view-start").click();
-    await waitFor(desk, "the view", (stats) => stats.view === "start");
-    await cameraAtRest(desk);
+    await startView(desk);
     // A press of a slow page is a long one, with which a finger would draw.
     await desk.getByTestId("tool-splash").click();
     await press(0);
@@ -215,9 +212,7 @@ describe("sound of the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, 
     await press(1);
     assert.equal(await chosen(), null);
     await desk.evaluate(() => (navigator.getGamepads = () => []));
-    await desk.getByTestId("view-start").click();
-    await waitFor(desk, "the view", (stats) => stats.view === "start");
-    await cameraAtRest(desk);
+    await startView(desk);
   });
 
   it("draws with Enter and the arrow keys, and zooms with plus", async () => {

@@ -4,11 +4,12 @@ import assert from "node:assert/strict";
 import { after, before, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
-import { cameraAtRest, skip, WAIT_MS, waitFor } from "./chromium.mjs";
+import { skip, WAIT_MS, waitFor } from "./chromium.mjs";
 import { plugGamepad } from "./gamepad.mjs";
 import { unfolded } from "./panel.mjs";
 import { repository } from "./server.mjs";
 import { pixelOf, twoPeople } from "./two_people.mjs";
+import { acknowledged, startView, statsOf } from "./visit.mjs";
 
 describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }, () => {
   let desk;
@@ -24,10 +25,6 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
       if (k === 0) await page.mouse.down({ button });
     }
   };
-  const stillWater = async (page) => {
-    await reset();
-    return page.evaluate(() => window.spindrift.stats());
-  };
 
   before(async () => {
     ({ desk, phone, reset, close } = await twoPeople(`${repository}/tests/browser/scene.textproto`));
@@ -41,7 +38,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("draws with the mouse, at once on one's own screen, and shows the other whose finger it is", async () => {
-    const { view } = await stillWater(desk);
+    await reset();
+    const { view } = await statsOf(desk);
     const line = Array.from({ length: 20 }, (_, k) => [-1.5 + 0.15 * k, 0.5]);
     // From now on: it may have calmed down when everything else has been seen.
     const wake = waitFor(phone, "the wake in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.02);
@@ -69,7 +67,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("draws one's own ripple at most two pictures after the finger has moved", async () => {
-    await stillWater(desk);
+    await reset();
     await desk.evaluate(() => {
       const ripple = (window.ripple = {});
       let picture = 0;
@@ -90,17 +88,13 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("turns the view with the right button, and with the left one where the water ends", async () => {
-    await stillWater(desk);
-    await desk.getByTestId("view-start").click();
-    await waitFor(desk, "the view", ({ view }) => view === "start");
-    await cameraAtRest(desk);
+    await reset();
+    await startView(desk);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]], "right");
     await desk.mouse.up({ button: "right" });
     const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
     assert.equal(turned.dents, 0);
-    await desk.getByTestId("view-start").click();
-    await waitFor(desk, "the view", ({ view }) => view === "start");
-    await cameraAtRest(desk);
+    await startView(desk);
     await desk.mouse.move(12, 300);
     await desk.mouse.down();
     await desk.mouse.move(80, 300, { steps: 5 });
@@ -110,9 +104,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("gives the left button back to the view if that is chosen, and keeps the choice", async () => {
     await (await unfolded(desk.getByTestId("drag"))).selectOption("turn");
-    await desk.getByTestId("view-start").click();
-    await waitFor(desk, "the view", ({ view }) => view === "start");
-    await cameraAtRest(desk);
+    await startView(desk);
     await drag(desk, [[0, 0], [1, 0.5], [2, 1]]);
     await desk.mouse.up();
     const turned = await waitFor(desk, "the camera to leave its view", ({ view }) => view === null);
@@ -122,7 +114,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("says what the paddle does, outlines its wave while it is dragged, and sends it", async () => {
-    const { lastAck } = await stillWater(desk);
+    await reset();
     await desk.getByTestId("tool-paddle").click();
     assert.match(await desk.getByTestId("hint").textContent(), /Drag to send a wave that way/);
     assert.equal(await desk.getByTestId("tool-paddle").getAttribute("aria-pressed"), "true");
@@ -130,8 +122,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
     const outline = desk.locator(".tool-preview path");
     await desk.waitForFunction(() => document.querySelector(".tool-preview path")?.getAttribute("d").split("M").length === 4, undefined, { timeout: WAIT_MS });
     const wave = waitFor(phone, "the wave in the other's water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM > 0.03);
-    await desk.mouse.up();
-    const taken = await waitFor(desk, "the wave to be taken", (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0));
+    const taken = await acknowledged(desk, () => desk.mouse.up(), "the wave to be taken");
     assert.equal(taken.lastCommand.case, "breakingWave");
     await wave;
     await outline.waitFor({ state: "detached", timeout: WAIT_MS });
@@ -139,7 +130,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("makes a splash larger the longer it is held", async () => {
     const deepest = async (heldMs) => {
-      await stillWater(desk);
+      await reset();
       await drag(desk, [[0, 0]]);
       await sleep(heldMs);
       await desk.mouse.up();
@@ -160,7 +151,7 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("lets it rain for a while where one taps, in everybody's water", async () => {
-    await stillWater(phone);
+    await reset();
     await phone.getByTestId("tool-rain").tap();
     const [xPx, yPx] = await pixelOf(phone, 0.5, 0);
     await phone.touchscreen.tap(xPx, yPx);
@@ -173,9 +164,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
 
   it("works without a pointer: Enter in the middle of the picture, a gamepad where its cursor is", async () => {
     const acked = async (what, act) => {
-      const { lastAck } = await stillWater(desk);
-      await act();
-      return (await waitFor(desk, what, (stats) => stats.lastAck?.commandId > (lastAck?.commandId ?? 0))).lastCommand;
+      await reset();
+      return (await acknowledged(desk, act, what)).lastCommand;
     };
     await desk.getByTestId("tool-finger").click();
     await desk.locator("#view").focus();
@@ -210,7 +200,8 @@ describe("fingers in the water", { skip, timeout: 16 * WAIT_MS, concurrency: 1 }
   });
 
   it("takes each finger of a touch for itself, and two that come down together for the view", async () => {
-    const { view } = await stillWater(phone);
+    await reset();
+    const { view } = await statsOf(phone);
     const touch = await phone.context().newCDPSession(phone);
     const at = async (id, xM, zM) => {
       const [x, y] = await pixelOf(phone, xM, zM);

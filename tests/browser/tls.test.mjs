@@ -1,14 +1,13 @@
 // The page over https in Chromium, with a throw-away certificate: it opens its WebSocket as wss and shows frames.
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
-import { existsSync, mkdtempSync, rmSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, rmSync } from "node:fs";
 import { join } from "node:path";
 import { after, describe, it } from "node:test";
 import { setTimeout as sleep } from "node:timers/promises";
 
 import { executable, launch, WAIT_MS } from "./chromium.mjs";
-import { repository, startServer } from "./server.mjs";
+import { repository, startServer, temporaryFolder } from "./server.mjs";
 
 const missing = [
   [!existsSync(executable), `Chromium is missing (${executable}); set CHROMIUM or install it`],
@@ -17,7 +16,7 @@ const missing = [
 const skip = missing ? missing[1] : false;
 
 describe("the page over https", { skip }, () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-browser-tls-"));
+  const folder = temporaryFolder("browser-tls");
   let server;
   let browser;
   after(async () => {

@@ -1,8 +1,8 @@
 // Two people, each in a browser window of their own; the second has a phone.
 import assert from "node:assert/strict";
 
-import { launch, WAIT_MS, waitFor } from "./chromium.mjs";
-import { startServer } from "./server.mjs";
+import { kPhone, launch, WAIT_MS, waitFor } from "./chromium.mjs";
+import { command, startServer } from "./server.mjs";
 
 /** Waits for the panels, which the page paints after its first picture. */
 export const panelsShown = (page) => page.waitForFunction(() => !document.body.classList.contains("starting"), undefined, { timeout: WAIT_MS });
@@ -30,11 +30,10 @@ export async function twoPeople(scene, first = () => {}) {
   try {
     browser = await launch();
     const desk = await open({ viewport: { width: 900, height: 600 } });
-    const phone = await open({ viewport: { width: 390, height: 844 }, hasTouch: true, isMobile: true });
+    const phone = await open(kPhone);
     /** Begins the scene again, and waits until both pages show the still water. */
     const reset = async () => {
-      const answer = await fetch(new URL("api/v1/rooms/main/commands", server.url), { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify({ reset: {} }) });
-      assert.equal(answer.status, 200, await answer.text());
+      assert.equal((await command(server, { reset: {} })).status, 200);
       for (const page of [desk, phone]) await waitFor(page, "still water", ({ maxElevationM, minElevationM }) => maxElevationM - minElevationM < 0.02);
     };
     return { desk, phone, reset, close };

@@ -26,6 +26,14 @@ export class Client {
     this.ws.on("error", () => {}); // "close" follows
   }
 
+  /** Returns a client that has received its greeting and says that it speaks this version. */
+  static async greeted(port, version) {
+    const client = new Client(port);
+    await client.nextOf("greeting");
+    client.hello(version);
+    return client;
+  }
+
   /** Returns the first message that `accept` accepts and drops the ones before it. Rejects when the socket is closed or after kPatienceMs. */
   async next(accept) {
     const deadline_ms = Date.now() + kPatienceMs;
@@ -61,8 +69,8 @@ export class Client {
   static bytesOf(message) {
     return toBinary(ClientMessageSchema, create(ClientMessageSchema, { message }));
   }
-  hello(major = 1) {
-    this.send({ case: "hello", value: { version: { major, minor: 0 }, client: "ws" } });
+  hello({ major = 1, minor = 0 } = {}) {
+    this.send({ case: "hello", value: { version: { major, minor }, client: "ws" } });
   }
   subscribe(layer, packing, more = {}) {
     this.send({ case: "subscribe", value: { layer, packing, maxRateHz: 60, ...more } });

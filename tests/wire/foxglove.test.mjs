@@ -1,22 +1,15 @@
-// Foxglove's own client (npm @foxglove/ws-protocol) at /foxglove of the real server: channels are read with nothing but the schemas
-// that the server sends.
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+// Foxglove's own client at /foxglove of the real server.
+import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-import { createFileRegistry, fromBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
-import { FileDescriptorSetSchema } from "../../web-client/node_modules/@bufbuild/protobuf/dist/esm/wkt";
-import { FoxgloveClient } from "@foxglove/ws-protocol";
-import WebSocket from "ws";
-
-import { startServer } from "../browser/server.mjs";
+import { command, startServer, temporaryFolder } from "../browser/server.mjs";
 import { Client } from "./client.mjs";
+import { elements, heightsOf, Studio } from "./studio.mjs";
 
-const kPatienceMs = 60_000;
 const kPlayer = "a-player-for-the-foxglove-test";
 const kOperator = "an-operator-for-the-foxglove-test";
 
-const folder = mkdtempSync(join(tmpdir(), "spindrift-foxglove-"));
+const folder = temporaryFolder("foxglove");
 let server;
 
 beforeAll(async () => {
@@ -40,91 +33,21 @@ afterAll(async () => {
   rmSync(folder, { recursive: true });
 });
 
-/** Foxglove's client, with what has come kept until it is read. */
-class Studio {
-  constructor({ path = "/foxglove", token = kOperator, protocols = ["foxglove.sdk.v1", "foxglove.websocket.v1"], port = server.port, origin } = {}) {
-    this.ws = new WebSocket(`ws://127.0.0.1:${port}${path}${token === "" ? "" : `?access_token=${token}`}`, protocols, origin === undefined ? {} : { origin });
-    this.closed = new Promise((resolve) => this.ws.on("close", (code, reason) => resolve({ code, reason: String(reason) })));
-    this.refused = new Promise((resolve) => this.ws.on("unexpected-response", (_request, response) => resolve(response.statusCode)));
-    this.client = new FoxgloveClient({ ws: this.ws });
-    this.log = {};
-    this.errors = [];
-    this.channels = new Map();
-    for (const event of ["serverInfo", "status", "message", "time", "parameterValues", "serviceCallResponse", "serviceCallFailure"]) {
-      this.log[event] = [];
-      this.client.on(event, (value) => {
-        this.log[event].push(value);
-        if (this.log[event].length > 500) this.log[event].shift();
-      });
-    }
-    this.client.on("advertise", (list) => list.forEach((channel) => this.channels.set(channel.topic, channel)));
-    this.client.on("unadvertise", (ids) => [...this.channels.values()].filter(({ id }) => ids.includes(id)).forEach(({ topic }) => this.channels.delete(topic)));
-    this.client.on("advertiseServices", (list) => (this.services = new Map(list.map((service) => [service.name, service]))));
-    this.client.on("error", (error) => this.errors.push(error));
-  }
+const connect = (options = {}, port = server.port) => new Studio(port, { token: kOperator, ...options });
 
-  /** Returns the first value of the event, from now on or kept, that `accept` accepts, and forgets those before it. */
-  async next(event, accept = () => true) {
-    return this.until(() => {
-      const at = this.log[event].findIndex(accept);
-      return at < 0 ? undefined : this.log[event].splice(0, at + 1).at(-1);
-    }, event);
-  }
-  async until(look, what = "what was waited for") {
-    for (const deadline_ms = Date.now() + kPatienceMs; Date.now() < deadline_ms; await new Promise((done) => setTimeout(done, 20))) {
-      const found = look();
-      if (found) return found;
-    }
-    throw new Error(`${what} did not come; statuses: ${JSON.stringify(this.log.status)}, errors: ${this.errors}`);
-  }
-  ready() {
-    return this.until(() => this.services && this.channels.size > 0, "advertise");
-  }
-  subscribe(topic) {
-    const channel = this.channels.get(topic);
-    const files = fromBinary(FileDescriptorSetSchema, Buffer.from(channel.schema, "base64"));
-    const schema = createFileRegistry(files).getMessage(channel.schemaName);
-    const id = this.client.subscribe(channel.id);
-    return {
-      id,
-      next: async (accept = () => true) => {
-        for (;;) {
-          const { data } = await this.next("message", ({ subscriptionId }) => subscriptionId === id);
-          const message = fromBinary(schema, new Uint8Array(data.buffer, data.byteOffset, data.byteLength));
-          if (accept(message)) return message;
-        }
-      },
-    };
-  }
-  #calls = 0;
-  async call(name, request) {
-    const callId = ++this.#calls;
-    this.client.sendServiceCallRequest({ serviceId: this.services.get(name).id, callId, encoding: "json", data: new TextEncoder().encode(request) });
-    return this.until(() => {
-      const answer = this.log.serviceCallResponse.find((one) => one.callId === callId);
-      return answer ? JSON.parse(new TextDecoder().decode(answer.data)) : this.log.serviceCallFailure.find((one) => one.callId === callId);
-    }, `an answer of ${name}`);
-  }
-  async close() {
-    this.client.close();
-    return this.closed;
-  }
+const opened = [];
+afterEach(() => Promise.all(opened.splice(0).map((studio) => studio.close())));
+/** Returns a client that knows channels and services; it is closed after the test. */
+async function ready(options) {
+  const studio = connect(options);
+  opened.push(studio);
+  await studio.ready();
+  return studio;
 }
-
-/** Elements of packed data as objects, by the names of their fields. */
-function elements({ fields, data }, stride) {
-  const view = new DataView(data.buffer, data.byteOffset, data.byteLength);
-  const read = { 1: (at) => view.getUint8(at), 7: (at) => view.getFloat32(at, true) };
-  return Array.from({ length: data.byteLength / stride }, (_, i) =>
-    Object.fromEntries(fields.map(({ name, offset, type }) => [name, read[type](i * stride + offset)])));
-}
-
-const heightsOf = (grid) => elements(grid, grid.cellStride).map((cell) => cell.elevation_m);
 
 describe("a connection", () => {
   it.each(["foxglove.sdk.v1", "foxglove.websocket.v1"])("speaks %s and says what there is", async (protocol) => {
-    const studio = new Studio({ protocols: [protocol] });
-    await studio.ready();
+    const studio = await ready({ protocols: [protocol] });
     expect(studio.ws.protocol).toBe(protocol);
     const info = await studio.next("serverInfo");
     expect(info.name).toMatch(/^spindrift .*, room main$/);
@@ -133,32 +56,30 @@ describe("a connection", () => {
       ["/boats", "/diagnostics", "/floaters", "/gauges", "/layers/bodies", "/layers/floaters", "/layers/foam", "/layers/particles", "/layers/surface", "/tf", "/water/foam", "/water/particles", "/water/surface"]);
     expect([...studio.services.keys()]).toEqual(["/splash", "/reset"]);
     expect(studio.errors).toEqual([]);
-    await studio.close();
   });
 
   it("may be to another room, and to none that does not exist", async () => {
-    const studio = new Studio({ path: "/foxglove/other" });
+    const studio = await ready({ path: "/foxglove/other" });
     expect((await studio.next("serverInfo")).name).toMatch(/room other$/);
-    await studio.close();
-    expect(await new Studio({ path: "/foxglove/nowhere" }).refused).toBe(404);
+    expect(await connect({ path: "/foxglove/nowhere" }).refused).toBe(404);
   });
 
   it("needs a subprotocol of Foxglove, and a server that was asked to serve it", async () => {
-    expect(await new Studio({ protocols: ["spindrift.v1"] }).refused).toBe(400);
+    expect(await connect({ protocols: ["spindrift.v1"] }).refused).toBe(400);
     const plain = await startServer(0, ["--scene", join(folder, "pool.textproto")]);
     try {
-      expect(await new Studio({ port: plain.port }).refused).toBe(404);
+      expect(await connect({}, plain.port).refused).toBe(404);
     } finally {
       await plain.stop("SIGTERM");
     }
   });
 
   it("is refused to pages of other origins", async () => {
-    expect(await new Studio({ origin: "https://elsewhere.example" }).refused).toBe(403);
+    expect(await connect({ origin: "https://elsewhere.example" }).refused).toBe(403);
   });
 
   it("ends with a readable status if its token is unknown", async () => {
-    const studio = new Studio({ token: "not-a-token-of-this-server" });
+    const studio = connect({ token: "not-a-token-of-this-server" });
     const { message } = await studio.next("status", ({ level }) => level === 2);
     expect(message).toMatch(/token/);
     expect(message).not.toContain("not-a-token-of-this-server");
@@ -166,22 +87,18 @@ describe("a connection", () => {
   });
 
   it("is a person of the room like others", async () => {
-    const studio = new Studio();
-    await studio.ready();
-    const page = new Client(server.port);
-    await page.nextOf("greeting");
-    page.send({ case: "hello", value: { version: { major: 1, minor: 11 }, client: "ws" } });
+    const studio = await ready();
+    const page = await Client.greeted(server.port, { minor: 11 });
     const people = await page.next((message) => message.kind === "people" && message.people.some(({ name }) => name === "Foxglove"));
     expect(people.people.length).toBeGreaterThanOrEqual(2);
     await page.close();
-    await studio.close();
   });
 });
 
 describe("channels", () => {
   let studio;
   beforeAll(async () => {
-    studio = new Studio();
+    studio = connect();
     await studio.ready();
   });
   afterAll(() => studio.close());
@@ -268,36 +185,25 @@ describe("channels", () => {
 
 describe("a room that stands still", () => {
   it("is shown to every new channel, also of a layer that is watched already", async () => {
-    const pause = async (paused) => {
-      const answer = await fetch(`${server.url}api/v1/rooms/other/commands`, {
-        method: "POST",
-        headers: { Authorization: `Bearer ${kOperator}`, "Content-Type": "application/json" },
-        body: JSON.stringify({ set_paused: { paused } }),
-      });
-      expect(answer.status).toBe(200);
-    };
+    const pause = async (paused) => expect((await command(server, { set_paused: { paused } }, { room: "other", token: kOperator })).status).toBe(200);
     await pause(true);
-    const studio = new Studio({ path: "/foxglove/other" });
-    await studio.ready();
+    const studio = await ready({ path: "/foxglove/other" });
     for (const topic of ["/water/surface", "/layers/surface", "/boats", "/tf", "/water/particles"]) {
       const channel = studio.subscribe(topic);
       await channel.next();
     }
     await pause(false);
-    await studio.close();
   });
 });
 
 describe("parameters", () => {
   it("are read, set, and told to who watches them", async () => {
-    const studio = new Studio();
-    await studio.ready();
+    const studio = await ready();
     studio.client.getParameters([], "all");
     const all = await studio.next("parameterValues", ({ id }) => id === "all");
     const name = "wave.damping_per_s";
     expect(all.parameters.find((one) => one.name === name)).toEqual({ name, value: 0.2, type: "float64" });
-    const other = new Studio({ token: "" });
-    await other.ready();
+    const other = await ready({ token: "" });
     other.client.subscribeParameterUpdates([name]);
     other.client.getParameters([name], "seen"); // it is answered once the subscription has been read
     await other.next("parameterValues", ({ id }) => id === "seen");
@@ -310,55 +216,45 @@ describe("parameters", () => {
     expect(told).toMatch(/damping/);
     expect(told).toMatch(/no\.such/);
     expect(told).toMatch(/has to be a number/);
-    await other.close();
-    await studio.close();
   });
 });
 
 describe("services", () => {
   it("start the scene again", async () => {
-    const studio = new Studio();
-    await studio.ready();
+    const studio = await ready();
     studio.subscribe("/tf");
     await studio.until(() => studio.log.time.length > 3);
     expect(await studio.call("/reset", "")).toMatchObject({ applied_tick: expect.any(Number) });
     await studio.next("status", ({ message }) => /started again/.test(message));
     await studio.until(() => studio.log.time.some(({ timestamp }, k, all) => k > 0 && timestamp < all[k - 1].timestamp), "a time that goes back");
-    await studio.close();
   });
 
   it("are refused to viewers, and requests that make no sense, with a readable reason", async () => {
-    const viewer = new Studio({ token: "" });
-    await viewer.ready();
+    const viewer = await ready({ token: "" });
     expect(await viewer.call("/splash", "{}")).toMatchObject({ op: "serviceCallFailure", message: expect.stringMatching(/viewer|player/) });
     await viewer.next("status", ({ level, message }) => level === 2 && /viewer|player/.test(message));
     viewer.client.setParameters([{ name: "wave.damping_per_s", value: 0.1 }], "no");
     await viewer.next("parameterValues", ({ id }) => id === "no");
-    await viewer.close();
 
-    const player = new Studio({ token: kPlayer });
-    await player.ready();
+    const player = await ready({ token: kPlayer });
     const failure = (pattern) => ({ op: "serviceCallFailure", message: expect.stringMatching(pattern) });
     expect(await player.call("/splash", '{"radius_m": 1e9}')).toMatchObject(failure(/radius_m/));
     expect(await player.call("/splash", '{"diameter": 1}')).toMatchObject(failure(/diameter/));
     expect(await player.call("/splash", '{}},"reset":{')).toMatchObject(failure(/JSON/));
     expect(await player.call("/splash", "[1, 2]")).toMatchObject(failure(/JSON object/));
     expect(await player.call("/splash", "{}")).toMatchObject({ applied_tick: expect.any(Number) });
-    await player.close();
   });
 });
 
 describe("hostile clients", () => {
   /** Sends what is given and returns the statuses that it causes, once the server has read it all. */
   async function statusesOf(...messages) {
-    const studio = new Studio();
-    await studio.ready();
+    const studio = await ready();
     for (const message of messages) studio.ws.send(message);
     studio.client.getParameters([], "end");
     await studio.next("parameterValues", ({ id }) => id === "end");
-    const statuses = studio.log.status.map(({ message }) => message);
     await studio.close();
-    return statuses;
+    return studio.log.status.map(({ message }) => message);
   }
   const json = JSON.stringify;
 
@@ -375,8 +271,7 @@ describe("hostile clients", () => {
   });
 
   it("get one subscription per channel, however many they ask for", async () => {
-    const studio = new Studio();
-    await studio.ready();
+    const studio = await ready();
     const { id: channelId } = studio.channels.get("/tf");
     for (let first = 0; first < 10_000; first += 400)
       studio.ws.send(json({ op: "subscribe", subscriptions: Array.from({ length: 400 }, (_, k) => ({ id: first + k, channelId })) }));
@@ -386,33 +281,26 @@ describe("hostile clients", () => {
     studio.log.message.length = 0;
     await studio.until(() => studio.log.message.length >= 5);
     expect(studio.log.message.every(({ subscriptionId }) => subscriptionId === 0)).toBe(true);
-    await studio.close();
   });
 
   it("have a bounded number of calls under way", async () => {
-    const studio = new Studio();
-    await studio.ready();
+    const studio = await ready();
     for (let k = 0; k < 5; ++k) studio.client.setParameters(Array.from({ length: 60 }, () => ({ name: "wave.damping_per_s", value: 0.2 })), `${k}`);
     await studio.until(() => new Set(studio.log.parameterValues.map(({ id }) => id)).size === 5, "five answers");
     expect(studio.log.status.map(({ message }) => message).join("\n")).toMatch(/64 commands are under way, the limit/);
-    await studio.close();
   });
 
   it("are closed for a message of 1 MB, and for too many messages", async () => {
-    const big = new Studio();
-    await big.ready();
+    const big = await ready();
     big.ws.send(json({ op: "subscribe", subscriptions: "x".repeat(1 << 20) }));
     expect((await big.closed).code).toBe(1009);
-    const many = new Studio();
-    await many.ready();
+    const many = await ready();
     for (let k = 0; k < 5000; ++k) many.ws.send("{}");
     expect([1008, 1013]).toContain((await many.closed).code);
   });
 
   it("leave the server running", async () => {
     expect((await fetch(`${server.url}healthz`)).status).toBe(200);
-    const studio = new Studio();
-    await studio.ready();
-    await studio.close();
+    const studio = await ready();
   });
 });

@@ -1,17 +1,16 @@
 // Clients that attack the real server over raw sockets, because HTTP libraries send no such bytes: paths that lead
 // outside, requests that two readers would divide differently, and clients that are slow on purpose.
-import { mkdirSync, mkdtempSync, readdirSync, rmSync, writeFileSync } from "node:fs";
+import { mkdirSync, readdirSync, rmSync, writeFileSync } from "node:fs";
 import { connect } from "node:net";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 
-import { startServer } from "../browser/server.mjs";
+import { startServer, temporaryFolder } from "../browser/server.mjs";
 
 /** What the server allows a request, and a session without Hello (ServerOptions::handshake_timeout, 10 s), and more for a busy machine. */
 const kPatienceMs = 30_000;
 const kDripMs = 200;
 
-const folder = mkdtempSync(join(tmpdir(), "spindrift-hostile-"));
+const folder = temporaryFolder("hostile");
 let server;
 
 beforeAll(async () => {

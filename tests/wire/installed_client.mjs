@@ -1,10 +1,9 @@
 // The npm package spindrift-client as its users have it: packed, and installed into a folder of its own.
 import { spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { readFileSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-import { repository } from "../browser/server.mjs";
+import { repository, temporaryFolder } from "../browser/server.mjs";
 
 export const kClientDist = join(repository, "web-client/client/dist");
 
@@ -18,7 +17,7 @@ export function npm(folder, ...command) {
 /** Makes a temporary folder with a project that has the package, and what spindrift-mcp needs besides if `withAgent`; returns its path. The
  *  caller removes it. */
 export function installClient({ withAgent = false } = {}) {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-client-"));
+  const folder = temporaryFolder("client");
   writeFileSync(join(folder, "package.json"), '{ "private": true, "type": "module" }');
   const tarball = npm(folder, "pack", kClientDist, "--silent");
   npm(folder, "install", "--prefer-offline", "--no-audit", "--no-fund", `./${tarball}`, ...(withAgent ? agentPackages() : []));

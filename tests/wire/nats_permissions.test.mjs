@@ -2,13 +2,11 @@
 // Skipped where nats-server or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
 import { once } from "node:events";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { connect, createServer } from "node:net";
-import { tmpdir } from "node:os";
-import { join } from "node:path";
 import { connect as connectTls } from "node:tls";
 
-import { binary, freePort, repository, startServer } from "../browser/server.mjs";
+import { binary, freePort, repository, startServer, temporaryFolder } from "../browser/server.mjs";
 import { Layer, Packing } from "../../web-client/client/gen/spindrift/v1/wire_pb";
 import { Client } from "./client.mjs";
 
@@ -17,7 +15,7 @@ const has = (program, argument) => spawnSync(program, [argument], { env: { PATH:
 const kStartLimitMs = 20_000;
 
 describe.skipIf(!has("nats-server", "--version") || !has("openssl", "version"))("NATS with the documented permissions", () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-nats-"));
+  const folder = temporaryFolder("nats");
   const passwords = { server: "password-of-the-servers", edge: "password-of-the-edges" };
   let nats;
   let port;
@@ -113,9 +111,7 @@ describe.skipIf(!has("nats-server", "--version") || !has("openssl", "version"))(
   }
 
   it("lets servers and edges do all that they need", async () => {
-    const client = new Client(edge.port);
-    await client.nextOf("greeting");
-    client.hello();
+    const client = await Client.greeted(edge.port);
     client.subscribe(Layer.SURFACE, Packing.PLAIN);
     await client.nextOf("surface");
     client.command(1n, { case: "splash", value: { depthM: 0.1 } });

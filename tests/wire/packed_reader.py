@@ -106,10 +106,7 @@ def message_of(data, known):
         elif kind == FIXED32:
             value = struct.unpack("<I", value)[0]
         elif kind == SINTS:  # packed varints, zigzag
-            numbers, rest = [], value
-            for raw in unpacked(rest):
-                numbers.append((raw >> 1) ^ -(raw & 1))
-            value = out[name] + numbers
+            value = out[name] + [(raw >> 1) ^ -(raw & 1) for raw in unpacked(value)]
         out[name] = value
     return out
 
@@ -337,6 +334,12 @@ def read_plane(residuals, counts, weights, before, earlier):
     return plane
 
 
+def floater_of(floater_id, position_m, rotation, size_cm, kind, flags):
+    name = FLOATER_KINDS[kind - 1] if 1 <= kind <= len(FLOATER_KINDS) else "CRATE"
+    return {"floater_id": floater_id, "position_m": position_m, "rotation": rotation, "size_m": size_cm / 100,
+            "kind": f"FLOATER_KIND_{name}", "is_held": bool(flags & 1)}
+
+
 class Reader:
     """The subscriptions of one client: keeps the planes that the next packed frame builds on."""
 
@@ -401,10 +404,7 @@ class Reader:
         floaters = []
         for floater_id, x, y, z, *rotation, size, kind, flags in struct.iter_unpack("<IiiihhhhHBB", frame["payload"]):
             must(floater_id != 0, "floater_id 0")
-            name = FLOATER_KINDS[kind - 1] if 1 <= kind <= len(FLOATER_KINDS) else "CRATE"
-            floaters.append({"floater_id": floater_id, "position_m": [x / 1000, y / 1000, z / 1000],
-                             "rotation": [q / 32767 for q in rotation], "size_m": size / 100,
-                             "kind": f"FLOATER_KIND_{name}", "is_held": bool(flags & 1)})
+            floaters.append(floater_of(floater_id, [x / 1000, y / 1000, z / 1000], [q / 32767 for q in rotation], size, kind, flags))
         return {"floaters": floaters}
 
     def floaters_predicted(self, frame, h):
@@ -506,10 +506,8 @@ class Reader:
         floaters = []
         for one in objects:
             length = math.hypot(*one["turn"])
-            name = FLOATER_KINDS[one["kind"] - 1] if one["kind"] <= len(FLOATER_KINDS) else "CRATE"
-            floaters.append({"floater_id": one["id"], "position_m": [p * h["quantum_m"] for p in one["place"]],
-                             "rotation": [q / length for q in one["turn"]], "size_m": one["size"] / 100,
-                             "kind": f"FLOATER_KIND_{name}", "is_held": bool(one["flags"] & 1)})
+            floaters.append(floater_of(one["id"], [p * h["quantum_m"] for p in one["place"]],
+                                       [q / length for q in one["turn"]], one["size"], one["kind"], one["flags"]))
         return {"floaters": floaters}
 
     def particles_by_cell(self, frame, h):

@@ -1,10 +1,11 @@
 // Reads the golden bytes with a program that was written from proto/README.md alone.
 import { spawnSync } from "node:child_process";
-import { cpSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { cpSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 
-const kGolden = join(import.meta.dirname, "..", "golden");
+import { repository, temporaryFolder } from "../browser/server.mjs";
+
+const kGolden = join(repository, "tests/golden");
 
 function read(folder) {
   return spawnSync("python3", ["-B", join(import.meta.dirname, "packed_reader.py"), folder], { encoding: "utf8" });
@@ -19,7 +20,7 @@ describe("a reader written from the README alone", () => {
   });
 
   it("tells where a file and its expectation differ", () => {
-    const folder = mkdtempSync(join(tmpdir(), "spindrift-golden-"));
+    const folder = temporaryFolder("golden");
     try {
       cpSync(kGolden, folder, { recursive: true });
       const cases = JSON.parse(readFileSync(join(folder, "golden.json"), "utf8"));

@@ -1,13 +1,12 @@
 // The server behind nginx and behind Caddy with TLS, at / and under a path, configured as docs/operations/secure.md says. Skipped where the proxy
 // or openssl is missing.
 import { execFileSync, spawn, spawnSync } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { readFileSync, rmSync, writeFileSync } from "node:fs";
 import { get } from "node:https";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
 
-import { freePort, repository, startServer } from "../browser/server.mjs";
+import { freePort, repository, startServer, temporaryFolder } from "../browser/server.mjs";
 
 const has = (program) => spawnSync(program, ["-h"], { env: { PATH: "/usr/sbin:/usr/bin:/bin" } }).error === undefined;
 const kStartLimitMs = 10_000;
@@ -57,7 +56,7 @@ const starters = {
 const kPlaces = Object.keys(starters).flatMap((name) => ["/", "/water/"].map((base) => [name, base]));
 describe.each(kPlaces)("behind %s with TLS at %s", (name, base) => {
   describe.skipIf(!has(name) || !has("openssl"))("where it is installed", () => {
-    const folder = mkdtempSync(join(tmpdir(), `spindrift-${name}-`));
+    const folder = temporaryFolder(`${name}`);
     let server;
     let proxy;
     let port;

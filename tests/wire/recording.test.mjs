@@ -1,7 +1,6 @@
 // Recordings that other programs open, read by @mcap/core: what is in them, their bounds, and how they end.
 import { spawn } from "node:child_process";
-import { existsSync, mkdtempSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { existsSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import { createInterface } from "node:readline";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -13,7 +12,7 @@ import { fromBinary } from "../../web-client/node_modules/@bufbuild/protobuf";
 import { FrameUnpacker } from "../../web-client/client/codec/frame_unpacker";
 import { parse } from "../../web-client/client/codec/parse";
 import { Layer, Packing, ServerMessageSchema } from "../../web-client/client/gen/spindrift/v1/wire_pb";
-import { binary, repository, startServer, until } from "../browser/server.mjs";
+import { binary, command, post, repository, startServer, temporaryFolder, until } from "../browser/server.mjs";
 import { Client } from "./client.mjs";
 
 const kMiB = 1 << 20;
@@ -28,9 +27,10 @@ const kAllLayers = `
   boats { capacity_count: 4 }
   floaters { capacity_count: 8 }
   stream { frame_rate_hz: 20 }`;
+const kSplash = { splash: { depth_m: 0.4, radius_m: 2 } };
 const decompressHandlers = { zstd: (bytes, size) => decompress(bytes, new Uint8Array(Number(size))) };
 
-const folder = mkdtempSync(join(tmpdir(), "spindrift-recording-"));
+const folder = temporaryFolder("recording");
 afterAll(() => rmSync(folder, { recursive: true }));
 
 /** Asks for the recordings of a room; returns status and answer. */
@@ -131,9 +131,8 @@ describe("a recording by a request", () => {
 
   it("begins new files that can each be read alone", async () => {
     await ask(server.port, "POST", { name: "parts", file_max_bytes: kMiB, max_bytes: 100 * kMiB, layers: ["LAYER_SURFACE", "LAYER_FOAM", "LAYER_PARTICLES"] });
-    const splash = { splash: { depth_m: 0.4, radius_m: 2 } };
     const three = await until("three files", async () => {
-      await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(splash) });
+      await command(server, kSplash);
       const { body } = await ask(server.port, "GET");
       return body.recordings.at(-1).files.length >= 3;
     });
@@ -184,9 +183,7 @@ describe("a recording by a request", () => {
   it("ends with its bounds, and with its room", async () => {
     await ask(server.port, "POST", { name: "short", max_s: 1 });
     await until("the end", async () => (await ask(server.port, "GET")).body.recordings.at(-1).ended.includes("bound of 1 s"));
-    const json = { "Content-Type": "application/json" };
-    const open = { method: "POST", headers: json, body: JSON.stringify({ name: "extra", scene: "splash" }) };
-    expect((await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms`, open)).status).toBe(201);
+    expect((await post(server, "api/v1/rooms", { name: "extra", scene: "splash" })).status).toBe(201);
     expect((await ask(server.port, "POST", { name: "extra" }, "extra")).status).toBe(201);
     await until("messages", () => statSync(pathOf("extra_0001.mcap")).size > 1000);
     expect((await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms/extra`, { method: "DELETE" })).status).toBe(204);
@@ -196,8 +193,7 @@ describe("a recording by a request", () => {
 
   it("gets a new greeting with another scene", async () => {
     await ask(server.port, "POST", { name: "change" }, "marina");
-    const change = { change_scene: { name: "splash" } };
-    const answer = await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms/marina/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body: JSON.stringify(change) });
+    const answer = await command(server, { change_scene: { name: "splash" } }, { room: "marina" });
     expect(answer.status, await answer.text()).toBe(200);
     await new Promise((resolve) => setTimeout(resolve, 1500));
     await ask(server.port, "DELETE", undefined, "marina");
@@ -318,7 +314,7 @@ describe("spindrift record", () => {
   it("keeps packed layers decodable from file to file", async () => {
     const { child, ended } = record("packed.mcap", "--file-mib", "1", "--max-mib", "100", "--layers", "surface,foam,particles");
     await until("two files", async () => {
-      await fetch(`http://127.0.0.1:${server.port}/api/v1/rooms/main/commands`, { method: "POST", headers: { "Content-Type": "application/json" }, body: '{"splash":{"depth_m":0.4,"radius_m":2}}' });
+      await command(server, kSplash);
       return existsSync(join(folder, "packed_0002.mcap")) && statSync(join(folder, "packed_0002.mcap")).size > 100_000;
     });
     child.kill("SIGINT");

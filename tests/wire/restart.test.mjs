@@ -1,12 +1,11 @@
 // A server that ends and is started again: what probes, sessions, scripted clients and the page's own connection see.
 import { spawn } from "node:child_process";
-import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
-import { tmpdir } from "node:os";
+import { rmSync, writeFileSync } from "node:fs";
 import { join } from "node:path";
 import WebSocket from "ws";
 
 import { PageConnection } from "../../web-client/src/net/page_connection";
-import { binary, freePort, repository, startServer, until } from "../browser/server.mjs";
+import { binary, freePort, repository, startServer, until, temporaryFolder } from "../browser/server.mjs";
 
 /** From the signal to the exit of a server whose clients take part. */
 // The server's own bounds after SIGTERM: 1 s of --drain-s, 3 s for sessions, 5 s for the disk, 2 s for water that is being built.
@@ -43,7 +42,7 @@ function statusOf(port, path, options) {
 }
 
 describe("a server that ends", () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-restart-"));
+  const folder = temporaryFolder("restart");
   const pages = [];
   let server;
 

@@ -1,16 +1,15 @@
 // The server with a certificate of its own: page, WebSocket, scripted client, health check, and a new certificate.
 // Skipped where openssl is missing.
 import { execFileSync, spawnSync } from "node:child_process";
-import { chmodSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { chmodSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { get } from "node:https";
-import { tmpdir } from "node:os";
 import { join } from "node:path";
 import WebSocket from "ws";
 
-import { binary, repository, startServer } from "../browser/server.mjs";
+import { binary, repository, startServer, temporaryFolder } from "../browser/server.mjs";
 
 describe.skipIf(spawnSync("openssl", ["version"]).error)("a server with --tls-cert", () => {
-  const folder = mkdtempSync(join(tmpdir(), "spindrift-tls-"));
+  const folder = temporaryFolder("tls");
   const files = { cert: join(folder, "cert.pem"), key: join(folder, "key.pem") };
   let server;
 

@@ -10,13 +10,7 @@ beforeAll(async () => {
 });
 afterAll(() => server?.stop("SIGTERM"));
 
-/** Returns a client that has received its greeting. */
-async function greeted() {
-  const client = new Client(server.port);
-  await client.nextOf("greeting");
-  client.hello();
-  return client;
-}
+const greeted = () => Client.greeted(server.port);
 
 describe("the npm package ws", () => {
   it("negotiates the subprotocol and no extension, and receives the greeting first", async () => {
@@ -139,9 +133,7 @@ describe("the npm package ws", () => {
     expect((await odd.nextOf("refusal")).message).not.toBe("");
     expect((await odd.closed).code).toBe(1008);
 
-    const future = new Client(server.port);
-    await future.nextOf("greeting");
-    future.hello(2);
+    const future = await Client.greeted(server.port, { major: 2 });
     expect((await future.nextOf("refusal")).message).toContain("2.0");
     expect((await future.closed).code).toBe(1008);
   });

@@ -102,6 +102,9 @@ export class DrivenPage {
   evaluate(body, argument) {
     return this.#page.evaluate(body, argument);
   }
+  evaluateHandle(body, argument) {
+    return this.#page.evaluateHandle(body, argument);
+  }
 
   /** Sends a command by REST; it has been applied when this returns. */
   command(action) {

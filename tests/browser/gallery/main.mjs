@@ -2,9 +2,7 @@
 import { existsSync, readFileSync } from "node:fs";
 import { parseArgs } from "node:util";
 
-import { chromium } from "playwright-core";
-
-import { executable, kChromiumArgs } from "../chromium.mjs";
+import { launch } from "../chromium.mjs";
 import { shootClass } from "./class.mjs";
 import { described } from "./compare.mjs";
 import { shootAnimation, shootTour } from "./films.mjs";
@@ -61,7 +59,7 @@ try {
   console.error(error.message);
   process.exit(2);
 }
-const browser = await chromium.launch({ executablePath: executable, args: kChromiumArgs });
+const browser = await launch();
 try {
   const context = await browser.newContext();
   const does = (part) => options.part === part || options.part === "all";

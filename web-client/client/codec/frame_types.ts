@@ -65,7 +65,7 @@ interface BodiesHeader extends FrameHeader {
 }
 
 /** Coordinates are whole numbers of quanta; a rotation has any length. */
-export interface FloatersHeader extends FrameHeader {
+interface FloatersHeader extends FrameHeader {
   count: number;
   quantumM: number;
 }

@@ -9,7 +9,7 @@ export interface Picture {
 }
 
 /** What a picture shows and how to read it. */
-export interface Drawn {
+interface Drawn {
   picture: Picture;
   lowestM: number;
   highestM: number;

@@ -32,8 +32,8 @@ export interface RoomSummary {
 const kRoles: readonly [RoleName, string][] = [["operator", "ROLE_OPERATOR"], ["player", "ROLE_PLAYER"], ["viewer", "ROLE_VIEWER"]];
 
 /** Returns the parameters whose values differ from those of the room's scene. Throws an Error with a line for people. */
-export async function requestChanges(room: string, token: string, base = ""): Promise<ParameterValue[]> {
-  const { parameters = [] } = (await ask(`${base}api/v1/rooms/${encodeURIComponent(room)}/changes`, token)) as { parameters?: ParameterValue[] };
+export async function requestChanges(room: string, token: string): Promise<ParameterValue[]> {
+  const { parameters = [] } = (await ask(`api/v1/rooms/${encodeURIComponent(room)}/changes`, token)) as { parameters?: ParameterValue[] };
   return parameters.map(({ path, value }) => ({ path, value }));
 }
 

@@ -1,8 +1,8 @@
 // Keys that work everywhere on the page, but in text fields, lists and sliders. docs/controls.md and the card of keys list all.
 import { byId, isTyping } from "../ui/dom";
-import type { KeysCard } from "../ui/keys_card";
 import { kTexts } from "../ui/texts";
 import type { App } from "./app";
+import { lateCard } from "./late_card";
 
 /** Turn of what is held, and zoom of the view, per press. */
 const kTurnRad = 0.2;
@@ -15,14 +15,7 @@ function press(id: string): void {
 }
 
 export function connectPageKeys(app: App): void {
-  let card: Promise<KeysCard> | undefined;
-  const help = (): void => {
-    card ??= import("../ui/keys_card").then((loaded) => new loaded.KeysCard());
-    card.then((one) => one.open(), () => {
-      card = undefined;
-      app.warn(kTexts.shareFailed);
-    });
-  };
+  const help = lateCard(() => import("../ui/keys_card").then(({ KeysCard }) => new KeysCard()), () => app.warn(kTexts.shareFailed));
   const zoom = (by: number): void => app.display.views.orbit(0, 0, by);
   /** By the letter or sign, in lower case. True: while a key is held, too. */
   const keys: Record<string, [run: () => void, repeats?: true]> = {

@@ -5,6 +5,7 @@ import type { ParameterValue } from "../../client/rest/rooms";
 import type { ShareSource } from "../ui/share_card";
 import { kTexts } from "../ui/texts";
 import type { App } from "./app";
+import { lateCard } from "./late_card";
 
 export function addShareButton(app: App): void {
   const sceneNow = (): string | undefined => (app.entered?.scenes.includes(app.entered.sceneName) ? app.entered.sceneName : undefined);
@@ -17,15 +18,8 @@ export function addShareButton(app: App): void {
     changes,
     openForRoles: async () => openRoomWithTokens(freshName(sceneNow() ?? ""), { scene: sceneNow() ?? "", parameters: await changes() }, app.token),
   };
-  const load = (): Promise<{ open(): void }> => import("../ui/share_card").then(({ ShareCard }) => new ShareCard(source));
-  let card: ReturnType<typeof load> | undefined;
-  const button = app.actions.add("share", "share", kTexts.share, () => {
-    card ??= load();
-    card.then((one) => one.open(), () => {
-      card = undefined;
-      app.warn(kTexts.shareFailed);
-    });
-  });
+  const open = lateCard(() => import("../ui/share_card").then(({ ShareCard }) => new ShareCard(source)), () => app.warn(kTexts.shareFailed));
+  const button = app.actions.add("share", "share", kTexts.share, open);
   button.element.setAttribute("aria-haspopup", "dialog");
 }
 

@@ -50,7 +50,7 @@ export interface Sight {
 type ShotName = "wide" | "start" | "leaders" | "winner" | "ball" | "action";
 
 /** A disc of the water that the picture has to show. */
-export interface Framing extends Place {
+interface Framing extends Place {
   radiusM: number;
 }
 
@@ -67,8 +67,8 @@ export function wideFraming({ sideM, widthM }: Pick<Sight, "sideM" | "widthM">):
   return { xM: 0, zM: 0, radiusM: Math.hypot(sideM, widthM) / 2 };
 }
 
-export function beginDirecting(sight: Sight, now: Framing = wideFraming(sight)): DirectorState {
-  return { shot: "wide", sinceS: sight.nowS, now, atS: sight.nowS };
+export function beginDirecting(sight: Sight): DirectorState {
+  return { shot: "wide", sinceS: sight.nowS, now: wideFraming(sight), atS: sight.nowS };
 }
 
 /** Returns the state for this moment. */

@@ -1,7 +1,7 @@
 // Pictures on the pad's buttons, one stroke each, in a square of 24.
 import type { LessonTool } from "../../client/codec/lesson";
+import { makeIcon } from "../ui/dom";
 
-const kSvg = "http://www.w3.org/2000/svg";
 const kPaths: Record<LessonTool, string> = {
   finger: "M9 21l-4-6 2-1 2 2V5a1.5 1.5 0 0 1 3 0v6l5 1.2a2 2 0 0 1 1.5 2.3L17.5 21z",
   splash: "M12 4c3 4 4 5.5 4 7.5a4 4 0 0 1-8 0C8 9.5 9 8 12 4zM3 19c2-1.5 4-1.5 6 0s4 1.5 6 0 4-1.5 6 0M4 13l-1.5-2M20 13l1.5-2",
@@ -12,12 +12,4 @@ const kPaths: Record<LessonTool, string> = {
   boat: "M3 14h18l-3 5H7zM11 14V3l7 8h-7M9 14V7l-4 5",
 };
 
-export function toolIcon(tool: LessonTool): SVGSVGElement {
-  const icon = document.createElementNS(kSvg, "svg");
-  icon.setAttribute("viewBox", "0 0 24 24");
-  icon.setAttribute("aria-hidden", "true");
-  const path = document.createElementNS(kSvg, "path");
-  path.setAttribute("d", kPaths[tool]);
-  icon.append(path);
-  return icon;
-}
+export const toolIcon = (tool: LessonTool): SVGSVGElement => makeIcon(kPaths[tool]);

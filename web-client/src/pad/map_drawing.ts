@@ -35,7 +35,7 @@ export interface MapTarget extends WaterPlace {
   color: string;
 }
 
-export interface MapThings {
+interface MapThings {
   surface: MixedSurface | undefined;
   boats: readonly BodyPose[];
   details: readonly BoatDetail[];

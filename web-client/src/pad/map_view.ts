@@ -10,7 +10,7 @@ const kBoatDown = 0.6;
 /** Least part of the shorter side of the water that the boat's map shows. */
 const kLeastSeen = 0.3;
 
-export interface SizePx {
+interface SizePx {
   widthPx: number;
   heightPx: number;
 }

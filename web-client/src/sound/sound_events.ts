@@ -1,6 +1,6 @@
 // What happened since the last frame and is heard once: at most kEventsMax, of which the largest are kept. The objects are reused.
 
-export type EventKind = "splash" | "plunge" | "slap" | "knock";
+type EventKind = "splash" | "plunge" | "slap" | "knock";
 
 export interface SoundEvent {
   kind: EventKind;

@@ -50,14 +50,14 @@ const kShoreDepths = 0.12;
 const kSeed = 41;
 
 /** Rain of somebody's tool. */
-export interface Cloud {
+interface Cloud {
   xM: number;
   zM: number;
   radiusM: number;
 }
 
 /** What the wave tone reads. */
-export interface TonePlace {
+interface TonePlace {
   xM: number;
   zM: number;
   octaveM: number;

@@ -34,3 +34,16 @@ export function formatBy(step: number, value: number): string {
   const decimals = Math.min(Math.max(Math.ceil(-Math.log10(step) - 1e-9), 0), 4);
   return fixed(value, decimals);
 }
+
+const kSvg = "http://www.w3.org/2000/svg";
+
+/** Makes an icon of one stroke, in a square of 24. */
+export function makeIcon(stroke: string): SVGSVGElement {
+  const icon = document.createElementNS(kSvg, "svg");
+  const path = document.createElementNS(kSvg, "path");
+  icon.setAttribute("viewBox", "0 0 24 24");
+  icon.setAttribute("aria-hidden", "true");
+  path.setAttribute("d", stroke);
+  icon.append(path);
+  return icon;
+}

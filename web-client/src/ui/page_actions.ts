@@ -1,9 +1,8 @@
 // The row of buttons beside the panel for what one does with the picture: fullscreen, a picture, a film. index.html has those for panel and
 // sound; another button is one call of add().
-import { byId, make, setText } from "./dom";
+import { byId, make, makeIcon, setText } from "./dom";
 import { kTexts } from "./texts";
 
-const kSvg = "http://www.w3.org/2000/svg";
 /** One stroke each, in a square of 24. */
 const kIcons = {
   fullscreen: "M4 9V4h5M20 9V4h-5M4 15v5h5M20 15v5h-5",
@@ -33,13 +32,7 @@ export class ActionButton {
   private readonly note = make("span", { class: "action-note" });
 
   constructor(testId: string, path: string, label: string) {
-    const icon = document.createElementNS(kSvg, "svg");
-    icon.setAttribute("viewBox", "0 0 24 24");
-    icon.setAttribute("aria-hidden", "true");
-    const line = document.createElementNS(kSvg, "path");
-    line.setAttribute("d", path);
-    icon.append(line);
-    this.element = make("button", { type: "button", class: "glass", "data-testid": testId }, [icon, this.note]);
+    this.element = make("button", { type: "button", class: "glass", "data-testid": testId }, [makeIcon(path), this.note]);
     this.show(label, false);
   }
 

@@ -38,11 +38,6 @@ export class PeoplePanel {
     this.show();
   }
 
-  /** 0 before the server's Welcome. */
-  get ownId(): number {
-    return this.me?.personId ?? 0;
-  }
-
   /** `unlistedCount`: people who only watch and are not in the list. */
   setPeople(people: readonly PersonInfo[], unlistedCount: number): void {
     this.people = people;

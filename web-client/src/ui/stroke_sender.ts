@@ -78,10 +78,6 @@ export class StrokeSender {
     this.post(finger, { ends: true });
   }
 
-  endAll(): void {
-    for (const pointerId of [...this.fingers.keys()]) this.end(pointerId);
-  }
-
   private get intervalMs(): number {
     return kIntervalMs * Math.max(this.fingers.size / kFullRateFingers, 1);
   }

@@ -29,7 +29,7 @@ export class Boats {
   private posesCount = 0;
   private ownerColors: ReadonlyMap<number, BoatColors> = new Map();
 
-  /** `material` is shared, and the caller disposes it; this object disposes `lidMaterial`, which writes no colour. */
+  /** The caller disposes the materials; `lidMaterial` writes no colour. */
   constructor(
     private readonly scene: Scene,
     private readonly material: RawShaderMaterial,
@@ -93,7 +93,6 @@ export class Boats {
 
   dispose(): void {
     for (const boatId of [...this.boats.keys()]) this.drop(boatId);
-    this.lidMaterial.dispose();
   }
 
   private build(detail: BoatDetail): void {

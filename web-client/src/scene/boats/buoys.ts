@@ -122,10 +122,10 @@ export class Buoys {
   readonly group = new Group();
   private readonly geometries: BufferGeometry[] = [];
 
-  /** Takes ownership of `material`, which has the define FLOATS. */
+  /** The caller disposes `material`, which has the define FLOATS. */
   constructor(
     private readonly places: readonly BuoyPlace[],
-    private readonly material: RawShaderMaterial,
+    material: RawShaderMaterial,
     plain: boolean,
   ) {
     for (const place of places) {
@@ -159,6 +159,5 @@ export class Buoys {
 
   dispose(): void {
     for (const geometry of this.geometries) geometry.dispose();
-    this.material.dispose();
   }
 }

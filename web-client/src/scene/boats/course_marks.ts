@@ -65,7 +65,7 @@ export class CourseMarks {
   private readonly geometries: BufferGeometry[] = [];
   private next: number | undefined;
 
-  /** Takes ownership of `material`, which has the define FLOATS. */
+  /** The caller disposes `material`, which has the define FLOATS. */
   constructor(
     private readonly course: CourseInfo,
     private readonly material: RawShaderMaterial,
@@ -100,7 +100,6 @@ export class CourseMarks {
   dispose(): void {
     for (const { geometry } of this.marks) geometry.dispose();
     for (const geometry of this.geometries) geometry.dispose();
-    this.material.dispose();
   }
 
   private add(geometry: BufferGeometry, { xM, zM }: { xM: number; zM: number }): Mesh {

@@ -89,8 +89,8 @@ function onSphere(middle: Point, radii: Point): (up: number, around: number) => 
   };
 }
 
-/** One normal for all vertices at a position, so that neighbouring panels meet smoothly; `isSharp`: positions that keep their edges. */
-function smoothed(geometry: BufferGeometry, isSharp: (x: number, y: number, z: number) => boolean = () => false): BufferGeometry {
+/** One normal for all vertices at a position, so that neighbouring panels meet smoothly. */
+function smoothed(geometry: BufferGeometry): BufferGeometry {
   const positions = geometry.getAttribute("position") as BufferAttribute;
   const normals = geometry.getAttribute("normal") as BufferAttribute;
   const sums = new Map<string, [number, number, number]>();
@@ -100,7 +100,6 @@ function smoothed(geometry: BufferGeometry, isSharp: (x: number, y: number, z: n
     sums.set(keyOf(n), [sum[0] + normals.getX(n), sum[1] + normals.getY(n), sum[2] + normals.getZ(n)]);
   }
   for (let n = 0; n < positions.count; ++n) {
-    if (isSharp(positions.getX(n), positions.getY(n), positions.getZ(n))) continue;
     const [x, y, z] = sums.get(keyOf(n))!;
     const length = Math.hypot(x, y, z);
     if (length > 1e-6) normals.setXYZ(n, x / length, y / length, z / length);

@@ -25,7 +25,7 @@ export class Floaters {
   /** The call that the meshes show. */
   private shown: { from: FloatersState; to: FloatersState; mix: number } | undefined;
 
-  /** Takes ownership of `material`, which has the define INSTANCES. */
+  /** The caller disposes `material`, which has the define INSTANCES. */
   constructor(
     private readonly scene: Scene,
     private readonly material: RawShaderMaterial,
@@ -51,7 +51,6 @@ export class Floaters {
       this.scene.remove(mesh);
       mesh.geometry.dispose();
     }
-    this.material.dispose();
   }
 
   private fill(kind: FloaterKindName): void {

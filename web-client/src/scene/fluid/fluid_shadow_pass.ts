@@ -1,6 +1,6 @@
 // Shades the floor under a tank of particles, and draws a map of the floor for the rays that reach it through the water. Reads the volume and
 // the depth of the solids. Writes the colour of the solids, and the map.
-import { BufferAttribute, BufferGeometry, CustomBlending, DstColorFactor, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OrthographicCamera, RedFormat, Scene, Vector2, WebGLRenderTarget, ZeroFactor, type Camera, type RawShaderMaterial, type WebGLRenderer } from "three";
+import { BufferAttribute, BufferGeometry, HalfFloatType, LinearFilter, LinearMipmapLinearFilter, Mesh, OrthographicCamera, RedFormat, Scene, Vector2, WebGLRenderTarget, type Camera, type RawShaderMaterial, type WebGLRenderer } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { FullscreenPass } from "../drawing/fullscreen";
@@ -8,7 +8,7 @@ import type { Pass, Picture } from "../drawing/pass";
 import type { FluidQuality, Quality } from "../drawing/quality";
 import type { Sky } from "../light/sky";
 import { colourRatio } from "../light/water_optics";
-import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { kDarkening, makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SolidsPass } from "../solids/solids_pass";
 import type { FluidParticles } from "./fluid_particles";
 import type { FluidVolumePass } from "./fluid_volume_pass";
@@ -55,19 +55,7 @@ export class FluidShadowPass implements Pass {
     geometry.setAttribute("position", new BufferAttribute(new Float32Array([-x, 0, -z, -x, 0, z, x, 0, -z, x, 0, z]), 3));
     geometry.setIndex([0, 1, 2, 2, 1, 3]);
     const uniforms = { ...place, u_thickness: { value: this.target.texture }, u_apart_m: { value: 1 }, u_colour_ratio: { value: colourRatio(greeting) } };
-    this.floor = new Mesh(
-      geometry,
-      makeMaterial("fluidShadow", uniforms, {
-        blending: CustomBlending,
-        blendSrc: DstColorFactor,
-        blendDst: ZeroFactor,
-        transparent: true,
-        depthWrite: false,
-        polygonOffset: true,
-        polygonOffsetFactor: -2,
-        polygonOffsetUnits: -4,
-      }),
-    );
+    this.floor = new Mesh(geometry, makeMaterial("fluidShadow", uniforms, kDarkening));
     this.floor.frustumCulled = false;
     this.scene.add(this.floor);
   }

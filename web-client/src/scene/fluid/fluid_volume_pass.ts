@@ -1,10 +1,10 @@
 // The density of the particles in cells: a volume, as horizontal slices side by side in one texture. Reads the particles. Writes density
 // over that at rest, and the white share of it.
-import { AddEquation, CustomBlending, LinearFilter, OneFactor, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { LinearFilter, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { TexelType } from "../drawing/quality";
-import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { kAdding, makeMaterial, type Uniforms } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { volumeShape, type VolumeShape } from "./volume_shape";
 
@@ -41,7 +41,7 @@ export class FluidVolumePass implements Pass {
       u_reach_m: { value: 1 },
     };
     const uniforms = { ...particles.uniforms, ...this.uniforms, u_volume: { value: null }, u_slice: { value: 0 }, u_at_rest: { value: 1 }, u_target_px: { value: new Vector2() } };
-    this.material = makeMaterial("fluidVolume", uniforms, { defines: surroundings ? { WALLS: 1 } : {}, blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneFactor, depthTest: false, depthWrite: false, transparent: true });
+    this.material = makeMaterial("fluidVolume", uniforms, { defines: surroundings ? { WALLS: 1 } : {}, ...kAdding });
   }
 
   draw({ renderer, camera }: Picture): void {

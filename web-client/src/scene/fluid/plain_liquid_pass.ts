@@ -1,10 +1,10 @@
 // The particles of a tank in the tier minimal: a mesh made on the CPU (plain_surface.ts), lit at its vertices, with its drops and its shade on the
 // floor. Reads the particles, and the canvas with the solids. Writes the canvas and its depth.
-import { BufferAttribute, BufferGeometry, CustomBlending, DstColorFactor, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, Mesh, PlaneGeometry, Points, Scene, Vector3, ZeroFactor, type RawShaderMaterial, type Texture } from "three";
+import { BufferAttribute, BufferGeometry, DynamicDrawUsage, InterleavedBuffer, InterleavedBufferAttribute, Mesh, PlaneGeometry, Points, Scene, Vector3, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
-import { makeMaterial } from "../shaders/materials";
+import { kDarkening, makeMaterial } from "../shaders/materials";
 import type { FluidParticles } from "./fluid_particles";
 import { kDropFloats, kVertexFloats, PlainSurface } from "./plain_surface";
 
@@ -44,7 +44,7 @@ export class PlainLiquidPass implements Pass {
     const depth = makeMaterial("fluidPlain", uniforms, { ...blended, colorWrite: false });
     const light = makeMaterial("fluidPlain", uniforms, { ...blended, depthWrite: false });
     const drop = makeMaterial("fluidPlainDrop", uniforms, { transparent: true, depthWrite: false });
-    const shade = makeMaterial("fluidPlainFloor", {}, { blending: CustomBlending, blendSrc: DstColorFactor, blendDst: ZeroFactor, transparent: true, depthWrite: false, polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4 });
+    const shade = makeMaterial("fluidPlainFloor", {}, kDarkening);
     this.materials = [depth, light, drop, shade];
     this.floor = new Mesh(new PlaneGeometry(size.sideM, size.widthM, ...kFloorCells).rotateX(-Math.PI / 2), shade);
     this.floor.geometry.setAttribute("a_passed", new BufferAttribute(new Float32Array(this.floor.geometry.getAttribute("position").count).fill(1), 1).setUsage(DynamicDrawUsage));

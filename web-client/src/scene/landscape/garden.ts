@@ -4,7 +4,7 @@ import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addPlate, addRod, addTurned } from "../meshes/shapes";
 import { Foliage, type Leaves } from "./foliage";
 
-export interface GardenSize {
+interface GardenSize {
   /** Half of the water, or of the free space around a tank, along x and z. */
   halfM: readonly [number, number];
   /** Heights of the deck, and of the still water in a pool; undefined: a tank, beside which nobody bathes. */

@@ -13,7 +13,7 @@ const kLandSides = 0.12;
 const kShoreDepths = 0.02;
 
 /** Length of the water along x, and width along z. */
-export interface Sides {
+interface Sides {
   sideM: number;
   widthM: number;
 }

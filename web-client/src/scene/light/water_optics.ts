@@ -47,7 +47,7 @@ export function colourRatio({ setting, wave, sideM, widthM, waterExtents }: Pick
   return setting === "openSea" ? 1 : kTankWayM / Math.min(sideM, widthM);
 }
 
-export interface WaterOptics {
+interface WaterOptics {
   /** Share of the light lost per metre of way in the model. */
   lossPerM: Rgb;
   /** Light that deep water sends up at noon. */

@@ -1,12 +1,12 @@
 // Rings of the small drops of rain, as slopes in a tile that repeats over the water. Each drop of the tile falls again and again, elsewhere each
 // time. Reads nothing but the time. Writes the rain.
-import { AddEquation, BufferAttribute, BufferGeometry, CustomBlending, HalfFloatType, LinearMipmapLinearFilter, Mesh, OneFactor, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { BufferAttribute, BufferGeometry, HalfFloatType, LinearMipmapLinearFilter, Mesh, RepeatWrapping, RGFormat, Scene, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass, Picture } from "../drawing/pass";
 import { rainShare } from "../light/weather";
 import { makeFastRandom } from "../maths/random";
-import { makeMaterial, type Uniforms } from "../shaders/materials";
+import { kAdding, makeMaterial, type Uniforms } from "../shaders/materials";
 import { makeDropSeeds } from "./drop_seeds";
 
 const kTileM = 4;
@@ -46,15 +46,7 @@ export class RainRingsPass implements Pass {
     this.uniforms = { u_rain: { value: this.target.texture }, u_rain_tile_m: { value: kTileM }, u_rain_share: this.share };
     const geometry = new BufferGeometry();
     geometry.setAttribute("position", new BufferAttribute(makeDropSeeds(this.ringsCount, kVertices, makeFastRandom(kSeed)), 4));
-    const material = makeMaterial("rainRing", { u_time_s: { value: 0 }, u_tile_m: { value: kTileM } }, {
-      blending: CustomBlending,
-      blendEquation: AddEquation,
-      blendSrc: OneFactor,
-      blendDst: OneFactor,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
-    });
+    const material = makeMaterial("rainRing", { u_time_s: { value: 0 }, u_tile_m: { value: kTileM } }, kAdding);
     this.rings = new Mesh(geometry, material);
     this.rings.frustumCulled = false;
     this.scene.add(this.rings);

@@ -1,5 +1,5 @@
 // The shader texts with their includes, and makeMaterial() for all of them.
-import { GLSL3, RawShaderMaterial, type IUniform, type ShaderMaterialParameters } from "three";
+import { AddEquation, CustomBlending, DstColorFactor, GLSL3, OneFactor, RawShaderMaterial, ZeroFactor, type IUniform, type ShaderMaterialParameters } from "three";
 
 import bed from "./bed.glsl?raw";
 import below from "./below.glsl?raw";
@@ -171,6 +171,18 @@ function expand(source: string): string {
 }
 
 export type Uniforms = Record<string, IUniform>;
+
+/** Parameters of materials that add to what the target has, without a depth. */
+export const kAdding = {
+  blending: CustomBlending, blendEquation: AddEquation, blendSrc: OneFactor, blendDst: OneFactor,
+  depthTest: false, depthWrite: false, transparent: true,
+} as const;
+
+/** Parameters of materials that darken the floor that they lie on. */
+export const kDarkening = {
+  blending: CustomBlending, blendSrc: DstColorFactor, blendDst: ZeroFactor, transparent: true, depthWrite: false,
+  polygonOffset: true, polygonOffsetFactor: -2, polygonOffsetUnits: -4,
+} as const;
 
 /** Makes a GLSL ES 3.00 material. `uniforms` is not copied, so that materials can share entries. */
 export function makeMaterial(

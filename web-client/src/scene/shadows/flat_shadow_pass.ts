@@ -1,12 +1,12 @@
 // Shadows on the water without a map of shadows: boats, objects, rocks and walls projected onto the still water, in the second channel of the froth,
 // which the water reads anyway. Reads the solids as they were placed for this picture, and the froth. Writes the froth: 0 lit, above it the
 // share of light that is missing.
-import { Camera, CustomBlending, DoubleSide, MaxEquation, OneFactor, type RawShaderMaterial, type Vector3, type WebGLRenderTarget } from "three";
+import { Camera, DoubleSide, MaxEquation, type RawShaderMaterial, type Vector3, type WebGLRenderTarget } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
 import { kCasterLayers } from "../meshes/casters";
-import { makeMaterial } from "../shaders/materials";
+import { kAdding, makeMaterial } from "../shaders/materials";
 import type { Casters } from "./shadow_pass";
 
 /** Share of the water's light that is missing in the shade at noon. */
@@ -29,16 +29,7 @@ export class FlatShadowPass implements Pass {
     // Three's culling uses it, too, so that height needs a place in it.
     this.camera.projectionMatrix.set(2 / sideM, 0, 0, 0, 0, 0, 2 / widthM, 0, 0, 1e-3 / Math.max(sideM, widthM), 0, 0, 0, 0, 0, 1);
     const uniforms = { ...sky.uniforms, u_shade: { value: 0 } };
-    const parameters = {
-      side: DoubleSide,
-      blending: CustomBlending,
-      blendEquation: MaxEquation,
-      blendSrc: OneFactor,
-      blendDst: OneFactor,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
-    } as const;
+    const parameters = { ...kAdding, blendEquation: MaxEquation, side: DoubleSide } as const;
     this.material = makeMaterial("flatShadow", uniforms, parameters);
     this.instances = makeMaterial("flatShadow", uniforms, { ...parameters, defines: { INSTANCES: 1 } });
   }

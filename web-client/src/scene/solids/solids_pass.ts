@@ -79,6 +79,7 @@ export class SolidsPass implements Pass {
   /** Uniforms of caustics.glsl, shadow.glsl and shore.glsl; undefined where the scene does not have them. */
   readonly sunlight: LitBy;
   private readonly material: RawShaderMaterial;
+  private readonly materials: RawShaderMaterial[] = [];
   private readonly boats: Boats | undefined;
   private readonly buoys: Buoys | undefined;
   private readonly floaters: Floaters | undefined;
@@ -115,30 +116,32 @@ export class SolidsPass implements Pass {
       u_haze_m: this.haze,
       u_darkness: this.darkness,
     };
-    const defines: Record<string, number> = { ...(quality.plain && { PLAIN: 1 }), ...(isTank(greeting) ? { TANK: 1 } : field && !quality.plain && { FIELD: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
-    if (quality.plain) defines["VERTEX_LIT"] = 1;
-    const program = quality.plain ? "solidPlain" : "solid";
-    this.material = makeMaterial(program, uniforms, { defines });
-    const lidMaterial = makeMaterial(program, uniforms, { defines, colorWrite: false });
+    const defines = { ...(quality.plain && { PLAIN: 1, VERTEX_LIT: 1 }), ...(isTank(greeting) ? { TANK: 1 } : field && !quality.plain && { FIELD: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }), ...(shore && { SHORE: 1 }) };
+    const make = (more?: Record<string, number>, colorWrite = true): RawShaderMaterial => {
+      const material = makeMaterial(quality.plain ? "solidPlain" : "solid", uniforms, { defines: { ...defines, ...more }, colorWrite });
+      this.materials.push(material);
+      return material;
+    };
+    this.material = make();
     const block = new MeshBuilder().block(0, 0, { yM: 0, halfX: 1, halfZ: 1 }, { yM: 1, halfX: 1, halfZ: 1 }, [1, 1, 1, 1]).build();
-    warmUp([sky.dome, ...(greeting.hasBoats ? [this.material, lidMaterial] : [this.material]).map((material) => new Mesh(block, material))]);
+    warmUp([sky.dome, new Mesh(block, this.material)]);
     block.dispose();
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, sea, haze: this.haze, solid: this.material, quality });
     this.gauges = new GaugePoles(greeting, this.material);
     this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
     if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material, lidMaterial, quality.plain);
+      this.boats = new Boats(this.scene, this.material, make({}, false), quality.plain);
       this.boats.setBoats(greeting.boats);
     }
-    if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, makeMaterial(program, uniforms, { defines: { ...defines, INSTANCES: 1 } }), greeting, quality.plain);
-    const buoys = field ? buoyPlaces(greeting) : [];
-    if (buoys.length > 0) {
-      this.buoys = new Buoys(buoys, makeMaterial(program, uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
+    if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, make({ INSTANCES: 1 }), greeting, quality.plain);
+    if (field) {
+      const floating = make({ FLOATS: 1 });
+      this.buoys = new Buoys(buoyPlaces(greeting), floating, quality.plain);
       this.scene.add(this.buoys.group);
-    }
-    if (field && greeting.course) {
-      this.course = new CourseMarks(greeting.course, makeMaterial(program, uniforms, { defines: { ...defines, FLOATS: 1 } }), quality.plain);
-      this.scene.add(this.course.group);
+      if (greeting.course) {
+        this.course = new CourseMarks(greeting.course, floating, quality.plain);
+        this.scene.add(this.course.group);
+      }
     }
     const samples = quality.samplesCount > 1 ? quality.samplesCount : 0;
     this.target = new WebGLRenderTarget(1, 1, { type: quality.texelType, samples });
@@ -269,7 +272,7 @@ export class SolidsPass implements Pass {
     this.course?.dispose();
     this.gauges.dispose();
     this.surroundings.dispose();
-    this.material.dispose();
+    for (const material of this.materials) material.dispose();
     this.target.dispose();
   }
 }
