@@ -18,7 +18,7 @@ float laceAt(vec2 at, vec2 drawn_m, float fresh) {
   float middle = texture(u_noise, (at + 0.4 * drawn_m).yx / (0.31 * u_lace_m)).r;
   float fine = texture(u_noise, at / (0.11 * u_lace_m)).r;
   float broad = texture(u_noise, (at + drawn_m).yx / (2.7 * u_lace_m)).r;
-  return mix(0.42 * wide + 0.34 * middle + 0.24 * fine, 1.0 - (0.22 * broad + 0.26 * wide + 0.26 * middle + 0.26 * fine), fresh);
+  return mix(0.36 * wide + 0.32 * middle + 0.32 * fine, 1.0 - (0.14 * broad + 0.2 * wide + 0.3 * middle + 0.36 * fine), fresh);
 }
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
@@ -58,7 +58,7 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   vec2 drawn_m = 0.2 * u_lace_m * (curl - 0.5);
   // Far away the lace is finer than a pixel, and its edges would be dots.
   vec2 at_step = fwidth(at);
-  float blur = min(2.5 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
+  float blur = min(1.2 * max(at_step.x, at_step.y) / u_lace_m, 0.35);
   // Thinning foam comes apart in patches; fresh foam is one body.
   foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
   float cover = min(foam, 1.0);

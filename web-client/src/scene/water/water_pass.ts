@@ -91,7 +91,7 @@ export class WaterPass implements Pass {
       u_beach_width_m: { value: new Vector4(...widthsM) },
       u_shore_depth_m: { value: new Vector4(...shoreDepthsM) },
       u_noise: { value: noise },
-      u_lace_m: { value: isTank(greeting) ? 0.15 * Math.min(bed.sideM, bed.widthM) : clamp(Math.min(longSideM(bed) / 15, 0.8 * Math.min(bed.sideM, bed.widthM)), 0.5, 9) },
+      u_lace_m: { value: isTank(greeting) ? 0.15 * Math.min(bed.sideM, bed.widthM) : clamp(Math.min(longSideM(bed) / 15, 0.8 * Math.min(bed.sideM, bed.widthM)), 0.5, 1.8) },
       u_froth: { value: froth },
       ...foam,
       ...rain,

@@ -24,17 +24,17 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
-/** Share of the drops that are puffs of mist, where water meets something hard or falls over. */
+/** Share of the drops that are puffs of mist, where water meets rock or falls over. */
 const kMistShare = 0.2;
 
-/** Few drops are large: radii from 4 mm to 2 cm, and puffs of mist. */
-function dropRadiusM(random: () => number): number {
-  const u = random();
-  return u < kMistShare ? 0.12 + 0.25 * random() : 0.004 + 0.016 * u * u * u;
+/** Few drops are large: radii from 4 mm to 2 cm. */
+function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
+  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: 0.004 + 0.016 * random() ** 3, lifeS: 1 + 1.5 * random() };
 }
 
-function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
-  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: dropRadiusM(random), lifeS: 1 + 1.5 * random() };
+function dropOrMist(random: () => number, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
+  const flying = drop(random, ...motion);
+  return random() < kMistShare ? { ...flying, radiusM: 0.12 + 0.25 * random() } : flying;
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -79,7 +79,7 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
     for (let left = drops; left > 0; --left) {
       const speedMps = alongMps * (0.7 + 0.5 * random());
       const upMps = 0.4 + 1.3 * riseMps * (0.4 + random());
-      particles.add(drop(random, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
+      particles.add(dropOrMist(random, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
     }
   }
 }
@@ -203,7 +203,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Surfa
       const along = spread(random, lengthM / 2);
       const outMps = riseMps * (0.1 + 0.5 * random());
       const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
-      particles.add(drop(random, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
+      particles.add(dropOrMist(random, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
       if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
     }
   }
