@@ -340,6 +340,7 @@ void main() {
 #else
   float foam = 0.62 * contact * sqrt(contact);
 #endif
+  float broken = 0.0;  // of crests that break
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
 #endif
@@ -347,14 +348,16 @@ void main() {
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM
-    foam = max(foam, shownFoam(mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix)));
+    broken = shownFoam(mix(smoothTexel(u_foam_from, place).r, smoothTexel(u_foam_to, place).r, u_foam_mix));
+    foam = max(foam, broken);
 #endif
 #ifdef OPEN_SEA
     // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.
     vec2 uphill = kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m);
     vec4 near_crest = textureLod(u_field, place + 0.5 * uphill, 0.0), far_crest = textureLod(u_field, place + uphill, 0.0);
     float curled = crestFoam(v_top_m, field.a * (1.0 + smoothstep(0.003, 0.012, u_slope_variances.y)));
-    foam = max(max(curled, 0.8 * crestFoam(near_crest.r, near_crest.a)), max(0.5 * crestFoam(far_crest.r, far_crest.a), foam));
+    broken = max(max(broken, curled), max(0.8 * crestFoam(near_crest.r, near_crest.a), 0.5 * crestFoam(far_crest.r, far_crest.a)));
+    foam = max(foam, broken);
     foam *= v_share_away.x;
   }
 #endif
@@ -368,19 +371,22 @@ void main() {
 #endif
   if (foam > 0.01) {
     vec2 at = v_world.xz;
+    vec3 foam_normal = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
 #ifdef UNEVEN
     // The face of a breaker is steep: its height counts as a way along it.
     at -= v_shoreward * v_top_m;
 #elif defined(OPEN_SEA)
-    // Elsewhere breakers tear it.
-    at -= 0.25 * foam_slopes;
+    // Elsewhere breakers tear it, and ripples what is thin or whirled up.
+    float torn = 1.0 - smoothstep(0.1, 0.4, broken);
+    at -= mix(0.25 * foam_slopes, 0.6 * field.gb, torn);
+    foam_normal = mix(foam_normal, normal, torn);
 #endif
 #ifdef SHORE
     float bubbles = smoothstep(0.0, 0.25, deep_m);
 #else
     const float bubbles = 1.0;
 #endif
-    water = withFoam(water, at, foam, bubbles, normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y)), sunlit_share);
+    water = withFoam(water, at, foam, bubbles, normalize(foam_normal), sunlit_share);
   }
 #endif
 #ifdef OPEN_SEA
