@@ -48,6 +48,7 @@ std::size_t offsetOf(std::string_view text, Location wanted) {
   return offset;
 }
 
+constexpr std::string_view kUnknownField = "has no field named \"";
 constexpr std::string_view kUnknownValue = "Unknown enumeration value of \"";
 
 /// Returns the word that `message` quotes behind a phrase of it; empty: it does not have the phrase.
@@ -61,8 +62,8 @@ std::string_view quotedBehind(std::string_view message, std::string_view phrase)
 /// Returns the true location of an error. Some errors are found only when the parser is already behind the quoted word,
 /// possibly some lines later. The true location is the last occurrence of the word before that.
 Location placeOf(std::string_view text, Location reported, std::string_view message) {
-  for (const std::string_view phrase : {kUnknownValue, std::string_view("has no field named \""),
-                                        std::string_view("Non-repeated field \""), std::string_view("Value: \"")}) {
+  for (const std::string_view phrase :
+       {kUnknownValue, kUnknownField, std::string_view("Non-repeated field \""), std::string_view("Value: \"")}) {
     const std::string_view word = quotedBehind(message, phrase);
     const std::size_t offset = word.empty() ? 0 : offsetOf(text, reported);
     if (offset == 0) continue;
@@ -98,6 +99,17 @@ std::string knownValues(const Descriptor& root, std::string_view message) {
   return text.empty() ? text : text + '.';
 }
 
+/// Returns the fields of the message that lacks one, as a sentence; empty for other errors.
+std::string knownFields(const Descriptor& root, std::string_view message) {
+  if (quotedBehind(message, kUnknownField).empty()) return "";
+  const std::string name(quotedBehind(message, "Message type \""));
+  const Descriptor* const type = root.file()->pool()->FindMessageTypeByName(name);
+  std::string text;
+  for (int i = 0; type != nullptr && i < type->field_count(); ++i)
+    text += (text.empty() ? " Its fields are " : ", ") + type->field(i)->name();
+  return text.empty() ? text : text + '.';
+}
+
 class ErrorCollector : public google::protobuf::io::ErrorCollector {
  public:
   ErrorCollector(std::string_view text, const Descriptor& root, std::vector<LocatedError>& errors)
@@ -114,8 +126,8 @@ class ErrorCollector : public google::protobuf::io::ErrorCollector {
 
  private:
   void add(int line, int column, const std::string& message) {
-    errors_.push_back(
-        {placeOf(text_, {std::max(line, 0), std::max(column, 0)}, message), message + knownValues(root_, message)});
+    errors_.push_back({placeOf(text_, {std::max(line, 0), std::max(column, 0)}, message),
+                       message + knownValues(root_, message) + knownFields(root_, message)});
   }
 
   std::string_view text_;

@@ -57,7 +57,10 @@ TEST_P(OneErrorScene, IsReportedOnceWithItsLineFieldAndAdvice) {
 const BadScene kBadScenes[] = {
     {"Syntax", "wave {\n  depth_m 1\n}\n", "pool.textproto:2:11: ", {"\":\""}},
     {"UnclosedBrace", "wave {\n  depth_m: 1\n", "pool.textproto:3:1: ", {}},
-    {"UnknownField", "wave {\n  depth: 1\n}\n", "pool.textproto:2:3: ", {"depth"}},
+    {"UnknownField",
+     "wave {\n  depth: 1\n}\n",
+     "pool.textproto:2:3: ",
+     {"\"depth\"", "Its fields are resolution_count, side_m,"}},
     {"UnknownPart", "wave {}\nsharks { count: 3 }\n", "pool.textproto:2:1: ", {"sharks"}},
     {"WrongType", "wave {\n  depth_m: \"deep\"\n}\n", "pool.textproto:2:12: ", {"deep"}},
     {"NegativeCount", "wave {\n  resolution_count: -64\n}\n", "pool.textproto:2:", {}},
