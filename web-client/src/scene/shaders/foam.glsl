@@ -12,7 +12,7 @@ const float kReliefTiles = 0.02, kSteepest = 1.1;
 // Size of the billows of masses of foam, and the step over which their slope is taken, in tiles of the lace; slope per difference of the noise.
 const float kBillows = 1.7, kBillowStep = 0.12, kBillowSlope = 1.9;
 
-// Height of the lace, 0..1 around 0.5. `fresh`: 0 a network, 1 a heap.
+// Height of the lace, 0..1 around 0.5. `drawn_m`: by which the water has drawn it out, its fine parts less. `fresh`: 0 a network, 1 a heap.
 float laceAt(vec2 at, vec2 drawn_m, float fresh) {
   float wide = texture(u_noise, (at + drawn_m) / u_lace_m).r;
   float middle = texture(u_noise, (at + 0.4 * drawn_m).yx / (0.31 * u_lace_m)).r;

@@ -5,7 +5,7 @@ import type { BoatDetail } from "../../../client/codec/greeting";
 import type { ObstacleInfo } from "../../../client/codec/scene_info";
 import type { FoamFrame } from "../../net/messages";
 import type { BodyPose } from "../../../client/codec/bodies";
-import { clamp, ramp } from "../maths/interpolate";
+import { clamp, mix, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
 import type { Surface } from "./moving_surface";
 
@@ -24,8 +24,9 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
-/** Share of the drops that are puffs of mist, where water meets rock or falls over. */
+/** Share of the drops that are puffs of mist, where water meets rock or falls over, and their radii, m. */
 const kMistShare = 0.2;
+const kMistRadiiM = [0.12, 0.37] as const;
 
 /** Few drops are large: radii from 4 mm to 2 cm. */
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
@@ -34,7 +35,7 @@ function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: n
 
 function dropOrMist(random: () => number, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
   const flying = drop(random, ...motion);
-  return random() < kMistShare ? { ...flying, radiusM: 0.12 + 0.25 * random() } : flying;
+  return random() < kMistShare ? { ...flying, radiusM: mix(...kMistRadiiM, random()) } : flying;
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
