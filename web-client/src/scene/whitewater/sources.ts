@@ -33,9 +33,10 @@ function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: n
   return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: 0.004 + 0.016 * random() ** 3, lifeS: 1 + 1.5 * random() };
 }
 
-function dropOrMist(random: () => number, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
+/** Puffs cost by the pixel: where fewer drops are wanted, fewer of them are mist. */
+function dropOrMist({ random, scale }: Births, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
   const flying = drop(random, ...motion);
-  return random() < kMistShare ? { ...flying, radiusM: mix(...kMistRadiiM, random()) } : flying;
+  return random() < kMistShare * scale ? { ...flying, radiusM: mix(...kMistRadiiM, random()) } : flying;
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -80,7 +81,7 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
     for (let left = drops; left > 0; --left) {
       const speedMps = alongMps * (0.7 + 0.5 * random());
       const upMps = 0.4 + 1.3 * riseMps * (0.4 + random());
-      particles.add(dropOrMist(random, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
+      particles.add(dropOrMist(births, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
     }
   }
 }
@@ -204,7 +205,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Surfa
       const along = spread(random, lengthM / 2);
       const outMps = riseMps * (0.1 + 0.5 * random());
       const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
-      particles.add(dropOrMist(random, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
+      particles.add(dropOrMist(births, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
       if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
     }
   }
