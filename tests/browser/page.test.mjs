@@ -26,8 +26,7 @@ describe("the page in Chromium", { skip, concurrency: 1 }, () => {
   let page;
 
   before(async () => {
-    await visit.begin();
-    page = await visit.open();
+    page = await visit.begin();
   }, slow);
   after(() => visit.end(), { timeout: WAIT_MS });
 

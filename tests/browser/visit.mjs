@@ -8,13 +8,14 @@ export class Visit {
   /** While the server is down on purpose, a refused connection is not an error. */
   isServerDown = false;
 
-  /** Starts the server with the scenes of this folder, and the browser. */
+  /** Starts the server with the scenes of this folder, and the browser; returns a page of the main room. */
   async begin() {
     this.server = await startServer();
     this.browser = await launch();
     this.context = await this.browser.newContext({ viewport: { width: 900, height: 600 } });
     // Not the first visit: the line about drawing would be in the pictures.
     await this.context.addInitScript(() => localStorage.setItem("spindrift.has-drawn", "1"));
+    return this.open();
   }
 
   /** Opens a page of a room, and waits until frames of `layer` arrive. */

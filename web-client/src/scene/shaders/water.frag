@@ -376,7 +376,7 @@ void main() {
     // The face of a breaker is steep: its height counts as a way along it.
     at -= v_shoreward * v_top_m;
 #elif defined(OPEN_SEA)
-    // Elsewhere breakers tear it, and ripples what is thin or whirled up.
+    // Elsewhere steep waves draw out the foam of a breaker; ripples tear that of wakes and shores.
     float torn = 1.0 - smoothstep(0.1, 0.4, broken);
     at -= mix(0.25 * foam_slopes, 0.6 * field.gb, torn);
     foam_normal = mix(foam_normal, normal, torn);

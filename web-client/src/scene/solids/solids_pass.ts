@@ -123,14 +123,15 @@ export class SolidsPass implements Pass {
       return material;
     };
     this.material = make();
+    const lid = greeting.hasBoats ? make({}, false) : undefined;
     const block = new MeshBuilder().block(0, 0, { yM: 0, halfX: 1, halfZ: 1 }, { yM: 1, halfX: 1, halfZ: 1 }, [1, 1, 1, 1]).build();
-    warmUp([sky.dome, new Mesh(block, this.material)]);
+    warmUp([sky.dome, ...this.materials.map((material) => new Mesh(block, material))]);
     block.dispose();
     this.surroundings = new Surroundings(greeting, { sky, noise, field, caustics, shadow, sea, haze: this.haze, solid: this.material, quality });
     this.gauges = new GaugePoles(greeting, this.material);
     this.scene.add(sky.dome, ...this.surroundings.solids, this.gauges.mesh);
-    if (greeting.hasBoats) {
-      this.boats = new Boats(this.scene, this.material, make({}, false), quality.plain);
+    if (lid) {
+      this.boats = new Boats(this.scene, this.material, lid, quality.plain);
       this.boats.setBoats(greeting.boats);
     }
     if (greeting.hasFloaters) this.floaters = new Floaters(this.scene, make({ INSTANCES: 1 }), greeting, quality.plain);
