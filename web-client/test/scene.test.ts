@@ -3,15 +3,17 @@ import { describe, expect, it } from "vitest";
 
 import { elevationAtM, elevationRangeM } from "../src/scene/frames/height_field";
 import { pickWater, type WaterShape } from "../src/scene/frames/pick";
-import { TapDetector, toDeviceCoordinates } from "../src/ui/tap";
+import { waterInMiddle, waterUnder } from "../src/app/pointer_ray";
+import type { Display } from "../src/app/display";
+import { TapDetector } from "../src/ui/tap";
+import type { WaterPlace } from "../src/ui/tools";
 
 const flat: WaterShape = { sideM: 16, widthM: 16, minM: 0, maxM: 0, elevationAtM: () => 0 };
 
-/** Returns the page's ray through the middle of a pixel of an 800 x 600 canvas. */
-function clickRay(camera: PerspectiveCamera, xPx: number, yPx: number) {
-  const { x, y } = toDeviceCoordinates(xPx, yPx, { left: 0, top: 0, width: 800, height: 600 });
-  const direction = new Vector3(x, y, 0.5).unproject(camera).sub(camera.position).normalize();
-  return { originM: camera.position.toArray(), direction: direction.toArray() };
+/** The page with a canvas of 800 x 600 px, of which a panel covers the right fourth. */
+function display(camera: PerspectiveCamera, water?: WaterShape): Display {
+  const canvas = { getBoundingClientRect: () => ({ left: 0, top: 0, width: 800, height: 600 }) };
+  return { canvas, scene: { camera, shape: () => water }, freePart: { leftPx: 0, topPx: 0, rightPx: 600, bottomPx: 600 } } as unknown as Display;
 }
 
 function camera(): PerspectiveCamera {
@@ -27,7 +29,7 @@ describe("a click on the water", () => {
     const eye = camera();
     for (const [xM, zM] of [[0, 0], [3, -2], [-5, 4]] as const) {
       const seen = new Vector3(xM, 0, zM).project(eye);
-      const place = pickWater(clickRay(eye, (seen.x + 1) * 400, (1 - seen.y) * 300), flat)!;
+      const place = waterUnder(display(eye, flat), (seen.x + 1) * 400, (1 - seen.y) * 300)!;
       expect(place.xM).toBeCloseTo(xM, 4);
       expect(place.zM).toBeCloseTo(zM, 4);
     }
@@ -37,7 +39,7 @@ describe("a click on the water", () => {
     const crest: WaterShape = { sideM: 16, widthM: 16, minM: 0, maxM: 1, elevationAtM: (_, zM) => Math.exp(-((zM - 2) ** 2)) };
     const eye = camera();
     const seen = new Vector3(0, Math.exp(-0.04), 2.2).project(eye);
-    const place = pickWater(clickRay(eye, (seen.x + 1) * 400, (1 - seen.y) * 300), crest)!;
+    const place = waterUnder(display(eye, crest), (seen.x + 1) * 400, (1 - seen.y) * 300)!;
     expect(place.zM).toBeCloseTo(2.2, 2);
     expect(place.xM).toBeCloseTo(0, 2);
   });
@@ -56,6 +58,31 @@ describe("a click on the water", () => {
     expect(pickWater({ originM: [3, -1, 0], direction: [-0.96, 0.28, 0] }, tank)).toEqual({ xM: 1, zM: 0 });
     expect(pickWater({ originM: [0.4, -0.2, 3], direction: [0, 0, 1] }, tank)).toBeUndefined();
     expect(pickWater({ originM: [0.4, -0.2, 3], direction: [0, 0, -1] }, { ...tank, glassFromM: undefined })).toBeUndefined();
+  });
+});
+
+describe("the water in the middle of the picture", () => {
+  const pixelOf = (eye: PerspectiveCamera, { xM, zM }: WaterPlace): [number, number] => {
+    const seen = new Vector3(xM, 0, zM).project(eye);
+    return [(seen.x + 1) * 400, (1 - seen.y) * 300];
+  };
+
+  it("is where the free part has its middle, or below it where that shows the sky", () => {
+    const eye = camera();
+    const [atX, atY] = pixelOf(eye, waterInMiddle(display(eye, flat))!);
+    expect([atX, atY]).toEqual([expect.closeTo(300, 3), expect.closeTo(300, 3)]);
+    eye.lookAt(0, 6, 0);
+    eye.updateMatrixWorld();
+    const [, lowerY] = pixelOf(eye, waterInMiddle(display(eye, flat))!);
+    expect(lowerY).toBeCloseTo(480, 3);
+  });
+
+  it("is nowhere where none is seen", () => {
+    const eye = camera();
+    eye.lookAt(6, 20, 0);
+    eye.updateMatrixWorld();
+    expect(waterInMiddle(display(eye, flat))).toBeUndefined();
+    expect(waterInMiddle(display(eye))).toBeUndefined();
   });
 });
 

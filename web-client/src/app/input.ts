@@ -4,6 +4,7 @@ import type { App } from "./app";
 import { connectKeyboardTools } from "./keyboard_tools";
 import { connectPageKeys } from "./page_keys";
 import { PointerHands } from "./pointer";
+import { waterInMiddle } from "./pointer_ray";
 import { GamepadTools, type GamepadTarget } from "./virtual_pointer";
 import { kTexts } from "../ui/texts";
 
@@ -40,8 +41,8 @@ function gamepadTarget(app: App): GamepadTarget {
   };
 }
 
-function connectButtons({ client, commands, effects }: App): void {
-  byId("splash").addEventListener("click", () => commands.send(effects.splashAt({ xM: 0, zM: 0 }), kTexts.commands.splash));
+function connectButtons({ client, commands, display, effects }: App): void {
+  byId("splash").addEventListener("click", () => commands.send(effects.splashAt(waterInMiddle(display) ?? { xM: 0, zM: 0 }), kTexts.commands.splash));
   byId("wave").addEventListener("click", () => commands.send(effects.breakingWave(), kTexts.commands.wave));
   byId("retry").addEventListener("click", () => client.call("retryNow"));
 }

@@ -2,7 +2,6 @@
 // camera: the right button, two fingers that come down together, a drag that begins off the water. A drag that begins on an object holds it
 // (floater_hands.ts).
 import { kClickRadiusPx } from "../scene/camera/camera_hand";
-import { pickWater } from "../scene/frames/pick";
 import { kPageTime } from "../ui/latest_sender";
 import { kStrokeLabel, StrokeSender, type FingerPoint, type StrokeMessage } from "../ui/stroke_sender";
 import { arcOf, dropOf, flickOf, floaterSizeM, throwOf, tossTo, type Throw } from "../ui/floater_tools";
@@ -13,7 +12,7 @@ import { heldRatio, kTapStrokeS, paddleWave, paddleWidthM, strokeSize, type Stro
 import type { App } from "./app";
 import { FloaterHands, type Grip } from "./floater_hands";
 import { nowS } from "./picture_clock";
-import { rayAt } from "./pointer_ray";
+import { waterUnder } from "./pointer_ray";
 import { kTexts } from "../ui/texts";
 
 /** Two fingers that come down within this time are a gesture of the camera. */
@@ -331,9 +330,7 @@ export class PointerHands {
   }
 
   private placeUnder(event: PointerEvent): WaterPlace | undefined {
-    const { display } = this.app;
-    const shape = display.scene.shape();
-    return shape && pickWater(rayAt(display, event.clientX, event.clientY), shape);
+    return waterUnder(this.app.display, event.clientX, event.clientY);
   }
 }
 

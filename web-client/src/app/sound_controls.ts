@@ -3,14 +3,13 @@ import type { GreetingInfo } from "../../client/codec/greeting";
 import type { FrameLayer } from "../../client/codec/layers";
 import type { FingerInfo } from "../../client/codec/strokes";
 import { StrokeTool } from "../../client/gen/spindrift/v1/wire_pb";
-import { pickWater } from "../scene/frames/pick";
 import { octaveForDepthM } from "../sound/wave_tone";
 import type { Voices, WaterSound } from "../sound/water_sound";
 import { byId, isTyping } from "../ui/dom";
 import { SoundRows } from "../ui/sound_rows";
 import type { Display } from "./display";
 import type { Haptics } from "./haptics";
-import { rayAt } from "./pointer_ray";
+import { waterInMiddle } from "./pointer_ray";
 import { kTexts } from "../ui/texts";
 
 /** The middle of the view is looked for this often. */
@@ -157,10 +156,7 @@ export class SoundControls {
 
   private findMiddle(nowMs: number): void {
     this.middleMs = nowMs + kMiddleEveryMs;
-    const { display } = this;
-    const { leftPx, topPx, rightPx, bottomPx } = display.freePart;
-    const shape = display.scene.shape();
-    const at = shape && pickWater(rayAt(display, (leftPx + rightPx) / 2, (topPx + bottomPx) / 2), shape);
+    const at = waterInMiddle(this.display);
     if (at) this.place(at.xM, at.zM);
   }
 
