@@ -121,7 +121,7 @@ describe.each(kLow)("the lists of passes of $room", ({ change, lists }) => {
 describe("the list of passes", () => {
   it("holds only what the room needs", { timeout: kLongestMs }, () => {
     const names = (change: Partial<GreetingInfo>): string[] => passesOf(change, "low").get("natural")!.map(({ name }) => name);
-    expect(names(kRooms["an open sea with boats"]!)).toEqual(["field", "foam", "sea", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray", "lamps"]);
+    expect(names(kRooms["an open sea with boats"]!)).toEqual(["waterlines", "field", "foam", "sea", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray", "lamps"]);
     expect(names({ ...kRooms["a pool"], layers: ["surface"], hasParticles: false })).toEqual(["field", "solids", "whitewater", "froth", "flat shadow", "water", "present", "spray"]);
     expect(names(kRooms["a harbor with everything"]!)).toContain("rain streaks");
     expect(names(kRooms["a flume"]!)).toContain("rain streaks");
@@ -230,7 +230,7 @@ describe("the look of the water", () => {
     scene.enter(room("a harbor with everything"), false);
     expect(scene.look).toBe("height");
     scene.setLook("thesis");
-    expect(names(scene)).toEqual(["field", "sea", "solids", "particles", "look surface", "look particles", "present"]);
+    expect(names(scene)).toEqual(["waterlines", "field", "sea", "solids", "particles", "look surface", "look particles", "present"]);
     scene.setLook("natural");
     expect(names(scene)).toContain("water");
     scene.dispose();

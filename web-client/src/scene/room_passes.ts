@@ -1,5 +1,6 @@
 // The passes of one room, each with what it reads and writes, in the order in which they are drawn.
-//   field        frames -> field (elevation, slopes, curvature of the water)
+//   waterlines   frames -> where the water stands against hulls
+//   field        frames, waterlines -> field (elevation, slopes, curvature of the water)
 //   shore        frames, field -> shore, where water moves over its ground (shore/shore_pass.ts)
 //   foam         frames -> foam
 //   sea          time -> ripples, and in an open sea the waves around the square
@@ -46,6 +47,7 @@ import { FieldPass } from "./water/field_pass";
 import { FoamPass } from "./water/foam_pass";
 import type { LocalRipple } from "./water/local_ripple";
 import { PresentPass } from "./water/present_pass";
+import { WaterlinesPass } from "./water/waterlines_pass";
 import { WaterPass } from "./water/water_pass";
 import type { DiffuseParticles } from "./whitewater/diffuse_particles";
 import { makeWhitewaterPasses } from "./whitewater/whitewater";
@@ -82,7 +84,8 @@ export interface RoomWater {
 export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, wetness, ripple, warmUp }: RoomTools): RoomBase {
   const { wave, sideM, widthM } = greeting;
   const cellsOf = shoreOf(greeting);
-  const field = wave && new FieldPass(wave, frames.surfaces, ripple, quality, cellsOf);
+  const waterlines = wave && greeting.hasBoats ? new WaterlinesPass(greeting, frames, wave.sideM / wave.resolutionCount) : undefined;
+  const field = wave && new FieldPass(wave, frames.surfaces, ripple, waterlines, quality, cellsOf);
   const shore = field && cellsOf && new ShorePass(frames, field, wetness, cellsOf, quality);
   const foam = wave && greeting.layers.includes("foam") ? new FoamPass(frames.foam, wave.periodicX, wave.periodicZ) : undefined;
   const sea = makeSea(greeting, quality);
@@ -92,7 +95,7 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
   const solids = new SolidsPass(greeting, sky, noise, field?.texture, { caustics: caustics?.uniforms, shadow: shadow?.uniforms, shore: shore?.uniforms }, sea, frames, quality, warmUp);
   shadow?.setCasters(solids);
   const shownSea = sea && (quality.sparing ? new EverySecond(sea, 0) : sea);
-  return { field, foam, solids, passes: [field, shore, foam, shownSea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
+  return { field, foam, solids, passes: [waterlines, field, shore, foam, shownSea, caustics, shadow, solids].filter((pass) => pass !== undefined) };
 }
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality, warmUp }: RoomTools): RoomWater {

@@ -5,6 +5,8 @@ import type { PerspectiveCamera, Vector2, WebGLRenderer } from "three";
 export type Resource =
   /** The server's frames around the time shown. */
   | "frames"
+  /** Where the water stands against hulls. */
+  | "waterlines"
   /** Elevation, slopes and curvature of the simulated water. */
   | "field"
   /** Sunlight that the waves focus below them. */

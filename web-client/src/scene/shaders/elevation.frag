@@ -1,6 +1,7 @@
 // Surface frames → the elevation at the time shown, in whole fractions of a quantum: R32I can be drawn to everywhere and keeps every
 // bit, unlike half floats.
-// Reads u_before, u_from, u_to, u_after: int16 elevations in quanta. Adds u_dents, the dents of one's own fingers (water/local_ripple.ts).
+// Reads u_before, u_from, u_to, u_after: int16 elevations in quanta. Adds u_dents, the dents of one's own fingers (water/local_ripple.ts), and
+// fills the dents of u_hulls (water/waterlines_pass.ts).
 
 uniform isampler2D u_before;
 uniform isampler2D u_from;
@@ -15,10 +16,15 @@ uniform vec4 u_dents[kDentsMax];  // x, z, radius, elevation in the middle [m]
 uniform vec2 u_water_m;  // size of the water along x and z
 uniform float u_unit_m;
 
+const int kHullsMax = 64;
+uniform int u_hull_count;
+uniform vec4 u_hulls[3 * kHullsMax];
+
 layout(location = 0) out int elevation;
 
-float dentsM(ivec2 at, ivec2 n) {
-  vec2 here_m = ((vec2(at) + 0.5) / vec2(n) - 0.5) * u_water_m;
+vec2 placeOf(ivec2 at, ivec2 n) { return ((vec2(at) + 0.5) / vec2(n) - 0.5) * u_water_m; }
+
+float dentsM(vec2 here_m) {
   float sum_m = 0.0;
   for (int k = 0; k < u_dent_count; ++k) {
     vec2 away = (here_m - u_dents[k].xy) / u_dents[k].z;
@@ -28,9 +34,29 @@ float dentsM(ivec2 at, ivec2 n) {
   return sum_m;
 }
 
+/// The elevation with what hulls have pressed down raised to their waterlines, as far as their weight lowered it. A hull far above the water
+/// has left it.
+float filledM(vec2 here_m, float elevation_m) {
+  for (int k = 0; k < u_hull_count; ++k) {
+    vec4 place = u_hulls[3 * k], size = u_hulls[3 * k + 1], line = u_hulls[3 * k + 2];
+    vec2 away_m = here_m - place.xy;
+    vec2 at_m = vec2(dot(away_m, place.zw), dot(away_m, vec2(-place.w, place.z)));
+    vec2 q = at_m / size.xy;
+    q *= q;
+    if (max(q.x, q.y) > 2.6) continue;
+    float gap_m = line.x + dot(at_m, line.yz) - elevation_m;
+    float pressed_m = 1.3 * size.z * exp(-dot(q, q));
+    elevation_m += clamp(gap_m, 0.0, pressed_m) * (1.0 - smoothstep(1.6, 2.4, gap_m / size.w));
+  }
+  return elevation_m;
+}
+
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy) * u_stride + u_stride / 2;
   vec4 samples = vec4(texelFetch(u_before, at, 0).r, texelFetch(u_from, at, 0).r, texelFetch(u_to, at, 0).r, texelFetch(u_after, at, 0).r);
-  float dents = u_dent_count > 0 ? dentsM(at, textureSize(u_from, 0)) / u_unit_m : 0.0;
-  elevation = int(round(dot(samples, u_weights) + dents));
+  vec2 here_m = placeOf(at, textureSize(u_from, 0));
+  float units = dot(samples, u_weights);
+  if (u_hull_count > 0) units = filledM(here_m, units * u_unit_m) / u_unit_m;
+  if (u_dent_count > 0) units += dentsM(here_m) / u_unit_m;
+  elevation = int(round(units));
 }

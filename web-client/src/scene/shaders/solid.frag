@@ -133,7 +133,7 @@ void main() {
   float seen_sky = 1.0;
   float wet_band = 0.0;
 #ifdef FIELD
-  // The surface beside it: under a hull it is pressed down.
+  // The surface beside it, not inside.
   vec2 beside = (v_world.xz + 0.2 * normal.xz) / u_extent_m + 0.5;
   float over_line_m = over_water_m - (all(lessThan(abs(beside - 0.5), vec2(0.5))) ? textureLod(u_field, beside, 0.0).r : 0.0);
   float upright = 1.0 - smoothstep(0.6, 0.85, normal.y);

@@ -19,6 +19,7 @@ import type { ShoreCells } from "../shore/shore_ground";
 import { kFilmM } from "../shore/shore_wetness";
 import { kCurvature, kSlope, kSmooth } from "./field_kernels";
 import type { LocalRipple } from "./local_ripple";
+import type { WaterlinesPass } from "./waterlines_pass";
 
 /** The elevation between frames is kept in fractions of the quantum: 15 bits and these 8 fill the 24 of a float. */
 const kUnitsPerQuantum = 256;
@@ -40,7 +41,7 @@ export interface ShownSurfaces {
 
 export class FieldPass implements Pass {
   readonly name = "field";
-  readonly reads = ["frames"] as const;
+  readonly reads = ["frames", "waterlines"] as const;
   readonly writes = ["field"] as const;
   /** Elevation (m), slope x, slope z, curvature (1/m); u along x and v along z, the water is 0..1. */
   readonly texture: Texture;
@@ -68,6 +69,7 @@ export class FieldPass implements Pass {
     { sideM, widthM, periodicX, periodicZ, resolutionCount, countZ }: WaveInfo,
     private readonly surfaces: FrameRing<SurfaceFrame>,
     ripple: LocalRipple,
+    waterlines: WaterlinesPass | undefined,
     private readonly quality: Pick<Quality, "fieldCountMax" | "texelType" | "plain">,
     private readonly cellsOf?: (counts: PlaneCounts) => ShoreCells,
   ) {
@@ -101,6 +103,7 @@ export class FieldPass implements Pass {
           u_water_m: { value: new Vector2(sideM, widthM) },
           u_dents: ripple.dents,
           u_dent_count: ripple.count,
+          ...(waterlines && { u_hulls: waterlines.hulls, u_hull_count: waterlines.count }),
         },
         state,
       ),

@@ -44,8 +44,8 @@ const kBubbleRiseMps = 0.28;
 /** Life of the foam that a drop leaves, times 0.5 to 1.5. */
 const kFoamLifeS = 2.2;
 /** This share of the drops leaves a patch of foam where it falls, of this radius (m): each one would be a crumb by itself. */
-export const kLandedShare = 0.1;
-const kLandedRadiusM = 0.14;
+export const kLandedShare = 0.2;
+const kLandedRadiusM = 0.08;
 /** Longest step: a drop that falls into the water at 10 m/s is found at most 0.3 m below it. */
 export const kMaxStepS = 1 / 30;
 

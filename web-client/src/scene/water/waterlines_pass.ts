@@ -1,0 +1,59 @@
+// Boats → where the water stands against their hulls. In the simulation a hull presses its weight on the water, which gives way under all of
+// it; the surface drawn rises again to the line at which the hull floats.
+import { Vector4, type IUniform } from "three";
+
+import type { GreetingInfo } from "../../../client/codec/greeting";
+import type { BodyPose } from "../../../client/codec/bodies";
+import type { Pass, Picture } from "../drawing/pass";
+import { mixBodies } from "../frames/bodies";
+import type { StreamedFrames } from "../frames/streamed_frames";
+
+/** Most boats of a room, and vectors of each; the same numbers are in elevation.frag. */
+const kHullsMax = 64;
+const kVectors = 3;
+/** A hull presses on at least this many cells to each side of its centre; and its pressure is highest in the middle, by the second (shaders/bodies/boat.glsl). */
+const kCellsLeast = 1.5;
+const kPeak = 1 / 0.9064 ** 2;
+
+export class WaterlinesPass implements Pass {
+  readonly name = "waterlines";
+  readonly reads = ["frames"] as const;
+  readonly writes = ["waterlines"] as const;
+  /**
+   * Of each hull: position x and z [m], heading as cosine and sine; half length and half beam over which it presses [m], its pressure as a
+   * height of water [m], draught [m]; height of the waterline [m], its slope ahead and to starboard.
+   */
+  readonly hulls: IUniform<Vector4[]> = { value: Array.from({ length: kVectors * kHullsMax }, () => new Vector4()) };
+  readonly count: IUniform<number> = { value: 0 };
+  private readonly poses: BodyPose[] = [];
+
+  /** `greeting`: its boats change. */
+  constructor(
+    private readonly greeting: Pick<GreetingInfo, "boats">,
+    private readonly frames: StreamedFrames,
+    private readonly cellM: number,
+  ) {}
+
+  draw({ shownS }: Picture): void {
+    this.count.value = 0;
+    const bodies = shownS === undefined ? undefined : this.frames.bodies.around(shownS);
+    if (!bodies) return;
+    const posesCount = mixBodies(bodies.from, bodies.to, bodies.mix, this.poses);
+    for (let i = 0; i < posesCount && this.count.value < kHullsMax; ++i) this.add(this.poses[i]!);
+  }
+
+  dispose(): void {}
+
+  private add({ boatId, xM, yM, zM, headingRad, pitchRad, rollRad }: BodyPose): void {
+    const boat = this.greeting.boats.find((detail) => detail.boatId === boatId);
+    if (!boat) return;
+    const { lengthM, beamM, heightM, draughtM } = boat;
+    const at = kVectors * this.count.value++;
+    const [place, size, line] = this.hulls.value.slice(at, at + kVectors);
+    const halfLengthM = Math.max(lengthM / 2, kCellsLeast * this.cellM);
+    const halfBeamM = Math.max(beamM / 2, kCellsLeast * this.cellM);
+    place!.set(xM, zM, Math.cos(headingRad), Math.sin(headingRad));
+    size!.set(halfLengthM, halfBeamM, (kPeak * draughtM * lengthM * beamM) / (4 * halfLengthM * halfBeamM), draughtM);
+    line!.set(yM - heightM / 2 + draughtM, Math.tan(pitchRad), -Math.tan(rollRad), 0);
+  }
+}
