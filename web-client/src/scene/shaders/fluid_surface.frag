@@ -72,6 +72,7 @@ const float kLaceRadii = 22.0;
 #ifdef GLASS
 const float kLitRadii = 26.0;  // height over the floor above which water is lit fully, in particle radii
 const float kWhiteness = 0.22;  // of broken water at a pane
+const float kDarkestSides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
 const float kWhiteness = 0.022;  // of two sheets
 #else
@@ -245,9 +246,10 @@ void main() {
   vec3 bending = facingEye(is_pane ? sideAt(surface) : normalAt(surface), ray);
   vec3 normal = bending;
 #ifdef RIPPLES
-  // Only what is mirrored: refracted by them, what lies below would be torn.
-  normal.xz -= rippleSlopes(surface.xz) * max(normal.y, 0.0) * (1.0 - liquid.y);
-  normal = facingEye(normalize(normal), ray);
+  // In the plane in which the surface lies nearest; a pane has none.
+  vec3 plane = is_pane ? vec3(0.0) : vec3(abs(bending.x), max(bending.y, 0.0), abs(bending.z)) * (1.0 - liquid.y);
+  vec2 level = rippleSlopes(surface.xz) * plane.y, along = rippleSlopes(surface.yz) * plane.x, across = rippleSlopes(surface.xy) * plane.z;
+  normal = bending = facingEye(normalize(bending - vec3(level.x + across.x, along.x + across.y, level.y + along.y)), ray);
 #endif
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;
@@ -333,6 +335,12 @@ void main() {
 #endif
 
   behind = mix(behind, again.rgb, again.a);
+#ifdef GLASS
+  // Along a tank it is hardly darker than across.
+  vec2 volume_m = (u_volume_max_m - u_volume_min_m).xz;
+  float most_m = kDarkestSides * min(volume_m.x, volume_m.y);
+  length_m = most_m * (1.0 - exp(-length_m / most_m));
+#endif
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);
   float sun = clamp(dot(normal, u_sun_direction) * 0.5 + 0.5, 0.0, 1.0);
   float against_sun = max(dot(ray, u_sun_direction), 0.0);
@@ -345,7 +353,8 @@ void main() {
   vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
 #ifdef GLASS
   // Through glass its bubbles are seen from near.
-  white_m *= clamp(1.8 * lumps(4.0 * surface / u_radius_m) + 0.1, 0.2, 2.0);
+  vec3 bubbles_at = surface / u_radius_m;
+  white_m *= clamp(0.5 + 1.2 * (lumps(3.1 * bubbles_at) + lumps(8.7 * bubbles_at) + lumps(21.0 * bubbles_at) - 1.2), 0.25, 2.0);
 #endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
