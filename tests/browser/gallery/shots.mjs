@@ -38,7 +38,7 @@ const kShots = {
   river_mouth: { tick: 800, historyTicks: 300 },
   ripple_tank: { tick: 600 },
   rain_rings: { tick: 198 },
-  splash: { tick: 70 },
+  splash: { tick: 72 },
   splash_particles: { tick: 80 },
   splash_wave: { tick: 86 },
   still_pool: { tick: 60 },
