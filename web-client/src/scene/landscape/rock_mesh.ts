@@ -55,7 +55,7 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
         [x, y, z] = [x - cutX * beyond, y - cutY * beyond, z - cutZ * beyond];
       }
       const rough = 0.6 * bumps(2.5 * x + 9, 2.5 * (y - under) + 5, 2.5 * z + 9, seed) + 0.4 * bumps(6 * x + 20, 6 * (y - under) + 7, 6 * z + 20, seed + 1);
-      const wide = radiusM * (0.98 + (0.26 + 0.2 * under) * rough) * (1 + 0.15 * under);
+      const wide = radiusM * (0.98 + 0.26 * rough) * (1 - 0.1 * under);
       const high = under > 0 ? bottomM * under + heightM * y * (1 - under) : heightM * y * (1.02 + 0.22 * (rough - 0.5));
       row.push([rock.xM + x * wide, high, rock.zM + z * wide]);
     }

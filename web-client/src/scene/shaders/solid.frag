@@ -75,6 +75,12 @@ void main() {
     float coarse = texture(u_noise, at.yx / (5.3 * grain_m) + 0.37).r - 0.5;
     albedo *= 1.0 + grain * (0.34 * fine + 0.30 * coarse);
 #ifndef INSTANCES
+    if (grain > 0.95 && grain < kLawnGrain) {
+      // Stone has spots of several sizes, and cracks.
+      float spots = 0.5 * (texture(u_noise, at / (0.43 * grain_m)).r + texture(u_noise, at.yx / (0.13 * grain_m)).r);
+      float crack = abs(texture(u_noise, at.yx / (1.7 * grain_m) + 0.11).r + 0.25 * (spots - 0.5) - 0.5);
+      albedo *= (0.7 + 0.6 * spots) * mix(0.55, 1.0, smoothstep(0.0, 0.02, crack));
+    }
     if (grain > kLeavesGrain) {
       // Leaves before the shade between them: the outline is torn where one looks along it.
       vec2 leaves_at = at / (kLeavesTiles * grain_m);

@@ -273,7 +273,7 @@ void main() {
 #endif
   float sunlit_share = 1.0;
 #ifdef SHADOWS
-  sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.3);
+  sunlit_share = sunShare(v_world, vec3(0.0, 1.0, 0.0), 0.9);
   // The sky still lights the water in the shade, but less of it near what casts the shadow.
   scattered *= mix(0.8 * u_ambient_up.g / (u_ambient_up.g + 1.25 * u_sun_direction.y * u_sun_light.g), 1.0, sunlit_share);
 #endif
