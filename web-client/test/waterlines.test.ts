@@ -23,7 +23,8 @@ describe("the water against hulls", () => {
     expect(place!.toArray()).toEqual([3, -2, expect.closeTo(0, 9), expect.closeTo(1, 9)]);
     // 0.3 m of draught over the area of the hull, in a shape that is highest in the middle.
     expect(size!.toArray()).toEqual([2, 0.75, expect.closeTo(0.3652, 3), 0.3]);
-    expect(line!.toArray().slice(0, 3)).toEqual([expect.closeTo(0.3, 9), expect.closeTo(Math.tan(0.1), 9), expect.closeTo(Math.tan(0.2), 9)]);
+    // 8 % of its height deeper than its draught.
+    expect(line!.toArray()).toEqual([expect.closeTo(0.38, 9), expect.closeTo(Math.tan(0.1), 9), expect.closeTo(Math.tan(0.2), 9), 0]);
   });
 
   it("rises as far as a hull that is narrower than three cells pressed it down, with the same volume", () => {
@@ -31,6 +32,13 @@ describe("the water against hulls", () => {
     const size = hulls.value[1]!;
     expect([size.x, size.y]).toEqual([2, 1.5]);
     expect(size.x * size.y * size.z).toBeCloseTo(2 * 0.75 * 0.3652, 3);
+  });
+
+  it("has a bow wave that grows with the speed, up to 1.2 draughts", () => {
+    const heightM = (speedMps: number): number => shown(0.1, [{ speedMps }]).hulls.value[2]!.w;
+    expect(heightM(2)).toBeCloseTo((0.3 * 4) / 19.62, 6);
+    expect(heightM(-2)).toBe(heightM(2));
+    expect(heightM(20)).toBeCloseTo(0.36, 6);
   });
 
   it("knows no boats that the room does not have, or does not have any more", () => {

@@ -34,19 +34,28 @@ float dentsM(vec2 here_m) {
   return sum_m;
 }
 
-/// The elevation with what hulls have pressed down raised to their waterlines, as far as their weight lowered it. A hull far above the water
-/// has left it.
+// Most by which water rises to a hull, over what its weight pressed down; height of the waterline over the water, in draughts, from which on
+// a hull has left it.
+const float kMostPressed = 3.0;
+const vec2 kAloftDraughts = vec2(2.0, 3.0);
+// Place of the bow wave ahead of a hull's middle, and its half length and width, in halves of the hull's.
+const float kBowAt = 0.8;
+const vec2 kBowSize = vec2(0.5, 0.75);
+
+/// The elevation with what hulls have pressed down raised to their waterlines, and with their bow waves.
 float filledM(vec2 here_m, float elevation_m) {
   for (int k = 0; k < u_hull_count; ++k) {
     vec4 place = u_hulls[3 * k], size = u_hulls[3 * k + 1], line = u_hulls[3 * k + 2];
     vec2 away_m = here_m - place.xy;
     vec2 at_m = vec2(dot(away_m, place.zw), dot(away_m, vec2(-place.w, place.z)));
-    vec2 q = at_m / size.xy;
-    q *= q;
-    if (max(q.x, q.y) > 2.6) continue;
+    vec2 at = at_m / size.xy;
+    vec2 q = at * at;
+    if (max(q.x, q.y) > 4.0) continue;
     float gap_m = line.x + dot(at_m, line.yz) - elevation_m;
-    float pressed_m = 1.3 * size.z * exp(-dot(q, q));
-    elevation_m += clamp(gap_m, 0.0, pressed_m) * (1.0 - smoothstep(1.6, 2.4, gap_m / size.w));
+    float pressed_m = size.z * exp(-dot(q, q));
+    elevation_m += clamp(gap_m, 0.0, kMostPressed * pressed_m) * (1.0 - smoothstep(kAloftDraughts.x, kAloftDraughts.y, gap_m / size.w));
+    vec2 bow = (at - vec2(kBowAt, 0.0)) / kBowSize;
+    elevation_m += line.w * exp(-dot(bow, bow));
   }
   return elevation_m;
 }

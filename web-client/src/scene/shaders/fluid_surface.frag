@@ -93,23 +93,6 @@ float distanceAt(vec2 uv) {
   return near * far / (far - (far - near) * texture(u_behind_depth, uv).r);
 }
 
-// Lengths of the ray at which it enters the volume and leaves it.
-vec2 throughVolume(vec3 from, vec3 ray) {
-  ray = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
-  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_max_m - from) / ray;
-  vec3 near = min(a, b), far = max(a, b);
-  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
-}
-
-// The outward normal of the volume's nearest side.
-vec3 sideAt(vec3 at_m) {
-  vec3 half_m = 0.5 * (u_volume_max_m - u_volume_min_m);
-  vec3 away_m = at_m - u_volume_min_m - half_m;
-  vec3 left_m = half_m - abs(away_m);
-  vec3 nearest = step(left_m, vec3(min(left_m.x, min(left_m.y, left_m.z))));
-  return normalize(nearest * sign(away_m));
-}
-
 // How far a position lies above the wave, in particle radii.
 float overWave(vec3 at_m) {
 #ifdef WAVE
@@ -246,10 +229,17 @@ void main() {
   vec3 bending = facingEye(is_pane ? sideAt(surface) : normalAt(surface), ray);
   vec3 normal = bending;
 #ifdef RIPPLES
-  // In the plane in which the surface lies nearest; a pane has none.
-  vec3 plane = is_pane ? vec3(0.0) : vec3(abs(bending.x), max(bending.y, 0.0), abs(bending.z)) * (1.0 - liquid.y);
-  vec2 level = rippleSlopes(surface.xz) * plane.y, along = rippleSlopes(surface.yz) * plane.x, across = rippleSlopes(surface.xy) * plane.z;
-  normal = bending = facingEye(normalize(bending - vec3(level.x + across.x, along.x + across.y, level.y + along.y)), ray);
+  // Of level water only in what is mirrored: refracted by them, what lies below would be torn.
+  normal.xz -= rippleSlopes(surface.xz) * max(normal.y, 0.0) * (1.0 - liquid.y);
+#ifdef GLASS
+  if (!is_pane) {
+    vec2 along = rippleSlopes(surface.yz) * abs(bending.x), across = rippleSlopes(surface.xy) * abs(bending.z);
+    vec3 steep = vec3(across.x, along.x + across.y, along.y) * (1.0 - liquid.y);
+    normal -= steep;
+    bending = facingEye(normalize(bending - steep), ray);
+  }
+#endif
+  normal = facingEye(normalize(normal), ray);
 #endif
   // Behind the pane's inner face.
   float ahead_m = (at_m + (is_pane ? 0.1 * u_radius_m : 0.0)) / per_m;

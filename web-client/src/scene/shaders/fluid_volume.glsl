@@ -20,3 +20,20 @@ vec2 volumeAt(vec3 at_m) {
   vec2 per_texel = 1.0 / vec2(textureSize(u_volume, 0));
   return mix(textureLod(u_volume, (sliceOrigin(low) + xz) * per_texel, 0.0).rg, textureLod(u_volume, (sliceOrigin(low + 1.0) + xz) * per_texel, 0.0).rg, y - low);
 }
+
+// Lengths of the ray at which it enters the volume and leaves it.
+vec2 throughVolume(vec3 from, vec3 ray) {
+  ray = mix(vec3(1e-6), ray, step(vec3(1e-6), abs(ray)));
+  vec3 a = (u_volume_min_m - from) / ray, b = (u_volume_max_m - from) / ray;
+  vec3 near = min(a, b), far = max(a, b);
+  return vec2(max(max(near.x, near.y), near.z), min(min(far.x, far.y), far.z));
+}
+
+// The outward normal of the volume's nearest side.
+vec3 sideAt(vec3 at_m) {
+  vec3 half_m = 0.5 * (u_volume_max_m - u_volume_min_m);
+  vec3 away_m = at_m - u_volume_min_m - half_m;
+  vec3 left_m = half_m - abs(away_m);
+  vec3 nearest = step(left_m, vec3(min(left_m.x, min(left_m.y, left_m.z))));
+  return normalize(nearest * sign(away_m));
+}

@@ -37,7 +37,7 @@ const vec3 kLace = vec3(0.80, 0.82, 0.82);
 #ifdef FIELD
 uniform sampler2D u_field;
 // Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
-const float kWetBandM = 0.15, kDarkBandM = 0.2;
+const float kWetBandM = 0.15, kDarkBandM = 0.3;
 #endif
 // Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
 const float kLeavesGrain = 1.6, kLeavesTiles = 0.9;
@@ -147,9 +147,9 @@ void main() {
     float ragged = texture(u_noise, vec2(v_world.x + v_world.z, 0.4 * v_world.y) / 0.9).r;
     upright *= smoothstep(-0.3, -0.02, over_line_m);
     wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * (0.45 + 1.1 * ragged))));
-    seen_sky = 1.0 - 0.5 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
-    // Paint hardly darkens, it shines.
-    albedo *= 1.0 - mix(0.15, 0.55, min(2.0 * grain, 1.0)) * wet_band;
+    seen_sky = 1.0 - 0.6 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
+    // Paint darkens less than stone, and shines.
+    albedo *= 1.0 - mix(0.4, 0.55, min(2.0 * grain, 1.0)) * wet_band;
   }
 #endif
   float sun = max(dot(normal, u_sun_direction), 0.0);

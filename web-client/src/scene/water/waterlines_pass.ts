@@ -1,5 +1,5 @@
 // Boats → where the water stands against their hulls. In the simulation a hull presses its weight on the water, which gives way under all of
-// it; the surface drawn rises again to the line at which the hull floats.
+// it; the surface drawn rises again to the line at which the hull floats, and to a wave at its bow.
 import { Vector4, type IUniform } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
@@ -14,6 +14,12 @@ const kVectors = 3;
 /** A hull presses on at least this many cells to each side of its centre; and its pressure is highest in the middle, by the second (shaders/bodies/boat.glsl). */
 const kCellsLeast = 1.5;
 const kPeak = 1 / 0.9064 ** 2;
+/** Boats lie deeper than their draught by this share of their height: light hulls seemed to stand on the water. */
+const kDeeperHeights = 0.08;
+/** Height of the bow wave: this share of that at which water of the hull's speed comes to rest, U^2 / 2g, and at most so many draughts. */
+const kBowShare = 0.3;
+const kMostBowDraughts = 1.2;
+const kGravityMps2 = 9.81;
 
 export class WaterlinesPass implements Pass {
   readonly name = "waterlines";
@@ -21,7 +27,7 @@ export class WaterlinesPass implements Pass {
   readonly writes = ["waterlines"] as const;
   /**
    * Of each hull: position x and z [m], heading as cosine and sine; half length and half beam over which it presses [m], its pressure as a
-   * height of water [m], draught [m]; height of the waterline [m], its slope ahead and to starboard.
+   * height of water [m], draught [m]; height of the waterline [m], its slope ahead and to starboard, height of the bow wave [m].
    */
   readonly hulls: IUniform<Vector4[]> = { value: Array.from({ length: kVectors * kHullsMax }, () => new Vector4()) };
   readonly count: IUniform<number> = { value: 0 };
@@ -44,7 +50,7 @@ export class WaterlinesPass implements Pass {
 
   dispose(): void {}
 
-  private add({ boatId, xM, yM, zM, headingRad, pitchRad, rollRad }: BodyPose): void {
+  private add({ boatId, xM, yM, zM, headingRad, pitchRad, rollRad, speedMps }: BodyPose): void {
     const boat = this.greeting.boats.find((detail) => detail.boatId === boatId);
     if (!boat) return;
     const { lengthM, beamM, heightM, draughtM } = boat;
@@ -54,6 +60,7 @@ export class WaterlinesPass implements Pass {
     const halfBeamM = Math.max(beamM / 2, kCellsLeast * this.cellM);
     place!.set(xM, zM, Math.cos(headingRad), Math.sin(headingRad));
     size!.set(halfLengthM, halfBeamM, (kPeak * draughtM * lengthM * beamM) / (4 * halfLengthM * halfBeamM), draughtM);
-    line!.set(yM - heightM / 2 + draughtM, Math.tan(pitchRad), -Math.tan(rollRad), 0);
+    const bowM = Math.min((kBowShare * speedMps ** 2) / (2 * kGravityMps2), kMostBowDraughts * draughtM);
+    line!.set(yM - heightM / 2 + draughtM + kDeeperHeights * heightM, Math.tan(pitchRad), -Math.tan(rollRad), bowM);
   }
 }

@@ -89,10 +89,10 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 /** A hull throws spray above this speed, over sqrt(g L). */
 const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
-const kBowDropsPerMS = 500;
+const kBowDropsPerMS = 1500;
 const kWakeFrothPerMS = 70;
 /** Foam along the sides, which the bow throws out. */
-const kSideFrothPerMS = 130;
+const kSideFrothPerMS = 90;
 
 /** Bow waves and wakes. `poses` are the first `boats.length` or fewer boats drawn now. */
 export function addHulls(births: Births, poses: readonly BodyPose[], hulls: ReadonlyMap<number, BoatDetail>, surface: Surface, gravityMps2: number, stepS: number): void {
