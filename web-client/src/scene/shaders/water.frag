@@ -83,7 +83,7 @@ const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 // Between walls the finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
 #ifdef RIPPLES
-const float kSunSpread = 6.0;
+const float kSunSpread = 2.5;
 #else
 const float kSunSpread = 1.0;
 #endif
