@@ -7,7 +7,7 @@ import { DiffuseParticles, kFloatsPerParticle, kinds, kLandedShare, kMaxStepS, t
 import { MovingSurface, restingSurface, type Surface } from "../src/scene/whitewater/moving_surface";
 import { ramp } from "../src/scene/maths/interpolate";
 import { makeFastRandom } from "../src/scene/maths/random";
-import { addCrests, addHulls, addRims, rimOf, type Births } from "../src/scene/whitewater/sources";
+import { addCrests, addHulls, addRims, rimOf, sizeRatioOf, type Births } from "../src/scene/whitewater/sources";
 
 const kSideM = 16;
 const kCount = 32;
@@ -35,7 +35,7 @@ const kStill: Medium = { elevationAtM: (xM, zM) => (Math.max(Math.abs(xM), Math.
 
 function births(capacityCount = 20_000): Births {
   const random = makeFastRandom(1);
-  return { particles: new DiffuseParticles(capacityCount, random), random, scale: 1 };
+  return { particles: new DiffuseParticles(capacityCount, random), random, scale: 1, sizeRatio: 1 };
 }
 
 const born = (kind: Kind, change: Partial<Birth> = {}): Birth => ({ kind, xM: 0, yM: 0, zM: 0, vxMps: 0, vyMps: 0, vzMps: 0, radiusM: 0.02, lifeS: 10, ...change });
@@ -159,6 +159,21 @@ describe("breaking crests", () => {
     // Down the slope of -0.5 along x: toward +x with about rise / slope, 2 m/s.
     expect(forward).toBeGreaterThan(1.5);
     expect(forward).toBeLessThan(2.3);
+  });
+
+  it("throw more, smaller and slower drops in narrow water", () => {
+    const ofNarrow = (sizeRatio: number): [count: number, widestM: number] => {
+      const made = { ...births(200_000), sizeRatio };
+      addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(0.55, -0.5));
+      const radiiM = Array.from({ length: made.particles.count }, (_, n) => valuesOf(made.particles, n)).filter(([, , , kind]) => Math.floor(kind!) === kinds.spray).map((values) => values[7]!);
+      return [radiiM.length, Math.max(...radiiM)];
+    };
+    expect([0.5, 1, 3, 6, 40].map(sizeRatioOf)).toEqual([0.25, 0.25, 0.5, 1, 1]);
+    const [seaCount, seaM] = ofNarrow(1);
+    const [narrowCount, narrowM] = ofNarrow(0.5);
+    expect(seaM).toBeGreaterThan(0.3);
+    expect(narrowM).toBeLessThan(0.19);
+    expect(narrowCount).toBeGreaterThan(4 * seaCount);
   });
 
   it("do nothing where the foam fades, the surface falls, or two sizes of frames meet", () => {

@@ -23,7 +23,7 @@ uniform vec2 u_target_px;
 const int kKind = 2;
 #endif
 
-const float kMistRadiusM = 0.05;  // larger drops are puffs of mist
+const float kMistRadiusM = 0.025;  // larger drops are puffs of mist
 const float kLeastBubblePx = 1.5;
 const float kMostBubbleShare = 0.0015;  // of their distance
 

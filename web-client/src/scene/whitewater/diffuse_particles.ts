@@ -43,9 +43,10 @@ const kFoamWindShare = 0.02;
 const kBubbleRiseMps = 0.28;
 /** Life of the foam that a drop leaves, times 0.5 to 1.5. */
 const kFoamLifeS = 2.2;
-/** This share of the drops leaves a patch of foam where it falls, of this radius (m): each one would be a crumb by itself. */
+/** This share of the drops leaves a patch of foam where it falls, so many times as wide, up to a radius (m): each one would be a crumb by itself. */
 export const kLandedShare = 0.2;
-const kLandedRadiusM = 0.08;
+const kLandedRadii = 10;
+const kMostLandedM = 0.08;
 /** Longest step: a drop that falls into the water at 10 m/s is found at most 0.3 m below it. */
 export const kMaxStepS = 1 / 30;
 
@@ -140,7 +141,7 @@ export class DiffuseParticles {
 
   private becomeFoam(n: number, surfaceM: number): void {
     const at = n * kFloatsPerParticle;
-    this.values[at + 7] = kLandedRadiusM;
+    this.values[at + 7] = Math.min(kLandedRadii * this.values[at + 7]!, kMostLandedM);
     this.values[at + 1] = surfaceM;
     this.values[at + 5] = 0;
     this.ages[n] = 0;

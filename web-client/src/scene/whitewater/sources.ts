@@ -9,11 +9,23 @@ import { clamp, mix, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
 import type { Surface } from "./moving_surface";
 
-/** What the sources add to. `scale`: 1 for the densities below, less where fewer particles are wanted. */
+/** What the sources add to. */
 export interface Births {
   particles: DiffuseParticles;
   random: () => number;
+  /** 1 for the densities below, less where fewer particles are wanted. */
   scale: number;
+  /** Size of the water's breakers over those of a sea: lengths below shrink with it, speeds with its root (Froude's law). */
+  sizeRatio: number;
+}
+
+/** Narrower water has smaller breakers, down to a share of those of a sea. */
+const kSeaM = 6;
+const kLeastSizeRatio = 0.25;
+
+/** Returns `sizeRatio` of water with this shorter side. */
+export function sizeRatioOf(sideM: number): number {
+  return clamp(sideM / kSeaM, kLeastSizeRatio, 1);
 }
 
 /** Returns a whole number with the mean `expected`. */
@@ -34,9 +46,10 @@ function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: n
 }
 
 /** Puffs cost by the pixel: where fewer drops are wanted, fewer of them are mist. */
-function dropOrMist({ random, scale }: Births, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
+function dropOrMist({ random, scale, sizeRatio }: Births, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
   const flying = drop(random, ...motion);
-  return random() < kMistShare * scale ? { ...flying, radiusM: mix(...kMistRadiiM, random()) } : flying;
+  const radiusM = random() < kMistShare * scale ? mix(...kMistRadiiM, random()) : flying.radiusM;
+  return { ...flying, radiusM: sizeRatio * radiusM };
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -59,7 +72,8 @@ const kMostCrestMps = 6;
 export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: Surface): void {
   const n = to.resolutionCount;
   if (from.resolutionCount !== n || from.countZ !== to.countZ) return;
-  const { particles, random, scale } = births;
+  const { particles, random, scale, sizeRatio } = births;
+  const speedRatio = Math.sqrt(sizeRatio);
   const [before, after] = [new Uint8Array(from.buffer), new Uint8Array(to.buffer)];
   const cellM = to.sideM / n;
   for (let at = 0; at < n * to.countZ; ++at) {
@@ -77,11 +91,12 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
     const slope = Math.hypot(slopeX, slopeZ);
     const alongMps = slope > 0.02 ? Math.min(Math.max(riseMps, 0) / slope, kMostCrestMps) : 0;
     const [dx, dz] = slope > 0 ? [-slopeX / slope, -slopeZ / slope] : [0, 0];
-    const drops = countOf(kCrestDropsPerM2 * fresh * ramp(...kCrestSpeedsMps, riseMps), random);
+    const drops = countOf((kCrestDropsPerM2 / sizeRatio ** 2) * fresh * ramp(...kCrestSpeedsMps, riseMps / speedRatio), random);
     for (let left = drops; left > 0; --left) {
       const speedMps = alongMps * (0.7 + 0.5 * random());
-      const upMps = 0.4 + 1.3 * riseMps * (0.4 + random());
-      particles.add(dropOrMist(births, xM + spread(random, cellM / 2), elevationM + 0.03, zM + spread(random, cellM / 2), dx * speedMps + spread(random, 0.4), upMps, dz * speedMps + spread(random, 0.4)));
+      const upMps = 0.4 * speedRatio + 1.3 * riseMps * (0.4 + random());
+      const asideMps = 0.4 * speedRatio;
+      particles.add(dropOrMist(births, xM + spread(random, cellM / 2), elevationM + 0.03 * sizeRatio, zM + spread(random, cellM / 2), dx * speedMps + spread(random, asideMps), upMps, dz * speedMps + spread(random, asideMps)));
     }
   }
 }

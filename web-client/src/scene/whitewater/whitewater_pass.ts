@@ -9,7 +9,7 @@ import { makeFastRandom } from "../maths/random";
 import type { SolidsPass } from "../solids/solids_pass";
 import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, kMostHulls, type Medium } from "./diffuse_particles";
 import { MovingSurface, restingSurface, type Surface } from "./moving_surface";
-import { addCrests, addHulls, addRims, rimOf, type Births, type RimPoint } from "./sources";
+import { addCrests, addHulls, addRims, rimOf, sizeRatioOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
 
 /** After a longer gap, or when time goes back, the white water starts anew. Of shorter ones the last kLongestS are computed. */
@@ -37,7 +37,7 @@ export class WhitewaterPass implements Pass {
   ) {
     const random = makeFastRandom(kSeed);
     this.particles = new DiffuseParticles(quality.capacityCount, random);
-    this.births = { particles: this.particles, random, scale: quality.densityRatio };
+    this.births = { particles: this.particles, random, scale: quality.densityRatio, sizeRatio: sizeRatioOf(Math.min(greeting.sideM, greeting.widthM)) };
     this.points = new WhitePoints(this.particles.values);
     this.rim = rimOf(greeting.obstacles);
   }
