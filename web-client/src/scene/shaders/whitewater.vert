@@ -15,7 +15,7 @@ flat out float v_radius_m;
 const int kKind = 1, kHull = 3;
 const float kAroundHullM = 0.5;  // reach of foam and shade
 const float kAtRest = 0.5, kFullFroude = 0.5;  // foam around a hull at rest, and the Froude number at which it is white
-const float kPatch = 0.5;  // foam in the middle of a patch that begins
+const float kPatch = 0.36;  // foam in the middle of a patch that begins
 #else
 uniform mat4 viewMatrix;
 uniform mat4 projectionMatrix;
