@@ -179,7 +179,7 @@ function fitLaunch(builder: MeshBuilder, lines: HullLines, livery: Livery, { isF
   if (isFine) {
     addRailing(builder, lines, 0.72, 0.985, 0.2 * heightM, 5, 0.9);
     addRigging(builder, lines, [mastX, mastM, 0]);
-    addRod(builder, [backM + 0.03 * lengthM, highM, -0.8 * halfM], [backM - 0.04 * lengthM, mastM + 0.3 * heightM, -0.9 * halfM], 0.005 * beamM, kSteel, 3);
+    addRod(builder, [backM + 0.03 * lengthM, highM, -0.8 * halfM], [backM - 0.04 * lengthM, mastM, -0.9 * halfM], 0.008 * beamM, kBlack, 3);
     addFenders(builder, lines, [0.26, 0.56]);
   }
   const lampM = highM + 0.05 * heightM;

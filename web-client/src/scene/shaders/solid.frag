@@ -146,10 +146,12 @@ void main() {
   if (upright > 0.0 && over_line_m < 2.0 * kWetBandM) {
     float ragged = texture(u_noise, vec2(v_world.x + v_world.z, 0.4 * v_world.y) / 0.9).r;
     upright *= smoothstep(-0.3, -0.02, over_line_m);
-    wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * (0.45 + 1.1 * ragged))));
+    // Stone drinks, and its edge is ragged; water runs off paint.
+    float drinks = min(2.0 * grain, 1.0);
+    wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * mix(0.4, 0.45 + 1.1 * ragged, drinks))));
     seen_sky = 1.0 - 0.6 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
     // Paint darkens less than stone, and shines.
-    albedo *= 1.0 - mix(0.4, 0.55, min(2.0 * grain, 1.0)) * wet_band;
+    albedo *= 1.0 - mix(0.4, 0.55, drinks) * wet_band;
   }
 #endif
   float sun = max(dot(normal, u_sun_direction), 0.0);

@@ -105,6 +105,9 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
 const kBowDropsPerMS = 1500;
+/** Share of them that are sheets of the finest drops, and their radii, m. */
+const kBowMistShare = 0.2;
+const kBowMistRadiiM = [0.026, 0.06] as const;
 const kWakeFrothPerMS = 70;
 /** Foam along the sides, which the bow throws out. */
 const kSideFrothPerMS = 90;
@@ -132,7 +135,8 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
       const outMps = side * speedMps * (0.15 + 0.25 * random());
       const alongMps = speedMps * (0.45 + 0.4 * random());
       const upMps = speedMps * (0.12 + 0.25 * random());
-      particles.add(drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
+      const flying = drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps);
+      particles.add(random() < kBowMistShare * scale ? { ...flying, radiusM: mix(...kBowMistRadiiM, random()), lifeS: 0.3 + 0.4 * random() } : flying);
     }
     const wake = ramp(0.1, 0.6, froude) * lengthM * stepS * scale;
     // Foam begins all along the way of this step, or it would lie in heaps.
