@@ -37,7 +37,7 @@ const kShots = {
   regatta: { tick: 150, visitors: kRacers },
   river_mouth: { tick: 800, historyTicks: 300 },
   ripple_tank: { tick: 600 },
-  rain_rings: { tick: 198 },
+  rain_rings: { tick: 206 },
   splash: { tick: 72 },
   splash_particles: { tick: 80 },
   splash_wave: { tick: 86 },

@@ -344,7 +344,13 @@ void main() {
 #ifdef GLASS
   // Through glass its bubbles are seen from near.
   vec3 bubbles_at = surface / u_radius_m;
-  white_m *= clamp(0.5 + 1.2 * (lumps(3.1 * bubbles_at) + lumps(8.7 * bubbles_at) + lumps(21.0 * bubbles_at) - 1.2), 0.25, 2.0);
+  float mottled = -1.2;
+  for (int i = 0; i < 3; ++i) {
+    // Each octave turned, or the noise's grid would show.
+    bubbles_at = vec3(0.8 * bubbles_at.x - 0.6 * bubbles_at.y, 0.6 * bubbles_at.x + 0.8 * bubbles_at.y, bubbles_at.z).yzx * 2.3;
+    mottled += lumps(bubbles_at);
+  }
+  white_m *= clamp(0.7 + 0.8 * mottled, 0.35, 1.7);
 #endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);
