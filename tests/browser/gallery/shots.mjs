@@ -39,7 +39,7 @@ const kShots = {
   ripple_tank: { tick: 600 },
   rain_rings: { tick: 206 },
   splash: { tick: 72 },
-  splash_particles: { tick: 80 },
+  splash_particles: { tick: 76 },
   splash_wave: { tick: 86 },
   still_pool: { tick: 60 },
   thesis: { tick: 420 },

@@ -74,7 +74,7 @@ const float kLitRadii = 26.0;  // height over the floor above which water is lit
 const float kWhiteness = 0.22;  // of broken water at a pane
 const float kDarkestSides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
-const float kWhiteness = 0.022;  // of two sheets
+const float kWhiteness = 0.012;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif
