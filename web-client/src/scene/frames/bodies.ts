@@ -3,6 +3,9 @@ import { readBodies, type BodyPose } from "../../../client/codec/bodies";
 import type { BodiesFrame } from "../../net/messages";
 import { mixAngle } from "../maths/interpolate";
 
+/** Most boats of a room, as in the server. */
+export const kBoatsMax = 64;
+
 /** One unpacked frame. */
 export interface BodiesState {
   timeS: number;

@@ -5,14 +5,14 @@ import { Vector4, type IUniform } from "three";
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { BodyPose } from "../../../client/codec/bodies";
 import type { Pass, Picture } from "../drawing/pass";
-import { mixBodies } from "../frames/bodies";
+import { kBoatsMax, mixBodies } from "../frames/bodies";
 import type { StreamedFrames } from "../frames/streamed_frames";
 
-/** Most boats of a room, and vectors of each; the same numbers are in elevation.frag. */
-const kHullsMax = 64;
+/** Vectors of each hull; this number and that of the boats are in elevation.frag, too. */
 const kVectors = 3;
-/** A hull presses on at least this many cells to each side of its centre; and its pressure is highest in the middle, by the second (shaders/bodies/boat.glsl). */
+/** A hull presses on at least this many cells to each side of its centre (shaders/bodies/boat.glsl). */
 const kCellsLeast = 1.5;
+/** Its pressure in the middle over that of the same water in a box. */
 const kPeak = 1 / 0.9064 ** 2;
 /** Boats lie deeper than their draught by this share of their height: light hulls seemed to stand on the water. */
 const kDeeperHeights = 0.08;
@@ -29,7 +29,7 @@ export class WaterlinesPass implements Pass {
    * Of each hull: position x and z [m], heading as cosine and sine; half length and half beam over which it presses [m], its pressure as a
    * height of water [m], draught [m]; height of the waterline [m], its slope ahead and to starboard, height of the bow wave [m].
    */
-  readonly hulls: IUniform<Vector4[]> = { value: Array.from({ length: kVectors * kHullsMax }, () => new Vector4()) };
+  readonly hulls: IUniform<Vector4[]> = { value: Array.from({ length: kVectors * kBoatsMax }, () => new Vector4()) };
   readonly count: IUniform<number> = { value: 0 };
   private readonly poses: BodyPose[] = [];
 
@@ -45,7 +45,7 @@ export class WaterlinesPass implements Pass {
     const bodies = shownS === undefined ? undefined : this.frames.bodies.around(shownS);
     if (!bodies) return;
     const posesCount = mixBodies(bodies.from, bodies.to, bodies.mix, this.poses);
-    for (let i = 0; i < posesCount && this.count.value < kHullsMax; ++i) this.add(this.poses[i]!);
+    for (let i = 0; i < posesCount && this.count.value < kBoatsMax; ++i) this.add(this.poses[i]!);
   }
 
   dispose(): void {}

@@ -2,6 +2,8 @@
 // Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the water or on
 // each other. Of the drops that fall into the water a share becomes foam, which spreads and fades; a bubble bursts at the surface. Pure: no renderer.
 
+import { kBoatsMax } from "../frames/bodies";
+
 export const kinds = { spray: 0, foam: 1, bubble: 2 } as const;
 /** Kind of a hull among the points that are drawn (whitewater_pass.ts). */
 export const kHullPoint = 3;
@@ -30,8 +32,6 @@ export interface Birth {
 
 /** Floats of one particle for the GPU: position (m), kind + share of its life that has passed, velocity (m/s), radius (m). */
 export const kFloatsPerParticle = 8;
-/** Hulls that are drawn behind the particles (whitewater_pass.ts). */
-export const kMostHulls = 64;
 
 /** A drop loses speed against the air at this rate (1/s) per m/s, scaled to a drop of 1 cm: drag grows as the drop becomes smaller. */
 const kDragPerM = 0.05;
@@ -51,7 +51,7 @@ const kMostLandedM = 0.08;
 export const kMaxStepS = 1 / 30;
 
 export class DiffuseParticles {
-  /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for kMostHulls more points. */
+  /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for as many points as a room has boats (whitewater_pass.ts). */
   readonly values: Float32Array<ArrayBuffer>;
   count = 0;
   private readonly lives: Float32Array;
@@ -63,7 +63,7 @@ export class DiffuseParticles {
     readonly capacityCount: number,
     private readonly random: () => number,
   ) {
-    this.values = new Float32Array((capacityCount + kMostHulls) * kFloatsPerParticle);
+    this.values = new Float32Array((capacityCount + kBoatsMax) * kFloatsPerParticle);
     this.lives = new Float32Array(capacityCount);
     this.ages = new Float32Array(capacityCount);
     this.kindOf = new Uint8Array(capacityCount);

@@ -4,10 +4,11 @@ import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { FoamFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";
+import { kBoatsMax } from "../frames/bodies";
 import type { StreamedFrames } from "../frames/streamed_frames";
 import { makeFastRandom } from "../maths/random";
 import type { SolidsPass } from "../solids/solids_pass";
-import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, kMostHulls, type Medium } from "./diffuse_particles";
+import { DiffuseParticles, kFloatsPerParticle, kHullPoint, kMaxStepS, type Medium } from "./diffuse_particles";
 import { MovingSurface, restingSurface, type Surface } from "./moving_surface";
 import { addCrests, addHulls, addRims, rimOf, sizeRatioOf, type Births, type RimPoint } from "./sources";
 import { WhitePoints } from "./white_points";
@@ -66,7 +67,7 @@ export class WhitewaterPass implements Pass {
   /** Writes the boats behind the particles, for the foam and the shade around their hulls (whitewater.vert). Returns how many. */
   private placeHulls(): number {
     const { greeting, particles, solids } = this;
-    const poses = solids.drawnBoats().slice(0, kMostHulls);
+    const poses = solids.drawnBoats().slice(0, kBoatsMax);
     poses.forEach(({ boatId, xM, zM, headingRad, speedMps }, n) => {
       const { lengthM = 0, beamM = 0 } = greeting.boats.find((boat) => boat.boatId === boatId) ?? {};
       const hull = [xM, speedMps, zM, kHullPoint, Math.cos(headingRad), beamM, Math.sin(headingRad), lengthM];
