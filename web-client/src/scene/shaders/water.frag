@@ -82,8 +82,10 @@ const float kSpillM = 0.34;
 const float kSkyShare = 0.7, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 // Between walls the finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
-#ifdef RIPPLES
-const float kSunSpread = 2.5;
+#ifdef GLASS
+const float kSunSpread = 2.5;  // the low waves of a tank are seen from near
+#elif defined(RIPPLES)
+const float kSunSpread = 6.0;
 #else
 const float kSunSpread = 1.0;
 #endif

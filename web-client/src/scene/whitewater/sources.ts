@@ -154,7 +154,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
       const side = random() < 0.5 ? -1 : 1;
       // Most of it at the stem.
       const astern = random() * random();
-      const [px, pz] = place(lengthM * (0.46 - 0.8 * astern) - behindM(), side * beamM * Math.min(0.12 + 1.6 * astern, 0.5));
+      const [px, pz] = place(lengthM * (0.48 - 0.8 * astern) - behindM(), side * beamM * Math.min(0.1 + 0.5 * random() + astern, 0.6));
       const outMps = side * speedMps * (0.02 + 0.2 * random() * random());
       const alongMps = 0.15 * speedMps;
       particles.add({ ...froth(random, px, elevationM, pz, fx * alongMps - fz * outMps, fz * alongMps + fx * outMps), lifeS: 1 + 1.5 * random() });
