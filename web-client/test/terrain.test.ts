@@ -128,9 +128,20 @@ describe("a new boat's place", () => {
     }
   });
 
+  it("is near where one looks", () => {
+    const from = { xM: -9, zM: 8 };
+    const { xM, zM } = spawnPlace(water, 2.4, 0.24, [], from);
+    expect(Math.hypot(xM - from.xM, zM - from.zM)).toBeLessThan(3);
+    const beside = spawnPlace(water, 2.4, 0.24, [from], from);
+    expect(Math.hypot(beside.xM - from.xM, beside.zM - from.zM)).toBeGreaterThan(2.4);
+    expect(Math.hypot(beside.xM - from.xM, beside.zM - from.zM)).toBeLessThan(7);
+  });
+
   it("is inside the water even if no place is free", () => {
     const full = { ...water, obstacles: [{ ...rock, xM: 0, zM: 0, radiusM: 100 }] };
-    const { xM, zM } = spawnPlace(full, 2.4, 0.24, []);
-    expect(Math.max(Math.abs(xM), Math.abs(zM))).toBeLessThan(20);
+    for (const from of [undefined, { xM: 15, zM: -15 }]) {
+      const { xM, zM } = spawnPlace(full, 2.4, 0.24, [], from);
+      expect(Math.max(Math.abs(xM), Math.abs(zM))).toBeLessThan(20);
+    }
   });
 });

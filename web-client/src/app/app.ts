@@ -44,6 +44,7 @@ import { Haptics } from "./haptics";
 import { LookControls } from "./look_controls";
 import { nowS } from "./picture_clock";
 import { PictureControls } from "./picture_controls";
+import { waterInMiddle } from "./pointer_ray";
 import { removePoster, showPanels } from "./poster";
 import { SoundControls } from "./sound_controls";
 import { leadToFront } from "./to_front";
@@ -158,7 +159,7 @@ export class App {
     );
     this.pictures = new PictureControls(this.display, this.actions, (why) => this.toast.show(why, "bad"));
     this.sound = new SoundControls(this.display, this.haptics, (why) => this.toast.show(why, "bad"));
-    this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => this.viewButtons.boatChanged());
+    this.boats = new BoatPanel(this.commands.send, (boatId) => this.display.scene.poseOf(boatId), () => waterInMiddle(this.display), () => this.viewButtons.boatChanged());
     // The camera of a projector or a kiosk moves by itself.
     this.viewAddress = isProjectorAddress(location) || isKioskAddress(location) ? undefined : new ViewAddress(this.display.views, this.display.scene.camera.position);
     this.viewButtons = new ViewButtons(this.display.views, nowS, () => this.boats.mineId);

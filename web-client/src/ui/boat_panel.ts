@@ -11,6 +11,7 @@ import { kPageTime, LatestSender } from "./latest_sender";
 import { SelectRow } from "./select_row";
 import { SliderRow } from "./slider_row";
 import { spawnPlace } from "./spawn_place";
+import type { WaterPlace } from "./tools";
 import { kTexts } from "./texts";
 
 /** At most 20 helm commands per second. */
@@ -54,6 +55,8 @@ export class BoatPanel {
     private readonly send: (action: CommandAction, label: string) => number,
     /** The pose in which a boat is drawn now. */
     private readonly poseOf: (boatId: number) => BodyPose | undefined,
+    /** Where one looks at the water; undefined where none is seen. */
+    private readonly placeSeen: () => WaterPlace | undefined,
     /** `mineId` has changed. */
     private readonly chosen: () => void,
   ) {
@@ -219,7 +222,7 @@ export class BoatPanel {
       return;
     }
     const others = this.boats.flatMap(({ boatId }) => this.poseOf(boatId) ?? []).map(({ xM, zM }) => ({ xM, zM }));
-    const place = spawnPlace(this.greeting, boat.lengthM, draughtM, others);
+    const place = spawnPlace(this.greeting, boat.lengthM, draughtM, others, this.placeSeen());
     this.spawnId = this.send({ case: "spawnBoat", value: { boat: { ...hull, ...place } } }, kTexts.commands.newBoat);
   }
 
