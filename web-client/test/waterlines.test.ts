@@ -10,7 +10,7 @@ const boat = { boatId: 7, lengthM: 4, beamM: 1.5, heightM: 1, draughtM: 0.3 };
 function shown(cellM: number, poses: Partial<ReturnType<typeof makePose>>[], boats = [boat]): WaterlinesPass {
   const frames = new StreamedFrames(() => {});
   frames.bodies.push({ timeS: 1, stateId: 0n, bodies: poses.map((pose) => ({ ...makePose(), boatId: 7, ...pose })) });
-  const pass = new WaterlinesPass({ boats }, frames, cellM);
+  const pass = new WaterlinesPass({ boats, gravityMps2: 9.81 }, frames, cellM);
   pass.draw({ shownS: 1 } as Picture);
   return pass;
 }

@@ -1,4 +1,4 @@
-// What of the water is under a position of the window, or in the middle of what is seen.
+// The ray from the camera through a position of the window, and the water that it meets.
 import { Vector3 } from "three";
 
 import { pickWater, type Ray } from "../scene/frames/pick";
@@ -21,7 +21,7 @@ export function waterUnder(display: Display, xPx: number, yPx: number): WaterPla
   return shape && pickWater(rayAt(display, xPx, yPx), shape);
 }
 
-/** The water in the middle of the part of the picture that nothing covers, or the next below it; undefined where none is seen. */
+/** The water in the middle of the part of the picture that nothing covers, or the next below it; undefined if no water is seen. */
 export function waterInMiddle(display: Display): WaterPlace | undefined {
   const { leftPx, topPx, rightPx, bottomPx } = display.freePart;
   for (const share of kMiddleShares) {

@@ -55,7 +55,7 @@ export class BoatPanel {
     private readonly send: (action: CommandAction, label: string) => number,
     /** The pose in which a boat is drawn now. */
     private readonly poseOf: (boatId: number) => BodyPose | undefined,
-    /** Where one looks at the water; undefined where none is seen. */
+    /** Where one looks at the water; undefined if no water is seen. */
     private readonly placeSeen: () => WaterPlace | undefined,
     /** `mineId` has changed. */
     private readonly chosen: () => void,

@@ -72,7 +72,7 @@ const float kLaceRadii = 22.0;
 #ifdef GLASS
 const float kLitRadii = 26.0;  // height over the floor above which water is lit fully, in particle radii
 const float kWhiteness = 0.22;  // of broken water at a pane
-const float kDarkestSides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
+const float kLongestWaySides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
 const float kWhiteness = 0.012;  // of two sheets
 #else
@@ -328,7 +328,7 @@ void main() {
 #ifdef GLASS
   // Along a tank it is hardly darker than across.
   vec2 volume_m = (u_volume_max_m - u_volume_min_m).xz;
-  float most_m = kDarkestSides * min(volume_m.x, volume_m.y);
+  float most_m = kLongestWaySides * min(volume_m.x, volume_m.y);
   length_m = most_m * (1.0 - exp(-length_m / most_m));
 #endif
   vec3 passed = exp(-u_loss_per_m * length_m * u_colour_ratio);

@@ -139,19 +139,19 @@ void main() {
   float seen_sky = 1.0;
   float wet_band = 0.0;
 #ifdef FIELD
-  // The surface beside it, not inside.
+  // The surface a little outside the solid.
   vec2 beside = (v_world.xz + 0.2 * normal.xz) / u_extent_m + 0.5;
   float over_line_m = over_water_m - (all(lessThan(abs(beside - 0.5), vec2(0.5))) ? textureLod(u_field, beside, 0.0).r : 0.0);
   float upright = 1.0 - smoothstep(0.6, 0.85, normal.y);
-  if (upright > 0.0 && over_line_m < 2.0 * kWetBandM) {
+  if (upright > 0.0 && over_line_m < kDarkBandM) {
     float ragged = texture(u_noise, vec2(v_world.x + v_world.z, 0.4 * v_world.y) / 0.9).r;
     upright *= smoothstep(-0.3, -0.02, over_line_m);
-    // Stone drinks, and its edge is ragged; water runs off paint.
-    float drinks = min(2.0 * grain, 1.0);
-    wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * mix(0.4, 0.45 + 1.1 * ragged, drinks))));
+    // Water soaks into stone, with a ragged edge, and runs off paint.
+    float soaks = min(2.0 * grain, 1.0);
+    wet_band = upright * (1.0 - smoothstep(0.5, 1.0, over_line_m / (kWetBandM * mix(0.4, 0.45 + 1.1 * ragged, soaks))));
     seen_sky = 1.0 - 0.6 * upright * (1.0 - smoothstep(-0.02, kDarkBandM, over_line_m));
     // Paint darkens less than stone, and shines.
-    albedo *= 1.0 - mix(0.4, 0.55, drinks) * wet_band;
+    albedo *= 1.0 - mix(0.4, 0.55, soaks) * wet_band;
   }
 #endif
   float sun = max(dot(normal, u_sun_direction), 0.0);

@@ -19,7 +19,9 @@ const kDeeperHeights = 0.08;
 /** Height of the bow wave: this share of that at which water of the hull's speed comes to rest, U^2 / 2g, and at most so many draughts. */
 const kBowShare = 0.3;
 const kMostBowDraughts = 1.2;
-const kGravityMps2 = 9.81;
+/** A hull without draught, or water without weight, would divide by 0. */
+const kLeastDraughtM = 1e-3;
+const kLeastGravityMps2 = 0.1;
 
 export class WaterlinesPass implements Pass {
   readonly name = "waterlines";
@@ -35,7 +37,7 @@ export class WaterlinesPass implements Pass {
 
   /** `greeting`: its boats change. */
   constructor(
-    private readonly greeting: Pick<GreetingInfo, "boats">,
+    private readonly greeting: Pick<GreetingInfo, "boats" | "gravityMps2">,
     private readonly frames: StreamedFrames,
     private readonly cellM: number,
   ) {}
@@ -53,14 +55,15 @@ export class WaterlinesPass implements Pass {
   private add({ boatId, xM, yM, zM, headingRad, pitchRad, rollRad, speedMps }: BodyPose): void {
     const boat = this.greeting.boats.find((detail) => detail.boatId === boatId);
     if (!boat) return;
-    const { lengthM, beamM, heightM, draughtM } = boat;
+    const { lengthM, beamM, heightM } = boat;
+    const draughtM = Math.max(boat.draughtM, kLeastDraughtM);
     const at = kVectors * this.count.value++;
-    const [place, size, line] = this.hulls.value.slice(at, at + kVectors);
     const halfLengthM = Math.max(lengthM / 2, kCellsLeast * this.cellM);
     const halfBeamM = Math.max(beamM / 2, kCellsLeast * this.cellM);
-    place!.set(xM, zM, Math.cos(headingRad), Math.sin(headingRad));
-    size!.set(halfLengthM, halfBeamM, (kPeak * draughtM * lengthM * beamM) / (4 * halfLengthM * halfBeamM), draughtM);
-    const bowM = Math.min((kBowShare * speedMps ** 2) / (2 * kGravityMps2), kMostBowDraughts * draughtM);
-    line!.set(yM - heightM / 2 + draughtM + kDeeperHeights * heightM, Math.tan(pitchRad), -Math.tan(rollRad), bowM);
+    this.hulls.value[at]!.set(xM, zM, Math.cos(headingRad), Math.sin(headingRad));
+    this.hulls.value[at + 1]!.set(halfLengthM, halfBeamM, (kPeak * draughtM * lengthM * beamM) / (4 * halfLengthM * halfBeamM), draughtM);
+    const headM = speedMps ** 2 / (2 * Math.max(this.greeting.gravityMps2, kLeastGravityMps2));
+    const bowM = Math.min(kBowShare * headM, kMostBowDraughts * draughtM);
+    this.hulls.value[at + 2]!.set(yM - heightM / 2 + draughtM + kDeeperHeights * heightM, Math.tan(pitchRad), -Math.tan(rollRad), bowM);
   }
 }

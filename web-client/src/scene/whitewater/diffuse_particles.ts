@@ -51,7 +51,7 @@ const kMostLandedM = 0.08;
 export const kMaxStepS = 1 / 30;
 
 export class DiffuseParticles {
-  /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for as many points as a room has boats (whitewater_pass.ts). */
+  /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for kBoatsMax more points: hulls (whitewater_pass.ts). */
   readonly values: Float32Array<ArrayBuffer>;
   count = 0;
   private readonly lives: Float32Array;

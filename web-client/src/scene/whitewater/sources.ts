@@ -36,9 +36,17 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
-/** Share of the drops that are puffs of mist, where water meets rock or falls over, and their radii, m. */
-const kMistShare = 0.2;
-const kMistRadiiM = [0.12, 0.37] as const;
+/** Mist among drops: share of the drops, radii of the puffs [m], and how long they last if not as long as drops [s]. */
+interface Mist {
+  share: number;
+  radiiM: readonly [number, number];
+  livesS?: readonly [number, number];
+}
+
+/** Where water meets rock or falls over. */
+const kBreakerMist: Mist = { share: 0.2, radiiM: [0.12, 0.37] };
+/** Sheets of the finest drops. */
+const kBowMist: Mist = { share: 0.2, radiiM: [0.026, 0.06], livesS: [0.3, 0.7] };
 
 /** Few drops are large: radii from 4 mm to 2 cm. */
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
@@ -46,10 +54,11 @@ function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: n
 }
 
 /** Puffs cost by the pixel: where fewer drops are wanted, fewer of them are mist. */
-function dropOrMist({ random, scale, sizeRatio }: Births, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
+function dropOrMist({ random, scale, sizeRatio }: Births, { share, radiiM, livesS }: Mist, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
   const flying = drop(random, ...motion);
-  const radiusM = random() < kMistShare * scale ? mix(...kMistRadiiM, random()) : flying.radiusM;
-  return { ...flying, radiusM: sizeRatio * radiusM };
+  if (random() >= share * scale) return { ...flying, radiusM: sizeRatio * flying.radiusM };
+  const radiusM = sizeRatio * mix(...radiiM, random());
+  return { ...flying, radiusM, ...(livesS && { lifeS: mix(...livesS, random()) }) };
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -96,7 +105,7 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
       const speedMps = alongMps * (0.7 + 0.5 * random());
       const upMps = 0.4 * speedRatio + 1.3 * riseMps * (0.4 + random());
       const asideMps = 0.4 * speedRatio;
-      particles.add(dropOrMist(births, xM + spread(random, cellM / 2), elevationM + 0.03 * sizeRatio, zM + spread(random, cellM / 2), dx * speedMps + spread(random, asideMps), upMps, dz * speedMps + spread(random, asideMps)));
+      particles.add(dropOrMist(births, kBreakerMist, xM + spread(random, cellM / 2), elevationM + 0.03 * sizeRatio, zM + spread(random, cellM / 2), dx * speedMps + spread(random, asideMps), upMps, dz * speedMps + spread(random, asideMps)));
     }
   }
 }
@@ -105,9 +114,6 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
 const kBowDropsPerMS = 1500;
-/** Share of them that are sheets of the finest drops, and their radii, m. */
-const kBowMistShare = 0.2;
-const kBowMistRadiiM = [0.026, 0.06] as const;
 const kWakeFrothPerMS = 70;
 /** Foam along the sides, which the bow throws out. */
 const kSideFrothPerMS = 90;
@@ -135,8 +141,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
       const outMps = side * speedMps * (0.15 + 0.25 * random());
       const alongMps = speedMps * (0.45 + 0.4 * random());
       const upMps = speedMps * (0.12 + 0.25 * random());
-      const flying = drop(random, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps);
-      particles.add(random() < kBowMistShare * scale ? { ...flying, radiusM: mix(...kBowMistRadiiM, random()), lifeS: 0.3 + 0.4 * random() } : flying);
+      particles.add(dropOrMist(births, kBowMist, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
     }
     const wake = ramp(0.1, 0.6, froude) * lengthM * stepS * scale;
     // Foam begins all along the way of this step, or it would lie in heaps.
@@ -224,7 +229,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Surfa
       const along = spread(random, lengthM / 2);
       const outMps = riseMps * (0.1 + 0.5 * random());
       const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
-      particles.add(dropOrMist(births, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
+      particles.add(dropOrMist(births, kBreakerMist, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
       if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
     }
   }
