@@ -1,4 +1,4 @@
-// Shapes that fittings of boats, lighthouses and buoys are made of.
+// Shapes that basins and fittings of boats, lighthouses and buoys are made of.
 import type { MeshBuilder, Paint, Point } from "./mesh_builder";
 
 const add = (a: Point, b: Point, share = 1): Point => [a[0] + share * b[0], a[1] + share * b[1], a[2] + share * b[2]];
@@ -66,4 +66,15 @@ export function addPlate(builder: MeshBuilder, top: readonly [Point, Point, Poin
   const low = top.map(([x, y, z]): Point => [x, y - thickM, z]);
   builder.quad(...(top as [Point, Point, Point, Point]), paint);
   for (let n = 0; n < 4; ++n) builder.quad(low[n]!, low[(n + 1) % 4]!, top[(n + 1) % 4]!, top[n]!, paint);
+}
+
+/** Adds four upright faces around a rectangle, seen from one side: `inward` from inside. */
+export function addWalls(builder: MeshBuilder, half: readonly [number, number], lowM: number, highM: number, inward: boolean, paint: Paint): void {
+  const [x, z] = half;
+  const corners: [number, number][] = [[-x, z], [x, z], [x, -z], [-x, -z]];
+  corners.forEach(([ax, az], i) => {
+    const [bx, bz] = corners[(i + 1) % 4]!;
+    const from: Point[] = inward ? [[bx, lowM, bz], [ax, lowM, az]] : [[ax, lowM, az], [bx, lowM, bz]];
+    builder.quad(from[0]!, from[1]!, [from[1]![0], highM, from[1]![2]], [from[0]![0], highM, from[0]![2]], paint);
+  });
 }

@@ -17,12 +17,16 @@ float pictureShare(vec2 uv) {
   return edge.x * edge.y;
 }
 
-// Where a ray that leaves a pool of this size meets the border of the garden.
-vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
-  vec2 half_m = 0.5 * extent_m + clamp(0.72 * max(extent_m.x, extent_m.y), 3.6, 8.5);
+// Where a ray meets the upright sides of a box.
+vec3 atSides(vec3 from, vec3 direction, vec2 half_m) {
   vec2 safe = mix(vec2(1e-6), direction.xz, step(1e-6, abs(direction.xz)));
   vec2 along_m = max((half_m - from.xz) / safe, (-half_m - from.xz) / safe);
   return from + direction * min(along_m.x, along_m.y);
+}
+
+// Where a ray that leaves a pool of this size meets the border of the garden.
+vec3 atBorder(vec3 from, vec3 direction, vec2 extent_m) {
+  return atSides(from, direction, 0.5 * extent_m + clamp(0.72 * max(extent_m.x, extent_m.y), 3.6, 8.5));
 }
 
 // Reach of the bright line where the water climbs a solid, along the ray, m, and the most of its light.

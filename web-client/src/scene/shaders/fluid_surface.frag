@@ -86,7 +86,7 @@ const float kAwayLit = 0.5, kTowardLit = 1.1;
 // Mip level of what is mirrored: clouds are blurred.
 const float kMirrorLevel = 4.0;
 
-vec3 mirroredAlong(vec3 to) { return textureLod(u_sky, vec3(to.x, abs(to.y), to.z), kMirrorLevel).rgb; }
+vec3 skyAlong(vec3 ray) { return textureLod(u_sky, vec3(ray.x, abs(ray.y), ray.z), kMirrorLevel).rgb; }
 
 float distanceAt(vec2 uv) {
   float near = u_near_far_m.x, far = u_near_far_m.y;
@@ -177,14 +177,22 @@ vec3 behindAt(vec3 from, vec3 ray, float away_m, float surface_m) {
   return mix(texture(u_behind, shown).rgb, textureLod(u_sky, ray, 1.0).rgb, is_sky);
 }
 
+// What a ray from the surface meets: the sky; in gardens what is around the pool, and the walls of a tank, as far as they are on the screen.
+vec3 lightAround(vec3 from, vec3 ray) {
+  ray.y = abs(ray.y);
+  vec3 light = skyAlong(ray);
 #ifndef WAVE
-// The garden, and the sky over it, that a ray from the surface meets: as far as they are on the screen.
-vec3 gardenLight(vec3 from, vec3 ray) {
-  vec3 sky = behindShrubs(mirroredAlong(ray), abs(ray.y));
-  vec3 at = shownAt(atBorder(from, vec3(ray.x, abs(ray.y), ray.z), u_volume_max_m.xz - u_volume_min_m.xz));
-  return distanceAt(clamp(at.xy, 0.0, 1.0)) < 0.5 * at.z ? sky : mix(sky, texture(u_behind, at.xy).rgb, pictureShare(at.xy) * step(0.0, at.z));
-}
+  light = behindShrubs(light, ray.y);
+  vec2 extent_m = u_volume_max_m.xz - u_volume_min_m.xz;
+  vec3 at = shownAt(atBorder(from, ray, extent_m));
+  if (distanceAt(clamp(at.xy, 0.0, 1.0)) > 0.5 * at.z) light = mix(light, texture(u_behind, at.xy).rgb, pictureShare(at.xy) * step(0.0, at.z));
+#ifdef GLASS
+  at = shownAt(atSides(from, ray, 0.5 * extent_m));
+  if (distanceAt(clamp(at.xy, 0.0, 1.0)) < at.z + u_radius_m) light = mix(light, texture(u_behind, at.xy).rgb, pictureShare(at.xy));
 #endif
+#endif
+  return light;
+}
 
 void main() {
   vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
@@ -307,7 +315,7 @@ void main() {
       white_m += 2.0 * step_m * through.y * through.y;
       if (again.a > 0.0) continue;
       vec3 turned = facingEye(normalAt(at), leaving);
-      again = vec4(mirroredAlong(reflect(leaving, turned)), waterFresnel(-dot(turned, leaving)));
+      again = vec4(skyAlong(reflect(leaving, turned)), waterFresnel(-dot(turned, leaving)));
     }
   }
 #endif
@@ -358,11 +366,7 @@ void main() {
   // Glass hides most of the reflection of the water behind it.
   float fresnel = waterFresnel(clamp(-dot(normal, ray), 0.0, 1.0)) * (is_pane ? 0.15 : 1.0 - 0.7 * white);
   vec3 mirrored = reflect(ray, normal);
-#ifndef WAVE
-  vec3 mirrored_light = gardenLight(surface, mirrored);
-#else
-  vec3 mirrored_light = mirroredAlong(mirrored);
-#endif
+  vec3 mirrored_light = lightAround(surface, mirrored);
   float at_sun = dot(mirrored, u_sun_direction);
   if (is_pane) under = mix(under, meniscusLight(), 0.3 * smoothstep(0.05, 0.01, liquid.x) * (1.0 - white));
   float glint = is_pane || at_sun < 0.9 ? 0.0 : u_sun_sharp * (pow(at_sun, kGlint) * 9.0 + pow(at_sun, 70.0) * kGleam) * (0.1 + fresnel) * (1.0 - white);

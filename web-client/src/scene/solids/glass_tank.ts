@@ -1,11 +1,12 @@
-// A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table.
+// A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table. Inside, its walls are tiled, and seen from their
+// inner side alone: through the pane before it the water stands before the tiles of the far walls.
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { addGarden, deckOf, kTeak } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
-import { addRod } from "../meshes/shapes";
+import { addRod, addWalls } from "../meshes/shapes";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
@@ -25,10 +26,11 @@ const kSizeWidths = 6;
 /** Height of the plate under the tank, in thicknesses of the glass. */
 const kPlinth = 5;
 
-/** Side of the tiles in the tank: a share of its size. */
-const kTileShare = 1 / 24;
-/** Below waves the floor is even, for their light: tiles smaller than a pixel are not drawn. */
-const kNoTile = 1e-4;
+/** Side of the tiles in a tank, and in a tray: a share of its size. */
+const kTileShare = 1 / 32;
+const kTrayTileShare = 1 / 20;
+/** Height of the walls as a share of that of the glass. */
+const kWallHeight = 0.75;
 /** What is kept free around a tank, from its middle and beside it. */
 const kFreeHalfM = 3;
 const kFreeBesideM = 1.6;
@@ -37,11 +39,10 @@ const kTrayM = 1.2;
 const kTableM = 0.74;
 const kTableBesideM = 0.22;
 const kPlankM = 0.09;
-/** Height of its walls as a share of that of its glass. */
-const kWallHeight = 0.75;
 
-/** Of the tiles in the tank, and of its floor where it is not on the screen. */
-export const kTankTile = [0.20, 0.50, 0.60] as const;
+/** The light on the floor of a tray is its waves' picture: its tiles are darker. */
+const kTile = [0.52, 0.71, 0.75] as const;
+const kTrayTile = [0.20, 0.50, 0.60] as const;
 const kBase: Paint = [0.42, 0.43, 0.42, 0.6];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
@@ -65,6 +66,11 @@ function isTray({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): boolean 
 
 function isChannelOfParticles({ sideM, widthM, wave }: Pick<GreetingInfo, "sideM" | "widthM" | "wave">): boolean {
   return !wave && Math.max(sideM, widthM) > kChannelWidths * Math.min(sideM, widthM);
+}
+
+/** Returns the colour of the tiles on the floor. */
+export function tankTile(greeting: Pick<GreetingInfo, "sideM" | "widthM">): readonly [number, number, number] {
+  return isTray(greeting) ? kTrayTile : kTile;
 }
 
 /** Returns the height over the floor that the first view of a tank of particles shows. */
@@ -112,9 +118,9 @@ function addTable(builder: MeshBuilder, halfX: number, halfZ: number, footM: num
 }
 
 /** The painted walls of a tray, in its glass. */
-function addWalls(builder: MeshBuilder, { sideM, widthM }: TankSize, topM: number): void {
+function addTrayWalls(builder: MeshBuilder, { sideM, widthM }: TankSize, topM: number): void {
   const halfM = kGlassThickness * sizeM({ sideM, widthM });
-  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTankTile, 0.2]);
+  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTrayTile, 0.2]);
   for (const side of [-1, 1]) {
     wall(0, side * (widthM / 2 + 1.05 * halfM), sideM / 2 + 2.05 * halfM, halfM);
     wall(side * (sideM / 2 + 1.05 * halfM), 0, halfM, widthM / 2);
@@ -134,7 +140,7 @@ export function makeBaseGeometry(size: TankSize): BufferGeometry {
   builder.block(0, 0, { yM: -kPlinth * thickM, halfX, halfZ }, { yM: -0.12 * thickM, halfX, halfZ }, kBase);
   if (isTray(size)) {
     addTable(builder, halfX + kTableBesideM, halfZ + kTableBesideM, deckM(size));
-    addWalls(builder, size, kWallHeight * size.heightM);
+    addTrayWalls(builder, size, kWallHeight * size.heightM);
   }
   return builder.build();
 }
@@ -150,6 +156,17 @@ function makeGarden(size: TankSize, plain: boolean): { deck: BufferGeometry; pla
   return { deck: deck.build(), planted: planted.build() };
 }
 
+/** The tiles of the floor, and of a tank's walls. */
+function makeLining(size: TankSize): BufferGeometry {
+  const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
+  const gapM = 0.06 * kGlassThickness * sizeM(size);
+  const tileSides = ((isTray(size) ? kTrayTileShare : kTileShare) * sizeM(size)) / Math.max(size.sideM, size.widthM);
+  const paint: Paint = [...tankTile(size), tileSides];
+  const lining = level(halfX, -gapM, halfZ, paint);
+  if (!isTray(size)) addWalls(lining, [halfX + gapM, halfZ + gapM], -gapM, kWallHeight * size.heightM, true, paint);
+  return lining.build();
+}
+
 /** A level rectangle around the middle. */
 function level(xM: number, yM: number, zM: number, paint: Paint): MeshBuilder {
   return new MeshBuilder().quad([-xM, yM, zM], [xM, yM, zM], [xM, yM, -zM], [-xM, yM, -zM], paint);
@@ -159,7 +176,7 @@ export class GlassTank {
   /** What the tank stands on. */
   readonly group = new Group();
   readonly glass: Mesh<BufferGeometry, RawShaderMaterial>;
-  /** The tiles on the plate, and the deck. */
+  /** The tiles in the tank, and the deck. */
   private readonly floors: readonly Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly base: Mesh;
   private readonly planted: Mesh;
@@ -168,9 +185,6 @@ export class GlassTank {
   constructor(greeting: GreetingInfo, context: SurroundingsContext) {
     const { sky, solid, quality, shadow } = context;
     const size = tankSize(greeting);
-    const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
-    const thickM = kGlassThickness * sizeM(size);
-    const longM = Math.max(size.sideM, size.widthM);
     this.uniforms = { ...sky.uniforms, u_camera_m: { value: new Vector3() } };
     this.glass = new Mesh(
       makeGlassGeometry(size),
@@ -188,7 +202,7 @@ export class GlassTank {
     const { deck, planted } = makeGarden(size, quality.plain);
     this.planted = new Mesh(planted, solid);
     this.floors = [
-      new Mesh(level(halfX, -0.06 * thickM, halfZ, [...kTankTile, ((greeting.wave ? kNoTile : kTileShare) * sizeM(size)) / longM]).build(), makeTiles(greeting, context)),
+      new Mesh(makeLining(size), makeTiles(greeting, context)),
       new Mesh(deck, makeTiles(greeting, context, true)),
     ];
     for (const mesh of [this.glass, this.base, this.planted, ...this.floors]) mesh.frustumCulled = false;

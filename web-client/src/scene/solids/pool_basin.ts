@@ -4,7 +4,8 @@ import { Group, Mesh, type BufferGeometry, type RawShaderMaterial } from "three"
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { addGarden, deckOf } from "../landscape/garden";
 import { castsShadow } from "../meshes/casters";
-import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
+import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
+import { addWalls } from "../meshes/shapes";
 import type { SurroundingsContext } from "./surroundings_context";
 import { makeTiles } from "./tiles";
 
@@ -42,17 +43,6 @@ function addRing(builder: MeshBuilder, yM: number, inner: readonly [number, numb
   strip(-ox, ox, -oz, -iz);
   strip(-ox, -ix, -iz, iz);
   strip(ix, ox, -iz, iz);
-}
-
-/** Four upright faces round a rectangle; `inward`: seen from inside. */
-function addWalls(builder: MeshBuilder, half: readonly [number, number], lowM: number, highM: number, inward: boolean, paint: Paint): void {
-  const [x, z] = half;
-  const corners: [number, number][] = [[-x, z], [x, z], [x, -z], [-x, -z]];
-  corners.forEach(([ax, az], i) => {
-    const [bx, bz] = corners[(i + 1) % 4]!;
-    const from: Point[] = inward ? [[bx, lowM, bz], [ax, lowM, az]] : [[ax, lowM, az], [bx, lowM, bz]];
-    builder.quad(from[0]!, from[1]!, [from[1]![0], highM, from[1]![2]], [from[0]![0], highM, from[0]![2]], paint);
-  });
 }
 
 /** Returns the basin with its floor at y = 0 and the water's rest level at `depthM`. */

@@ -29,7 +29,7 @@ import { MeshBuilder } from "../meshes/mesh_builder";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
-import { kTankTile } from "./glass_tank";
+import { tankTile } from "./glass_tank";
 import { Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
@@ -38,10 +38,9 @@ const kGrainLimitsM = [0.5, 4] as const;
 /** Stone is wet up to this share of the depth above the still water. */
 const kWetDepths = 0.08;
 
-const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
+const kFloors: Record<Exclude<GreetingInfo["setting"], "glassTank">, readonly [number, number, number]> = {
   openSea: [0.224, 0.205, 0.156],
   pool: [0.34, 0.63, 0.69],
-  glassTank: kTankTile,
   flume: kTankBed,
 };
 
@@ -99,7 +98,7 @@ export class SolidsPass implements Pass {
     warmUp: WarmUp,
   ) {
     const { sideM, widthM } = greeting;
-    this.floorAlbedo.set(...kFloors[greeting.setting]);
+    this.floorAlbedo.set(...(greeting.setting === "glassTank" ? tankTile(greeting) : kFloors[greeting.setting]));
     const { caustics, shadow, shore } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {
