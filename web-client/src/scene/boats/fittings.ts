@@ -19,7 +19,7 @@ const kFender: Paint = [0.62, 0.60, 0.55, 0.2];
 const kRope: Paint = [0.36, 0.29, 0.18, 0.8];
 const kFishBoxes: readonly Paint[] = [[0.08, 0.15, 0.26, 0.3], [0.40, 0.17, 0.06, 0.3]];
 /** Height of a person, in beams of a dinghy, and of a larger boat. */
-const kSeatedBeams = 0.62;
+const kSeatedBeams = 1.25;
 const kPersonBeams = 0.54;
 
 export interface Detail {

@@ -36,9 +36,9 @@ interface HullForm {
 }
 
 const kForms: Record<HullKind, HullForm> = {
-  dinghy: { widestAt: 0.44, transom: 0.7, entry: 1.85, stemRake: 0.1, sternRake: 0.03, forefootFrom: 0.4, forefootRise: 0.55, rocker: 0.16, bilge: 2.5, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0 },
-  launch: { widestAt: 0.4, transom: 0.86, entry: 1.9, stemRake: 0.16, sternRake: 0.02, forefootFrom: 0.45, forefootRise: 0.66, rocker: 0.04, bilge: 3, bowSheer: 0.3, sternSheer: 0.02, bulwark: 0 },
-  cutter: { widestAt: 0.46, transom: 0.74, entry: 2.2, stemRake: 0.05, sternRake: 0.05, forefootFrom: 0.7, forefootRise: 0.4, rocker: 0.12, bilge: 2.8, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0.14 },
+  dinghy: { widestAt: 0.44, transom: 0.7, entry: 1.85, stemRake: 0.1, sternRake: 0.03, forefootFrom: 0.4, forefootRise: 0.4, rocker: 0.16, bilge: 2.5, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0 },
+  launch: { widestAt: 0.4, transom: 0.86, entry: 1.9, stemRake: 0.16, sternRake: 0.02, forefootFrom: 0.5, forefootRise: 0.3, rocker: 0.04, bilge: 3, bowSheer: 0.3, sternSheer: 0.02, bulwark: 0 },
+  cutter: { widestAt: 0.46, transom: 0.74, entry: 2.2, stemRake: 0.05, sternRake: 0.05, forefootFrom: 0.7, forefootRise: 0.32, rocker: 0.12, bilge: 2.8, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0.14 },
 };
 
 /** The rubbing strake stands out by this share of the beam. */

@@ -207,9 +207,9 @@ void main() {
   if (dot(normal, ray) > 0.0) normal = normalize(normal - 1.02 * dot(normal, ray) * ray);
 #endif
 
+  float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
 #ifndef GLASS
   // What stands in the water is close behind its surface; the bed below shallow water is not meant.
-  float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);
   float contact = 1.0 - smoothstep(0.0, kContactM, solid_m);
 #ifdef BEACH
   contact *= smoothstep(0.03, 0.15, deep_m + ray.y * solid_m);
@@ -227,8 +227,8 @@ void main() {
 #ifndef SKIRT
   if (dot(bending, ray) > -0.02) bending = normal;
   vec3 bent = refract(ray, bending, 0.75);
-  // The shift does not depend on the depth of what is behind: that would tear the outlines of things near the surface.
-  float reach_m = min(0.5 * way_m, 0.45);
+  // By the distance of what is behind at most: hulls continue below their waterline.
+  float reach_m = min(0.5 * min(way_m, max(solid_m, 0.0)), 0.45);
 #ifdef SHORE
   reach_m = min(reach_m, deep_m);
 #endif
