@@ -2,11 +2,11 @@
 // Four bilinear samples stand for sixteen texels (Sigg & Hadwiger 2005). PLAIN: bilinear.
 #ifndef BICUBIC
 #define BICUBIC
-vec4 smoothTexel(sampler2D map, vec2 uv) {
+vec4 smoothTexel(sampler2D map, vec2 uv, int level) {
 #ifdef PLAIN
-  return textureLod(map, uv, 0.0);
+  return textureLod(map, uv, float(level));
 #else
-  vec2 size = vec2(textureSize(map, 0));
+  vec2 size = vec2(textureSize(map, level));
   vec2 at = uv * size - 0.5;
   vec2 f = fract(at);
   vec2 f2 = f * f, f3 = f2 * f;
@@ -16,8 +16,10 @@ vec4 smoothTexel(sampler2D map, vec2 uv) {
   vec2 low = w0 + w1, high = 1.0 - low;
   vec2 centre = at - f + 0.5;
   vec4 places = vec4(centre - 1.0 + w1 / low, centre + 1.0 + w3 / high) / size.xyxy;
-  return mix(mix(textureLod(map, places.zw, 0.0), textureLod(map, places.xw, 0.0), low.x),
-             mix(textureLod(map, places.zy, 0.0), textureLod(map, places.xy, 0.0), low.x), low.y);
+  return mix(mix(textureLod(map, places.zw, float(level)), textureLod(map, places.xw, float(level)), low.x),
+             mix(textureLod(map, places.zy, float(level)), textureLod(map, places.xy, float(level)), low.x), low.y);
 #endif
 }
+
+vec4 smoothTexel(sampler2D map, vec2 uv) { return smoothTexel(map, uv, 0); }
 #endif

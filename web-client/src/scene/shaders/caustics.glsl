@@ -1,4 +1,5 @@
 // Include: sunlight focused by the waves, from water/caustics_pass.ts.
+#include <bicubic>
 uniform sampler2D u_caustics;       // light relative to level water, at the floor and at kUpperLayer of its depth
 uniform float u_caustic_depth_m;    // of the floor
 uniform vec2 u_caustic_extent_m;
@@ -20,7 +21,10 @@ float focusedLight(vec2 crossed, float deep_m) {
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));
-  float fine = texture(u_caustic_ripples, crossed / u_caustic_tile_m + 0.5).r;
+  // The map's triangles have edges: from near they are smoothed, from afar the pixels do it.
+  vec2 tile_at = crossed / u_caustic_tile_m + 0.5;
+  vec2 texels = fwidth(tile_at) * vec2(textureSize(u_caustic_ripples, 1));
+  float fine = mix(smoothTexel(u_caustic_ripples, tile_at, 1).r, texture(u_caustic_ripples, tile_at).r, smoothstep(0.3, 1.0, max(texels.x, texels.y)));
   fine = 1.4 * fine / (1.0 + 0.4 * fine);
   return mix(1.0, focus * mix(1.0, fine, share), inside.x * inside.y);
 }

@@ -26,6 +26,8 @@ const kRippleFocus = 0.65;
 const kDepthPerRipple = 2;
 /** Share of a slope by which light turns that enters water. */
 const kTurn = 0.25;
+/** Texels of the ripples' tile over those of the square: triangles have edges, which its next mip level smooths (caustics.glsl). */
+const kTileTexels = 2;
 /** Direct light below which the focus cannot be seen. */
 const kLeastLight = 0.02;
 
@@ -60,7 +62,7 @@ export class CausticsPass implements Pass {
     const makeTarget = (sideCount: number): WebGLRenderTarget =>
       new WebGLRenderTarget(sideCount, sideCount, { format: RGFormat, type: HalfFloatType, minFilter: LinearMipmapLinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping, generateMipmaps: true, depthBuffer: false });
     this.target = makeTarget(field ? texelsCount : 1);
-    this.tile = makeTarget(isPool ? texelsCount : 1);
+    this.tile = makeTarget(isPool ? kTileTexels * texelsCount : 1);
     this.uniforms = {
       u_caustics: { value: this.target.texture },
       u_caustic_depth_m: { value: depthM },
@@ -70,7 +72,7 @@ export class CausticsPass implements Pass {
     };
     const lines = gridLines(cellsCount, false, false);
     this.geometry = makeGrid(lines, lines);
-    const makeScene = (defines: Record<string, number>, overM: Vector2, deepM: number, channel: readonly number[], gain = 1): Scene => {
+    const makeScene = (defines: Record<string, number>, overM: Vector2, deepM: number, channel: readonly number[], texels = texelsCount, gain = 1): Scene => {
       const uniforms = {
         ...sky.uniforms,
         ...sea?.uniforms,
@@ -80,7 +82,7 @@ export class CausticsPass implements Pass {
         u_reach: { value: kReachSides },
         u_gain: { value: gain },
         u_layer: { value: new Vector2().fromArray(channel) },
-        u_texel_m: { value: Math.sqrt(overM.x * overM.y) / texelsCount },
+        u_texel_m: { value: Math.sqrt(overM.x * overM.y) / texels },
       };
       const material = makeMaterial("caustics", uniforms, { defines, side: DoubleSide, depthTest: false, depthWrite: false, transparent: true, blending: AdditiveBlending, premultipliedAlpha: true });
       this.materials.push(material);
@@ -89,7 +91,7 @@ export class CausticsPass implements Pass {
       return new Scene().add(mesh);
     };
     this.layers = field ? kLayers.map(({ channel, depths }) => makeScene(sea && !isPool ? { RIPPLES: 1 } : {}, extentM, depths * depthM, channel)) : [];
-    if (isPool && sea) this.ripples = makeScene({ RIPPLES: 1, TILE: 1 }, new Vector2(tileM, tileM), depthM, [1, 1], (kRippleFocus * shrunk) / (kTurn * depthM * sea.rippleCurvaturePerM));
+    if (isPool && sea) this.ripples = makeScene({ RIPPLES: 1, TILE: 1 }, new Vector2(tileM, tileM), depthM, [1, 1], kTileTexels * texelsCount, (kRippleFocus * shrunk) / (kTurn * depthM * sea.rippleCurvaturePerM));
   }
 
   draw({ renderer }: Picture): void {
