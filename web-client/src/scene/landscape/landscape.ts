@@ -13,7 +13,7 @@ import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./te
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
 /** Of a bed in a tank, which is painted like a pool, and its cut sides. */
-export const kTankBed = [0.13, 0.42, 0.54] as const;
+export const kTankBed = [0.16, 0.45, 0.56] as const;
 const kPainted: Paint = [...kTankBed, 0.2];
 const kConcrete: Paint = [0.64, 0.61, 0.55, 0.35];
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */

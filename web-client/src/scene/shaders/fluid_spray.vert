@@ -22,7 +22,7 @@ const float kShade = 6.0;
 // Particles larger than this are drawn like those of this radius, m.
 const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
-const float kMist = 0.075, kMistRadii = 3.2;
+const float kMist = 0.03, kMistRadii = 2.6;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
 const float kFineRadii = 2.4, kLargeRadii = 1.6, kTrailS = 0.05;
 
