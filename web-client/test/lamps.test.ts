@@ -66,7 +66,7 @@ describe("the lamps of a picture", () => {
   });
 
   it.each([false, true])("hold the lighthouse of a sea without land, out of reach of its boats (plain: %s)", (plain) => {
-    const landscape = new Landscape({ sideM: 80, widthM: 80, depthM: 2, beaches: [] }, new BufferGeometry(), [], new RawShaderMaterial(), plain, true);
+    const landscape = new Landscape({ sideM: 80, widthM: 80, depthM: 2, beaches: [] }, new BufferGeometry(), [], new RawShaderMaterial(), plain, { isLandless: true });
     const lamps = new Lamps();
     landscape.collectLamps(lamps, 2);
     expect(lamps.lampsCount).toBe(1 + 2);

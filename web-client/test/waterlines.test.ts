@@ -36,7 +36,7 @@ describe("the water against hulls", () => {
 
   it("has a bow wave that grows with the speed, up to 1.2 draughts", () => {
     const heightM = (speedMps: number): number => shown(0.1, [{ speedMps }]).hulls.value[2]!.w;
-    expect(heightM(2)).toBeCloseTo((0.3 * 4) / 19.62, 6);
+    expect(heightM(2)).toBeCloseTo((0.18 * 4) / 19.62, 6);
     expect(heightM(-2)).toBe(heightM(2));
     expect(heightM(20)).toBeCloseTo(0.36, 6);
   });

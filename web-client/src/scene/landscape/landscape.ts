@@ -12,15 +12,17 @@ import { makeSkerry } from "./skerry";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** Of a bed in a tank, which is painted like a pool, and its cut sides. */
+/** Of a bed in a tank, which is tiled like a pool, and its cut sides. */
 export const kTankBed = [0.16, 0.45, 0.56] as const;
-const kPainted: Paint = [...kTankBed, 0.2];
-const kConcrete: Paint = [0.64, 0.61, 0.55, 0.35];
+const kConcrete = [0.64, 0.61, 0.55] as const;
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
-/** Returns the bed as a grid with vertical faces on all sides, down to the floor; `cellsCount`: along its longer side. */
-export function makeGroundGeometry(bed: Bed, cellsCount: number, isTank = false): BufferGeometry {
+/**
+ * Returns the bed as a grid with vertical faces on all sides, down to the floor; `cellsCount`: along its longer side. `tileSides`: of a tank,
+ * side of its tiles in sides of the water (tiles.frag).
+ */
+export function makeGroundGeometry(bed: Bed, cellsCount: number, tileSides?: number): BufferGeometry {
   const { minXM, maxXM, minZM, maxZM } = groundExtent(bed);
   const floorM = -bed.depthM - kFloorDropSides * longSideM(bed);
   const cellM = Math.max(maxXM - minXM, maxZM - minZM) / cellsCount;
@@ -33,10 +35,10 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number, isTank = false)
   // From near to far: rows go up and columns go right, seen from above.
   const rows = lines(maxZM, minZM).map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, isTank ? kPainted : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  builder.grid(rows, tileSides ? [...kTankBed, tileSides] : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
-  for (const edge of edges) builder.grid([edge.map(down), edge], isTank ? kConcrete : kCut);
+  for (const edge of edges) builder.grid([edge.map(down), edge], tileSides ? [...kConcrete, 1] : kCut);
   return builder.build();
 }
 
@@ -61,9 +63,9 @@ export class Landscape {
   private readonly lights: Light[] = [];
   private readonly geometries: BufferGeometry[] = [];
 
-  /** Takes ownership of `ground`. `material` is shared; the caller disposes it. `isLandless`: of an open sea, with a lighthouse and a sailing boat far away. */
-  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean, isLandless = false) {
-    this.add(ground, material);
+  /** Takes ownership of `ground`. Materials are shared; the caller disposes them. `isLandless`: of an open sea, with a lighthouse and a sailing boat far away. */
+  constructor(bed: Bed, ground: BufferGeometry, obstacles: readonly ObstacleInfo[], material: RawShaderMaterial, plain: boolean, { isLandless = false, groundMaterial = material } = {}) {
+    this.add(ground, groundMaterial);
     if (isLandless) {
       const { geometry, lampM } = makeSkerry(longSideM(bed), bed.depthM, plain);
       this.add(geometry, material);

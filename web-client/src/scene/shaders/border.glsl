@@ -1,13 +1,15 @@
 // Include, after sky.glsl: what the water of a pool or a tank meets. The garden around it, as the water mirrors it: the limits are those of
 // gardenReach() in landscape/garden.ts. And what stands in the water, at which it climbs.
 
-// Colour of shrubs and trees that are not on the screen, and the heights of directions in which they give way to the sky.
-const vec3 kShrubs = vec3(0.09, 0.15, 0.05);
-const vec2 kShrubsTop = vec2(0.06, 0.20);
+// Colour of shrubs and trees that are not on the screen, and the height over which they give way to the sky.
+const vec3 kShrubs = vec3(0.06, 0.11, 0.05);
+const float kTreetops = 0.07;
 
-// The sky in a direction of this height, behind shrubs and trees that are not on the screen.
-vec3 behindShrubs(vec3 sky, float up) {
-  return mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.4, 1.0, smoothstep(kShrubsTop.x, kShrubsTop.y, up)));
+// The sky in a direction behind shrubs and trees that are not on the screen: crowns of several sizes along the horizon.
+vec3 behindShrubs(vec3 sky, vec3 direction) {
+  float turn = atan(direction.z, direction.x);
+  float top = 0.15 + 0.05 * sin(5.0 * turn + 1.0) + 0.035 * sin(13.0 * turn) + 0.02 * sin(31.0 * turn + 2.0);
+  return mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.2, 1.0, smoothstep(top - kTreetops, top + kTreetops, direction.y)));
 }
 
 // Share of the picture in what is mirrored from this position on it. It falls slowly toward the edges: what is beyond them has the colours

@@ -71,7 +71,7 @@ const float kAiry = 0.08, kTorn = 0.1;
 const float kLaceRadii = 22.0;
 #ifdef GLASS
 const float kLitRadii = 26.0;  // height over the floor above which water is lit fully, in particle radii
-const float kWhiteness = 0.22;  // of broken water at a pane
+const float kWhiteness = 0.6;  // of broken water at a pane
 const float kLongestWaySides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
 const float kWhiteness = 0.012;  // of two sheets
@@ -182,7 +182,7 @@ vec3 lightAround(vec3 from, vec3 ray) {
   ray.y = abs(ray.y);
   vec3 light = skyAlong(ray);
 #ifndef WAVE
-  light = behindShrubs(light, ray.y);
+  light = behindShrubs(light, ray);
   vec2 extent_m = u_volume_max_m.xz - u_volume_min_m.xz;
   vec3 at = shownAt(atBorder(from, ray, extent_m));
   if (distanceAt(clamp(at.xy, 0.0, 1.0)) > 0.5 * at.z) light = mix(light, texture(u_behind, at.xy).rgb, pictureShare(at.xy) * step(0.0, at.z));

@@ -19,7 +19,7 @@ vec3 veiledSky(vec3 direction) {
   toward_sun *= toward_sun;
   sky += 0.08 * u_glow * toward_sun * toward_sun;
 #ifndef OPEN_SEA
-  sky = behindShrubs(sky, direction.y);
+  sky = behindShrubs(sky, direction);
 #endif
   return sky;
 }

@@ -27,7 +27,7 @@ const kSizeWidths = 6;
 const kPlinth = 5;
 
 /** Side of the tiles in a tank, and in a tray: a share of its size. */
-const kTileShare = 1 / 32;
+const kTileShare = 1 / 44;
 const kTrayTileShare = 1 / 20;
 /** Height of the walls as a share of that of the glass. */
 const kWallHeight = 0.75;
@@ -71,6 +71,11 @@ function isChannelOfParticles({ sideM, widthM, wave }: Pick<GreetingInfo, "sideM
 /** Returns the colour of the tiles on the floor. */
 export function tankTile(greeting: Pick<GreetingInfo, "sideM" | "widthM">): readonly [number, number, number] {
   return isTray(greeting) ? kTrayTile : kTile;
+}
+
+/** Returns the side of the tiles, in sides of the water (tiles.frag). */
+export function tileSides(size: Pick<TankSize, "sideM" | "widthM">): number {
+  return ((isTray(size) ? kTrayTileShare : kTileShare) * sizeM(size)) / Math.max(size.sideM, size.widthM);
 }
 
 /** Returns the height over the floor that the first view of a tank of particles shows. */
@@ -160,8 +165,7 @@ function makeGarden(size: TankSize, plain: boolean): { deck: BufferGeometry; pla
 function makeLining(size: TankSize): BufferGeometry {
   const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
   const gapM = 0.06 * kGlassThickness * sizeM(size);
-  const tileSides = ((isTray(size) ? kTrayTileShare : kTileShare) * sizeM(size)) / Math.max(size.sideM, size.widthM);
-  const paint: Paint = [...tankTile(size), tileSides];
+  const paint: Paint = [...tankTile(size), tileSides(size)];
   const lining = level(halfX, -gapM, halfZ, paint);
   if (!isTray(size)) addWalls(lining, [halfX + gapM, halfZ + gapM], -gapM, kWallHeight * size.heightM, true, paint);
   return lining.build();
@@ -176,6 +180,8 @@ export class GlassTank {
   /** What the tank stands on. */
   readonly group = new Group();
   readonly glass: Mesh<BufferGeometry, RawShaderMaterial>;
+  /** Of the tiles in the tank. */
+  readonly tiles: RawShaderMaterial;
   /** The tiles in the tank, and the deck. */
   private readonly floors: readonly Mesh<BufferGeometry, RawShaderMaterial>[];
   private readonly base: Mesh;
@@ -201,8 +207,9 @@ export class GlassTank {
     this.base = new Mesh(makeBaseGeometry(size), solid);
     const { deck, planted } = makeGarden(size, quality.plain);
     this.planted = new Mesh(planted, solid);
+    this.tiles = makeTiles(greeting, context);
     this.floors = [
-      new Mesh(makeLining(size), makeTiles(greeting, context)),
+      new Mesh(makeLining(size), this.tiles),
       new Mesh(deck, makeTiles(greeting, context, true)),
     ];
     for (const mesh of [this.glass, this.base, this.planted, ...this.floors]) mesh.frustumCulled = false;

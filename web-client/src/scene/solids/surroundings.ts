@@ -6,11 +6,11 @@ import type { SettingName, SideName } from "../../../client/codec/scene_info";
 import type { ViewedBox } from "../camera/framing";
 import { makeCoastGeometry } from "../landscape/coast";
 import { Landscape, makeGroundGeometry } from "../landscape/landscape";
-import { bedOf, isTank } from "../landscape/terrain";
+import { bedOf } from "../landscape/terrain";
 import type { Quality } from "../drawing/quality";
 import type { Lamps } from "../light/lamps";
 import { OpenSea } from "../sea/open_sea";
-import { GlassTank } from "./glass_tank";
+import { GlassTank, tileSides } from "./glass_tank";
 import { PoolBasin } from "./pool_basin";
 import type { SurroundingsContext, WaterEdge } from "./surroundings_context";
 
@@ -88,13 +88,9 @@ export class Surroundings {
     if (setting === "openSea" && wave && this.sea) {
       this.edge = { kind: "sea", sea: { ...this.sea.uniforms, u_haze_m: context.haze }, sides: wave.sides };
       const isLandless = obstacles.length === 0 && !hasBed && Object.values(wave.sides).every((kind) => kind !== "closed");
-      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, plain), obstacles, context.solid, plain, isLandless);
+      this.landscape = new Landscape(bed, makeCoastGeometry({ bed, sides: wave.sides }, cellsCount, plain), obstacles, context.solid, plain, { isLandless });
       this.solids.push(this.landscape.group);
       return;
-    }
-    if (obstacles.length > 0 || beaches.length > 0 || hasBed) {
-      this.landscape = new Landscape(bed, makeGroundGeometry(bed, cellsCount, isTank(greeting)), obstacles, context.solid, plain);
-      this.solids.push(this.landscape.group);
     }
     if (setting === "pool") {
       this.edge = { kind: "walls", ripples: this.sea?.uniforms };
@@ -105,6 +101,11 @@ export class Surroundings {
       this.tank = new GlassTank(greeting, context);
       this.solids.push(this.tank.group);
       this.glass = this.tank.glass;
+    }
+    if (obstacles.length > 0 || beaches.length > 0 || hasBed) {
+      const ground = makeGroundGeometry(bed, cellsCount, this.tank && tileSides(greeting));
+      this.landscape = new Landscape(bed, ground, obstacles, context.solid, plain, { groundMaterial: this.tank?.tiles });
+      this.solids.push(this.landscape.group);
     }
   }
 

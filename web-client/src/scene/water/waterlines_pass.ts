@@ -17,7 +17,7 @@ const kPeak = 1 / 0.9064 ** 2;
 /** Boats lie deeper than their draught by this share of their height: light hulls seemed to stand on the water. */
 const kDeeperHeights = 0.08;
 /** Height of the bow wave: this share of that at which water of the hull's speed comes to rest, U^2 / 2g, and at most so many draughts. */
-const kBowShare = 0.3;
+const kBowShare = 0.18;
 const kMostBowDraughts = 1.2;
 /** A hull without draught, or water without weight, would divide by 0. */
 const kLeastDraughtM = 1e-3;

@@ -46,7 +46,7 @@ interface Mist {
 /** Where water meets rock or falls over. */
 const kBreakerMist: Mist = { share: 0.2, radiiM: [0.12, 0.37] };
 /** Sheets of the finest drops. */
-const kBowMist: Mist = { share: 0.2, radiiM: [0.026, 0.06], livesS: [0.3, 0.7] };
+const kBowMist: Mist = { share: 0.35, radiiM: [0.026, 0.06], livesS: [0.2, 0.5] };
 
 /** Few drops are large: radii from 4 mm to 2 cm. */
 function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
@@ -113,7 +113,7 @@ export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surfac
 /** A hull throws spray above this speed, over sqrt(g L). */
 const kSprayFroude = 0.2;
 /** Per s and m of hull at a Froude number of 1 above it. */
-const kBowDropsPerMS = 1500;
+const kBowDropsPerMS = 500;
 const kWakeFrothPerMS = 70;
 /** Foam along the sides, which the bow throws out. */
 const kSideFrothPerMS = 90;
