@@ -4,8 +4,6 @@
 
 // Waves of this many texels of the ripples' tile are about as long as the shortest.
 const float kTexelsPerPixel = 2.4;
-// Tiles by which longer ripples move them: their crests are not straight.
-const float kBentPixels = 0.008;
 
 // Slopes of variance 1 (both axes together) of waves a few pixels long.
 vec2 pixelSlopes(vec2 at) {
@@ -15,12 +13,11 @@ vec2 pixelSlopes(vec2 at) {
   float low = floor(level);
   float share = level - low;
   vec2 scaled = at * exp2(-low) / u_tiles_m.y;
-  vec2 bend = kBentPixels * texture(u_ripples, at / u_tiles_m.y).gb * inversesqrt(max(u_slope_variances.y, 1e-6));
   // Two sizes, of independent waves: the squares of their shares add up to 1.
-  vec2 finer = textureLod(u_ripples, kTurnedRipples * scaled + bend + 0.37 * low, 0.0).gb * kTurnedRipples;
+  vec2 finer = textureLod(u_ripples, kTurnedRipples * scaled + 0.37 * low, 0.0).gb * kTurnedRipples;
   low += 1.0;
   scaled = 0.5 * scaled;
-  vec2 wider = textureLod(u_ripples, kTurnedRipples * scaled + bend + 0.37 * low, 0.0).gb * kTurnedRipples;
+  vec2 wider = textureLod(u_ripples, kTurnedRipples * scaled + 0.37 * low, 0.0).gb * kTurnedRipples;
   return (finer * (1.0 - share) + wider * share) * inversesqrt(max(u_slope_variances.y * (1.0 - 2.0 * share + 2.0 * share * share), 1e-6));
 }
 

@@ -79,7 +79,7 @@ const float kSpillM = 0.34;
 #define GLITTER
 #include <glitter>
 // The sky changes less from slope to slope than the sun does: it shows this share of a pixel's slopes.
-const float kSkyShare = 0.25, kGrazing = 0.13;
+const float kSkyShare = 0.2, kGrazing = 0.13;
 const float kCapillaryVariance = 0.012;  // in the lightest breeze (after Cox & Munk 1954)
 // Between walls the finest waves mirror the sun over so much more variance than they stir its mirror: glitter, not a few blots.
 #ifdef GLASS
