@@ -12,6 +12,9 @@ const float kReliefTiles = 0.02, kSteepest = 1.1;
 // Size of the billows of masses of foam, and the step over which their slope is taken, in tiles of the lace; slope per difference of the noise.
 const float kBillows = 1.7, kBillowStep = 0.12, kBillowSlope = 1.9;
 
+// Size of a tile of bubbles, in tiles of the lace, and how much they add to its height.
+const float kBubbles = 0.05, kTornByBubbles = 0.4;
+
 // Height of the lace, 0..1 around 0.5. `drawn_m`: by which the water has drawn it out, its fine parts less. `fresh`: 0 a network, 1 a heap.
 float laceAt(vec2 at, vec2 drawn_m, float fresh) {
   float wide = texture(u_noise, (at + drawn_m) / u_lace_m).r;
@@ -64,8 +67,11 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   float cover = min(foam, 1.0);
   float fresh = smoothstep(0.45, 0.9, cover);
   float lace = laceAt(at, drawn_m, fresh);
+  // Near the camera its edges come apart in bubbles.
+  float bubbly = 0.5 * (texture(u_noise, at.yx / (kBubbles * u_lace_m)).r + texture(u_noise, at / (0.37 * kBubbles * u_lace_m)).r) - 0.5;
+  float torn = lace + kTornByBubbles * bubbly * (1.0 - smoothstep(0.0, kBubbles, 0.6 * blur));
   // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-  float thick = clamp((lace - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
   float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
   // Bubbles below the surface reach further than the froth on it.
   water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));
