@@ -1,12 +1,12 @@
 // Include: a texture as a smooth surface through its texels (cubic B-spline), so that the grid does not show in slopes, foam and outlines.
-// Four bilinear samples stand for sixteen texels (Sigg & Hadwiger 2005). PLAIN: bilinear.
+// Four bilinear samples stand for sixteen texels (Sigg & Hadwiger 2005). `level`: of the mip levels. PLAIN: bilinear.
 #ifndef BICUBIC
 #define BICUBIC
 vec4 smoothTexel(sampler2D map, vec2 uv, int level) {
 #ifdef PLAIN
   return textureLod(map, uv, float(level));
 #else
-  vec2 size = vec2(textureSize(map, level));
+  vec2 size = vec2(max(textureSize(map, 0) >> level, 1));
   vec2 at = uv * size - 0.5;
   vec2 f = fract(at);
   vec2 f2 = f * f, f3 = f2 * f;

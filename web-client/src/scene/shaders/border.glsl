@@ -7,8 +7,7 @@ const float kTreetops = 0.07;
 
 // The sky in a direction behind shrubs and trees that are not on the screen: crowns of several sizes along the horizon.
 vec3 behindShrubs(vec3 sky, vec3 direction) {
-  float turn = atan(direction.z, direction.x);
-  float top = 0.15 + 0.05 * sin(5.0 * turn + 1.0) + 0.035 * sin(13.0 * turn) + 0.02 * sin(31.0 * turn + 2.0);
+  float top = 0.15 + 0.05 * sin(dot(direction.xz, vec2(5.0, 3.0))) + 0.035 * sin(dot(direction.xz, vec2(7.0, -11.0))) + 0.02 * sin(dot(direction.xz, vec2(23.0, 19.0)));
   return mix(kShrubs * (u_ambient_up + 0.5 * u_sun_light), sky, mix(0.2, 1.0, smoothstep(top - kTreetops, top + kTreetops, direction.y)));
 }
 

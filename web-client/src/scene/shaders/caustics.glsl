@@ -23,7 +23,7 @@ float focusedLight(vec2 crossed, float deep_m) {
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));
   // The map's triangles have edges: from near they are smoothed, from afar the pixels do it.
   vec2 tile_at = crossed / u_caustic_tile_m + 0.5;
-  vec2 texels = fwidth(tile_at) * vec2(textureSize(u_caustic_ripples, 1));
+  vec2 texels = 0.5 * fwidth(tile_at) * vec2(textureSize(u_caustic_ripples, 0));
   float fine = mix(smoothTexel(u_caustic_ripples, tile_at, 1).r, texture(u_caustic_ripples, tile_at).r, smoothstep(0.3, 1.0, max(texels.x, texels.y)));
   fine = 1.4 * fine / (1.0 + 0.4 * fine);
   return mix(1.0, focus * mix(1.0, fine, share), inside.x * inside.y);
