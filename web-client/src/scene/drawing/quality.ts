@@ -87,12 +87,12 @@ export const kTiers: Record<TierName, Tier> = {
   },
   high: {
     maxPixelRatio: 1.5, tankPixelRatio: 1.5, frameRateMaxHz: 60, surfaceCellsCount: 256, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 256, mirrorStepsCount: 18,
-    fluid: { cellsPerSpacing: 1.5, scale: 1, dropsCount: 14, floorTexelsCount: 512 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
+    fluid: { cellsPerSpacing: 1.5, scale: 1, dropsCount: 14, floorTexelsCount: 1024 }, whitewater: { capacityCount: 12_000, densityRatio: 1, frothTexelsCount: 512 },
     rain: { ringTexelsCount: 512, streaksCount: 10_000 }, caustics: { cellsCount: 192, texelsCount: 512 }, shadows: { texelsCount: 2048 },
   },
   highest: {
     maxPixelRatio: 2, tankPixelRatio: 2, frameRateMaxHz: 60, surfaceCellsCount: 384, samplesCount: 4, plain: false, sparing: false, fieldCountMax: 4096, seaTexelsCount: 512, mirrorStepsCount: 32,
-    fluid: { cellsPerSpacing: 2, scale: 1, dropsCount: 18, floorTexelsCount: 1024 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
+    fluid: { cellsPerSpacing: 2, scale: 1, dropsCount: 18, floorTexelsCount: 2048 }, whitewater: { capacityCount: 24_000, densityRatio: 1.5, frothTexelsCount: 1024 },
     rain: { ringTexelsCount: 512, streaksCount: 16_000 }, caustics: { cellsCount: 384, texelsCount: 1024 }, shadows: { texelsCount: 4096 },
   },
 };
