@@ -21,13 +21,14 @@ const kPadS = 6;
 const kRaceS = 17;
 const kBallS = 14;
 
-/** Lets the crowd play for a while. */
+/** Lets the crowd play for a while. The projector's camera moves with each picture. */
 async function play(page, crowd, seconds) {
   const until = page.tick + Math.round((60 * seconds) / kStride) * kStride;
   while (page.tick < until) {
     crowd.play();
     await sleep(kLinkMs);
     await page.goOn(kStride);
+    await page.glance();
   }
 }
 

@@ -197,6 +197,12 @@ export class DrivenPage {
     return Buffer.from(url.slice(url.indexOf(",") + 1), "base64");
   }
 
+  /** Draws the shown tick as a small picture that is not kept, for what follows from picture to picture. */
+  async glance() {
+    await this.#resize(true);
+    await this.#page.evaluate((timeS) => window.spindrift.stepped.draw(timeS), this.#shownTick / kTickRateHz);
+  }
+
   /** Draws the shown tick and returns the window, with what lies over the canvas, as a PNG file. */
   async windowPicture() {
     await this.picture();
