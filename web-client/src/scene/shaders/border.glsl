@@ -1,7 +1,7 @@
 // Include, after sky.glsl: what the water of a pool or a tank meets. The garden around it, as the water mirrors it: the limits are those of
 // gardenReach() in landscape/garden.ts. And what stands in the water, at which it climbs.
 
-// Colour of shrubs and trees that are not on the screen, and the height over which they give way to the sky.
+// Colour of shrubs and trees that are not on the screen, and half the height of the fade from their tops to the sky.
 const vec3 kShrubs = vec3(0.06, 0.11, 0.05);
 const float kTreetops = 0.07;
 

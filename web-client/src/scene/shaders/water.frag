@@ -227,7 +227,7 @@ void main() {
 #ifndef SKIRT
   if (dot(bending, ray) > -0.02) bending = normal;
   vec3 bent = refract(ray, bending, 0.75);
-  // By the distance of what is behind at most: hulls continue below their waterline.
+  // At most by half of the distance of what is behind, or hulls would end at their waterline.
   float reach_m = min(0.5 * min(way_m, max(solid_m, 0.0)), 0.45);
 #ifdef SHORE
   reach_m = min(reach_m, deep_m);

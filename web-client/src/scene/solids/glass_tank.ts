@@ -1,5 +1,5 @@
-// A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table. Inside, its walls are tiled, and seen from their
-// inner side alone: through the pane before it the water stands before the tiles of the far walls.
+// A glass tank or flume in a garden, on a deck of stone; a small tray stands on a table. A tank's walls are tiled, and only
+// their inner side is drawn: one looks through the near panes at the water, with the far walls behind it.
 import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlphaFactor, Vector3, type BufferGeometry, type RawShaderMaterial } from "three";
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
@@ -40,7 +40,7 @@ const kTableM = 0.74;
 const kTableBesideM = 0.22;
 const kPlankM = 0.09;
 
-/** The light on the floor of a tray is its waves' picture: its tiles are darker. */
+/** Albedo of the tiles; darker in a tray, on whose floor the light of its waves is to be seen. */
 const kTile = [0.52, 0.71, 0.75] as const;
 const kTrayTile = [0.20, 0.50, 0.60] as const;
 const kBase: Paint = [0.42, 0.43, 0.42, 0.6];
