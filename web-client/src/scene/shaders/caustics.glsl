@@ -21,10 +21,13 @@ float focusedLight(vec2 crossed, float deep_m) {
   float share = clamp(deep_m / u_caustic_depth_m, 0.0, 1.0);
   float focus = share < kUpperLayer ? mix(1.0, layers.g, share / kUpperLayer) : mix(layers.g, layers.r, (share - kUpperLayer) / (1.0 - kUpperLayer));
   vec2 inside = smoothstep(0.5, 0.485, abs(uv - 0.5));
-  // The map's triangles have edges: from near they are smoothed, from afar the pixels do it.
-  vec2 tile_at = crossed / u_caustic_tile_m + 0.5;
-  vec2 texels = 0.5 * fwidth(tile_at) * vec2(textureSize(u_caustic_ripples, 0));
-  float fine = mix(smoothTexel(u_caustic_ripples, tile_at, 1).r, texture(u_caustic_ripples, tile_at).r, smoothstep(0.3, 1.0, max(texels.x, texels.y)));
-  fine = 1.4 * fine / (1.0 + 0.4 * fine);
+  float fine = 1.0;
+  if (textureSize(u_caustic_ripples, 0).x > 1) {  // of pools alone
+    // The map's triangles have edges: from near they are smoothed, from afar the pixels do it.
+    vec2 tile_at = crossed / u_caustic_tile_m + 0.5;
+    vec2 texels = 0.5 * fwidth(tile_at) * vec2(textureSize(u_caustic_ripples, 0));
+    fine = mix(smoothTexel(u_caustic_ripples, tile_at, 1).r, texture(u_caustic_ripples, tile_at).r, smoothstep(0.3, 1.0, max(texels.x, texels.y)));
+    fine = 1.4 * fine / (1.0 + 0.4 * fine);
+  }
   return mix(1.0, focus * mix(1.0, fine, share), inside.x * inside.y);
 }
