@@ -1,9 +1,10 @@
 // A repeating noise tile ("lace"): cells with bright walls over cloudy noise, every brightness equally frequent. Foam shows where the
 // tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it.
-import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RepeatWrapping, UnsignedByteType } from "three";
+import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RGFormat, RepeatWrapping, UnsignedByteType } from "three";
 
 import { smooth } from "../maths/interpolate";
 import { hash } from "../maths/random";
+import { makeLeaves } from "./leaves";
 
 const kSide = 256;
 
@@ -71,10 +72,16 @@ export function makeLace(side: number): Uint8Array<ArrayBuffer> {
 }
 
 let lace: Uint8Array<ArrayBuffer> | undefined;
+let laceAndLeaves: Uint8Array<ArrayBuffer> | undefined;
 
-/** `plain`: without mip levels, between which software renderers would interpolate at twice the cost. */
+/** Green: the tile of leaves. `plain`: no leaves, and no mip levels, between which software renderers would interpolate at twice the cost. */
 export function makeNoiseTexture(plain: boolean): DataTexture {
-  const texture = new DataTexture((lace ??= makeLace(kSide)), kSide, kSide, RedFormat, UnsignedByteType);
+  const red = (lace ??= makeLace(kSide));
+  if (!plain && !laceAndLeaves) {
+    const leaves = makeLeaves(kSide);
+    laceAndLeaves = Uint8Array.from({ length: 2 * red.length }, (_, n) => (n % 2 ? leaves : red)[n >> 1]!);
+  }
+  const texture = plain ? new DataTexture(red, kSide, kSide, RedFormat, UnsignedByteType) : new DataTexture(laceAndLeaves, kSide, kSide, RGFormat, UnsignedByteType);
   texture.wrapS = texture.wrapT = RepeatWrapping;
   texture.magFilter = LinearFilter;
   texture.minFilter = plain ? LinearFilter : LinearMipmapLinearFilter;

@@ -12,10 +12,14 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
 /** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
-const kCells = { garden: [10, 18, 0.35], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
+const kCells = { garden: [8, 14, 0.35], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
+/** Sprigs of a clump, which tear its outline, and how far they reach, relative to the ellipsoid. */
+const kSprigsCount = 36;
+const kSprigReach = [1.0, 1.22] as const;
 
 export class Foliage {
   private readonly random = makeFastRandom(4242);
+  private readonly sprigs = makeFastRandom(99);
 
   constructor(readonly builder: MeshBuilder, private readonly cells: keyof typeof kCells) {}
 
@@ -43,6 +47,20 @@ export class Foliage {
     });
     const rows = lumps.map((row, r) => row.map((lump, c) => onEllipsoid(middle, half, (Math.PI * r) / rowsCount, (-2 * Math.PI * c) / columnsCount, mix(...kSizes, lump))));
     this.builder.grid(rows, (r, c) => this.paint(leaves, mix(...kBrightness, lumps[r]![c]!) * (0.8 - 0.4 * Math.cos((Math.PI * r) / rowsCount))));
+    if (!this.plain) for (let n = 0; n < kSprigsCount; ++n) this.sprig(middle, half, leaves);
+  }
+
+  /** Adds a sprig that sticks out of an ellipsoid and is lit as the ellipsoid is there. */
+  private sprig(middle: Point, half: Point, leaves: Leaves): void {
+    const random = this.sprigs;
+    const [upRad, roundRad, turnRad] = [Math.acos(mix(-0.9, 0.6, random())), 2 * Math.PI * random(), 2 * Math.PI * random()];
+    const unit = (up: number): Point => onEllipsoid([0, 0, 0], [1, 1, 1], up, roundRad, 1);
+    const [out, up] = [unit(upRad), unit(upRad + Math.PI / 2)];
+    const around: Point = [-Math.sin(roundRad), 0, Math.cos(roundRad)];
+    const corner = (size: number, wide: number): Point => out.map((each, k) => middle[k]! + half[k]! * (size * each + wide * (Math.cos(turnRad) * up[k]! + Math.sin(turnRad) * around[k]!))) as unknown as Point;
+    const tip = mix(...kSprigReach, random());
+    const paint = this.paint(leaves, 0.8 - 0.4 * Math.cos(upRad), random);
+    this.builder.leaf(corner(0.7, -0.26), corner(0.7, 0.26), corner(tip, 0.12), corner(tip, -0.12), out, paint);
   }
 
   /** Adds a crown of clumps. */
@@ -85,9 +103,9 @@ export class Foliage {
     }
   }
 
-  private paint([first, second]: Leaves, bright: number): Paint {
-    const share = this.random();
-    const by = bright * this.between(0.72, 1.28);
+  private paint([first, second]: Leaves, bright: number, random = this.random): Paint {
+    const share = random();
+    const by = bright * mix(0.72, 1.28, random());
     return first.map((each, k) => (k < 3 ? by : 1) * mix(each, second[k]!, share)) as unknown as Paint;
   }
 }

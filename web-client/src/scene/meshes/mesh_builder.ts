@@ -19,6 +19,8 @@ export class MeshBuilder {
   private readonly index: number[] = [];
   /** Vertices at one position that share a normal. */
   private readonly welds: [number, number][] = [];
+  /** Normals that do not follow from the triangles, from a vertex on. */
+  private readonly leaves: { first: number; normal: Point }[] = [];
 
   /**
    * Adds a grid of points, smooth inside and sharp at its edges. Seen from outside, rows go up and columns go right. `keeps`: leaves out
@@ -69,6 +71,12 @@ export class MeshBuilder {
     return this.grid([[a, b], [d, c]], paint);
   }
 
+  /** Adds a flat face that is seen from both sides and lit as if it faced `normal`, of length 1. */
+  leaf(a: Point, b: Point, c: Point, d: Point, normal: Point, paint: Paint): this {
+    this.leaves.push({ first: this.positions.length / 3, normal });
+    return this.quad(a, b, c, d, paint).quad(d, c, b, a, paint);
+  }
+
   /** Adds an upright block round (x, z) between two heights; top and bottom have half sizes along x and z. */
   block(xM: number, zM: number, low: { yM: number; halfX: number; halfZ: number }, high: { yM: number; halfX: number; halfZ: number }, paint: Paint, topPaint = paint): this {
     const corner = (level: typeof low, sx: number, sz: number): Point => [xM + sx * level.halfX, level.yM, zM + sz * level.halfZ];
@@ -107,6 +115,7 @@ export class MeshBuilder {
       if (length === 0) continue;
       for (const vertex of [a, b]) normals.setXYZ(vertex, x / length, y / length, z / length);
     }
+    for (const { first, normal } of this.leaves) for (let n = 0; n < 8; ++n) normals.setXYZ(first + n, ...normal);
     // A vertex of left out triangles only.
     for (let n = 0; n < normals.count; ++n) if (normals.getX(n) === 0 && normals.getY(n) === 0 && normals.getZ(n) === 0) normals.setY(n, 1);
   }

@@ -66,7 +66,8 @@ void main() {
     vec3 grain_at = v_own * vec3(grain < 0.8 ? 0.15 : 1.0, 1.0, 1.0);
     float grain_m = kGrainSizes;
 #else
-    vec3 steep = abs(normal);
+    // Sprigs are not lit as they face (foliage.ts).
+    vec3 steep = abs(grain > kLeavesGrain ? cross(dFdx(v_world), dFdy(v_world)) : normal);
     vec3 grain_at = v_world;
     float grain_m = u_grain_m;
 #endif
@@ -82,12 +83,13 @@ void main() {
       albedo *= (0.7 + 0.6 * spots) * mix(0.55, 1.0, smoothstep(0.0, 0.02, crack));
     }
     if (grain > kLeavesGrain) {
-      // Leaves before the shade between them: the outline is torn where one looks along it.
-      vec2 leaves_at = at / (kLeavesTiles * grain_m);
-      float leaves = smoothstep(0.3, 0.7, 0.6 * texture(u_noise, leaves_at).r + 0.4 * texture(u_noise, leaves_at.yx / 2.3).r);
+      // Leaves over the shade between them: the outline is torn where one looks along it.
+      vec2 leaf_at = at / (kLeavesTiles * grain_m);
+      float leaf = texture(u_noise, leaf_at).g;
+      float bunch = texture(u_noise, leaf_at.yx / 4.7).g;
       vec3 toward = normalize(u_camera_m - v_world);
-      if (dot(normal, toward) < 0.45 * (0.85 - leaves)) discard;
-      albedo *= 0.45 + 1.1 * leaves;
+      if (dot(normal, toward) < 0.75 * (0.85 - 0.5 * leaf - 0.65 * bunch)) discard;
+      albedo *= (0.25 + 1.7 * leaf) * (0.45 + 1.25 * bunch);
     }
     if (u_haze_m > 0.0 && grain < kLawnGrain && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
       // What grows on open land: scrub on dry sand, and woods and hedges on grass.
