@@ -6,7 +6,9 @@ flat in float v_radius_m;
 layout(location = 0) out vec4 froth;
 
 // Reach of foam and shade around a hull, m, and the light that is missing at its side.
-const float kFoamM = 0.22, kShadeM = 0.45, kShade = 0.55;
+const float kFoamM = 0.3, kShadeM = 0.45, kShade = 0.55;
+// How far the wash astern reaches behind a fast hull, m, and its width in beams.
+const float kWashM = 0.5, kWashBeams = 0.5;
 
 // Distance from the waterline of a hull, m; below 0 inside. `at_m`: from its middle.
 float outsideHull(vec2 at_m) {
@@ -21,8 +23,11 @@ float outsideHull(vec2 at_m) {
 void main() {
   vec2 at = gl_PointCoord * 2.0 - 1.0;
   if (v_hull.z > 0.0) {
-    float outside_m = outsideHull(vec2(at.x, -at.y) * v_radius_m);
-    froth = vec4(v_strength * (1.0 - smoothstep(0.0, kFoamM, outside_m)), kShade * (1.0 - smoothstep(-0.1, kShadeM, outside_m)), 0.0, 1.0);
+    vec2 at_m = vec2(at.x, -at.y) * v_radius_m;
+    float outside_m = outsideHull(at_m);
+    vec2 astern_m = vec2(-dot(at_m, v_hull.xy) - v_hull.z, abs(dot(at_m, vec2(-v_hull.y, v_hull.x))));
+    float wash = v_strength * v_strength * step(-0.2, astern_m.x) * (1.0 - smoothstep(0.3, 1.0, astern_m.x / kWashM)) * (1.0 - smoothstep(0.5, 1.1, astern_m.y / v_hull.w));
+    froth = vec4(max(v_strength * (1.0 - smoothstep(0.0, kFoamM, outside_m)), wash), kShade * (1.0 - smoothstep(-0.1, kShadeM, outside_m)), 0.0, 1.0);
     return;
   }
   float away = dot(at, at);
