@@ -25,7 +25,7 @@ const kShots = {
   breaking_wave: { tick: 111 },
   breaking_wave_particles: { tick: 500 },
   breaking_wave_wave: { tick: 105 },
-  dam_break: { tick: 106 },
+  dam_break: { tick: 110 },
   flume: { tick: 927 },
   flotsam: { tick: 300 },
   harbor: { tick: 1410 },

@@ -6,14 +6,13 @@ import { kLampColors, type Lamps } from "../light/lamps";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { makeBreakwater, type LightKind } from "./breakwater_mesh";
-import { bedPaint } from "./paints";
+import { bedPaint, kTankTile } from "./paints";
 import { makeRockGeometry } from "./rock_mesh";
 import { makeSkerry } from "./skerry";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** Of a bed in a tank, which is tiled like a pool, and its cut sides. */
-export const kTankBed = [0.16, 0.45, 0.56] as const;
+/** The cut sides of a bed in a tank. */
 const kConcrete = [0.64, 0.61, 0.55] as const;
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
@@ -35,7 +34,7 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number, tileSides?: num
   // From near to far: rows go up and columns go right, seen from above.
   const rows = lines(maxZM, minZM).map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, tileSides ? [...kTankBed, tileSides] : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  builder.grid(rows, tileSides ? [...kTankTile, tileSides] : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
   for (const edge of edges) builder.grid([edge.map(down), edge], tileSides ? [...kConcrete, 1] : kCut);

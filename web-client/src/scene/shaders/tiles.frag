@@ -1,6 +1,6 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// PLAIN: also for the display. DECK: around a pool or a tank, slabs of natural stone that are wet near the water.
+// PLAIN: also for the display. DECK: around a pool or a tank, slabs of natural stone; WET: near the water they are wet.
 // CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>
@@ -51,7 +51,11 @@ vec4 stoneAt(vec3 albedo, vec2 at, float tile_m, float out_m) {
   // Slabs of one quarry are warmer, cooler, lighter and darker.
   albedo *= mix(vec3(1.10, 1.0, 0.88), vec3(0.90, 0.97, 1.04), cellHash(slab + 41.0)) * (0.86 + 0.28 * cellHash(slab + 7.0));
   albedo *= 1.0 + 0.22 * clouds + 0.30 * grain;
+#ifdef WET
   float wet = 1.0 - smoothstep(0.1, 0.75, out_m / kWetM + 1.1 * clouds + 0.3 * grain);
+#else
+  const float wet = 0.0;
+#endif
   return vec4(albedo * (1.0 - 0.36 * wet), wet);
 }
 #endif

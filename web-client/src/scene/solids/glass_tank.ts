@@ -4,6 +4,7 @@ import { CustomBlending, DoubleSide, FrontSide, Group, Mesh, OneFactor, SrcAlpha
 
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import { addGarden, deckOf, kTeak } from "../landscape/garden";
+import { kTankTile } from "../landscape/paints";
 import { castsShadow } from "../meshes/casters";
 import { MeshBuilder, type Paint } from "../meshes/mesh_builder";
 import { addRod, addWalls } from "../meshes/shapes";
@@ -40,9 +41,6 @@ const kTableM = 0.74;
 const kTableBesideM = 0.22;
 const kPlankM = 0.09;
 
-/** Albedo of the tiles; darker in a tray, on whose floor the light of its waves is to be seen. */
-const kTile = [0.52, 0.71, 0.75] as const;
-const kTrayTile = [0.20, 0.50, 0.60] as const;
 const kBase: Paint = [0.42, 0.43, 0.42, 0.6];
 // Of glass only the last number counts: 0 a pane, 1 a cut edge (glass.frag).
 const kPane: Paint = [1, 1, 1, 0];
@@ -66,11 +64,6 @@ function isTray({ sideM, widthM }: Pick<TankSize, "sideM" | "widthM">): boolean 
 
 function isChannelOfParticles({ sideM, widthM, wave }: Pick<GreetingInfo, "sideM" | "widthM" | "wave">): boolean {
   return !wave && Math.max(sideM, widthM) > kChannelWidths * Math.min(sideM, widthM);
-}
-
-/** Returns the colour of the tiles on the floor. */
-export function tankTile(greeting: Pick<GreetingInfo, "sideM" | "widthM">): readonly [number, number, number] {
-  return isTray(greeting) ? kTrayTile : kTile;
 }
 
 /** Returns the side of the tiles, in sides of the water (tiles.frag). */
@@ -125,7 +118,7 @@ function addTable(builder: MeshBuilder, halfX: number, halfZ: number, footM: num
 /** The painted walls of a tray, in its glass. */
 function addTrayWalls(builder: MeshBuilder, { sideM, widthM }: TankSize, topM: number): void {
   const halfM = kGlassThickness * sizeM({ sideM, widthM });
-  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTrayTile, 0.2]);
+  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTankTile, 0.2]);
   for (const side of [-1, 1]) {
     wall(0, side * (widthM / 2 + 1.05 * halfM), sideM / 2 + 2.05 * halfM, halfM);
     wall(side * (sideM / 2 + 1.05 * halfM), 0, halfM, widthM / 2);
@@ -165,7 +158,7 @@ function makeGarden(size: TankSize, plain: boolean): { deck: BufferGeometry; pla
 function makeLining(size: TankSize): BufferGeometry {
   const [halfX, halfZ] = [size.sideM / 2, size.widthM / 2];
   const gapM = 0.06 * kGlassThickness * sizeM(size);
-  const paint: Paint = [...tankTile(size), tileSides(size)];
+  const paint: Paint = [...kTankTile, tileSides(size)];
   const lining = level(halfX, -gapM, halfZ, paint);
   if (!isTray(size)) addWalls(lining, [halfX + gapM, halfZ + gapM], -gapM, kWallHeight * size.heightM, true, paint);
   return lining.build();
@@ -210,7 +203,7 @@ export class GlassTank {
     this.tiles = makeTiles(greeting, context);
     this.floors = [
       new Mesh(makeLining(size), this.tiles),
-      new Mesh(deck, makeTiles(greeting, context, true)),
+      new Mesh(deck, makeTiles(greeting, context, "dry")),
     ];
     for (const mesh of [this.glass, this.base, this.planted, ...this.floors]) mesh.frustumCulled = false;
     castsShadow(this.base);

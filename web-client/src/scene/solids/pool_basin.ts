@@ -92,7 +92,7 @@ export class PoolBasin {
     const { sideM, widthM, waterExtents } = greeting;
     const { depthM } = waterExtents;
     this.geometries = makeBasinGeometries(sideM, widthM, depthM, context.quality.plain);
-    this.materials = [makeTiles(greeting, context), makeTiles(greeting, context, true)];
+    this.materials = [makeTiles(greeting, context), makeTiles(greeting, context, "wet")];
     const [tiled, deck] = [new Mesh(this.geometries.tiled, this.materials[0]), new Mesh(this.geometries.deck, this.materials[1])];
     const planted = new Mesh(this.geometries.planted, context.solid);
     castsShadow(tiled);

@@ -18,7 +18,7 @@ import { Floaters } from "../floaters/floaters";
 import type { BodyPose } from "../../../client/codec/bodies";
 import type { FloaterPose } from "../../../client/codec/floaters";
 import type { StreamedFrames } from "../frames/streamed_frames";
-import { kTankBed } from "../landscape/landscape";
+import { kTankTile } from "../landscape/paints";
 import { bedOf, isTank } from "../landscape/terrain";
 import type { Lamps } from "../light/lamps";
 import type { Sky } from "../light/sky";
@@ -29,7 +29,6 @@ import { MeshBuilder } from "../meshes/mesh_builder";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
 import { GaugePoles, type Pole } from "./gauge_poles";
-import { tankTile } from "./glass_tank";
 import { Surroundings } from "./surroundings";
 
 /** Size of the grain on stone and sand: a share of the side within bounds. */
@@ -38,10 +37,11 @@ const kGrainLimitsM = [0.5, 4] as const;
 /** Stone is wet up to this share of the depth above the still water. */
 const kWetDepths = 0.08;
 
-const kFloors: Record<Exclude<GreetingInfo["setting"], "glassTank">, readonly [number, number, number]> = {
+const kFloors: Record<GreetingInfo["setting"], readonly [number, number, number]> = {
   openSea: [0.224, 0.205, 0.156],
   pool: [0.34, 0.63, 0.69],
-  flume: kTankBed,
+  flume: kTankTile,
+  glassTank: kTankTile,
 };
 
 /** Where a picture has the solids: in the textures, for passes that look through or around them, or on the canvas, for the display. */
@@ -98,7 +98,7 @@ export class SolidsPass implements Pass {
     warmUp: WarmUp,
   ) {
     const { sideM, widthM } = greeting;
-    this.floorAlbedo.set(...(greeting.setting === "glassTank" ? tankTile(greeting) : kFloors[greeting.setting]));
+    this.floorAlbedo.set(...kFloors[greeting.setting]);
     const { caustics, shadow, shore } = (this.sunlight = sunlight);
     const [leastM, mostM] = kGrainLimitsM;
     const uniforms = {

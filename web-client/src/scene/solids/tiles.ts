@@ -5,8 +5,8 @@ import type { GreetingInfo } from "../../../client/codec/greeting";
 import { makeMaterial } from "../shaders/materials";
 import type { SurroundingsContext } from "./surroundings_context";
 
-/** `isDeck`: of natural stone. Returns a material for geometries whose fourth number of a colour is the side of a tile, in sides of the water. The caller disposes it. */
-export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "widthM">, { sky, noise, field, caustics, shadow, quality }: SurroundingsContext, isDeck = false): RawShaderMaterial {
+/** `deck`: of natural stone, wet where water splashes on it. Returns a material for geometries whose fourth number of a colour is the side of a tile, in sides of the water. The caller disposes it. */
+export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "widthM">, { sky, noise, field, caustics, shadow, quality }: SurroundingsContext, deck?: "wet" | "dry"): RawShaderMaterial {
   const uniforms = {
     ...sky.uniforms,
     ...caustics,
@@ -18,5 +18,5 @@ export function makeTiles({ sideM, widthM }: Pick<GreetingInfo, "sideM" | "width
     u_level_m: { value: 0 },
     u_has_water: { value: (field ?? caustics) !== undefined },
   };
-  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : isDeck && { DECK: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
+  return makeMaterial("tiles", uniforms, { defines: { ...(quality.plain ? { PLAIN: 1 } : deck && { DECK: 1 }), ...(deck === "wet" && { WET: 1 }), ...(caustics && { CAUSTICS: 1 }), ...(shadow && { SHADOWS: 1 }) } });
 }
