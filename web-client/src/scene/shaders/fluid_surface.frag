@@ -43,6 +43,7 @@ uniform sampler2D u_froth;
 uniform float u_lace_m;        // size of one tile of the foam's lace
 #include <foam>
 #endif
+#include <fluid_liquid>
 layout(location = 0) out vec4 color;
 
 const float kFromAir = 0.75, kFromWater = 1.333;  // ratios of refractive indices
@@ -51,27 +52,20 @@ const float kStepCells = 0.85;
 // Where no kernel reaches, the surface is at least so many particle radii away.
 const float kEmptyRadii = 3.6;
 const int kMostSteps = 256, kMostStepsInside = 96;
-// Halvings of a step, to find the surface; parts of the ray in the liquid, between reflections.
-const int kHalvings = 5, kParts = 3;
-// White water is torn: its density less that of the air in it, and how far that varies.
+// Parts of the ray in the liquid, between reflections.
+const int kParts = 3;
 // Whiteness: light that it scatters over one particle radius. Sunlight on white water that faces away from the sun, and toward it.
 #ifdef WAVE
-const float kSlopeRadii = 2.0;         // slopes are taken over so much to each side
 const float kRoom = 0.25;              // share of the way to the picture's edge by which what is behind may be shifted
-const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drops
-const float kLaceRadii = 31.0;         // one tile of the noise
 const float kWhiteness = 0.14;
 const vec2 kFrothSun = vec2(0.0, 1.05);
 // Thickness of the mist around white water, as density, that hides what is behind it over one particle radius.
 const float kMist = 0.25;
 #else
-const float kSlopeRadii = 3.0;
 const float kRoom = 1.0;
-const float kAiry = 0.08, kTorn = 0.1;
-const float kLaceRadii = 22.0;
 #ifdef GLASS
 const float kLitRadii = 26.0;  // height over the floor above which water is lit fully, in particle radii
-const float kWhiteness = 0.6;  // of broken water at a pane
+const float kWhiteness = 0.9;  // of broken water at a pane
 const float kLongestWaySides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
 const float kWhiteness = 0.012;  // of two sheets
@@ -83,6 +77,8 @@ const vec2 kFrothSun = vec2(0.6, 1.2);       // little of it, which light passes
 
 const vec3 kFroth = vec3(0.93, 0.96, 0.97);
 const float kAwayLit = 0.5, kTowardLit = 1.1;
+// Normals of steep water that face the eye by less than this cosine are turned (seenNormal).
+const float kSeenFrom = 0.3;
 // Mip level of what is mirrored: clouds are blurred.
 const float kMirrorLevel = 4.0;
 
@@ -102,59 +98,10 @@ float overWave(vec3 at_m) {
 #endif
 }
 
-// Noise; `at`: in particle radii.
-float lumps(vec3 at) {
-  at /= kLaceRadii;
-  return texture(u_noise, at.xy + 0.37 * at.z).r + texture(u_noise, at.zy + 0.37 * at.x).r - 0.5;
-}
-
-// Density over that of the surface, and its white share: white water is torn.
-vec2 liquidAt(vec3 at_m) {
-#ifndef WAVE
-  // Level toward the glass, from which the particles keep away.
-  at_m.xz = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
-#endif
-  vec2 density = volumeAt(at_m);
-  float white = density.g / max(density.r, 1e-3);
-  if (density.r > 0.6 * kSurface && white > 0.05) {
-    float torn = lumps(at_m / u_radius_m);
-    density.r -= white * (kAiry + kTorn * torn);
-#ifndef WAVE
-    white *= clamp(0.85 + 1.1 * torn, 0.0, 1.0);
-#endif
-  }
-  return vec2(density.r - kSurface, white);
-}
-
-// Where the ray crosses the surface between two lengths of which one lies in the liquid.
-float crossing(vec3 from, vec3 ray, float a_m, float b_m) {
-  bool is_end_inside = liquidAt(from + ray * b_m).x > 0.0;
-  for (int i = 0; i < kHalvings; ++i) {
-    float middle_m = 0.5 * (a_m + b_m);
-    if ((liquidAt(from + ray * middle_m).x > 0.0) == is_end_inside) b_m = middle_m;
-    else a_m = middle_m;
-  }
-  return b_m;
-}
-
-float densityAt(vec3 at_m) {
-#ifdef WAVE
-  return volumeAt(at_m).r;
-#else
-  return liquidAt(at_m).x;
-#endif
-}
-
-vec3 normalAt(vec3 at_m) {
-  vec2 apart_m = vec2(kSlopeRadii * u_radius_m, 0.0);
-  vec3 slope = vec3(densityAt(at_m + apart_m.xyy) - densityAt(at_m - apart_m.xyy), densityAt(at_m + apart_m.yxy) - densityAt(at_m - apart_m.yxy), densityAt(at_m + apart_m.yyx) - densityAt(at_m - apart_m.yyx));
-  return -slope / max(length(slope), 1e-5);
-}
-
-// The normal, turned as far as the eye sees its front.
+// The normal as far as the eye sees it; level water is seen at low angles, too.
 vec3 facingEye(vec3 normal, vec3 ray) {
-  float back = dot(normal, ray) + 0.05;
-  return back > 0.0 ? normalize(normal - back * ray) : normal;
+  float from = mix(kSeenFrom, min(kSeenFrom, 0.9 * max(-ray.y, 0.03)), clamp(normal.y, 0.0, 1.0));
+  return seenNormal(normal, ray, from, 0.5 * from);
 }
 
 // Where the picture shows a position, and how far away it is along the axis of the view.
@@ -193,6 +140,10 @@ vec3 lightAround(vec3 from, vec3 ray) {
 #endif
   return light;
 }
+
+#ifndef WAVE
+vec3 floorLight(vec3 at_m) { return texture(u_floor_light, vec2(1.0, -1.0) * clamp(at_m.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb; }
+#endif
 
 void main() {
   vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
@@ -256,6 +207,7 @@ void main() {
   vec3 from = surface, bent = refract(ray, bending, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
   bool is_floor = false;
+  float caught = 0.0;  // share of the light that is reflected back where the rest leaves
   for (int part = 0; part < kParts; ++part) {
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
@@ -284,8 +236,12 @@ void main() {
 #endif
     leaving = refract(bent, -outward, kFromWater);
     past_m = max(solid_m - at_m - length_m, 0.5 * u_radius_m);
-    if (dot(leaving, leaving) > 0.0) break;
+    if (dot(leaving, leaving) > 0.0) {
+      caught = waterFresnel(clamp(dot(leaving, outward), 0.0, 1.0));
+      break;
+    }
     past_m = 0.0;
+    caught = 1.0;
     bent = leaving = reflect(bent, outward);
     from += 0.2 * u_radius_m * bent;
   }
@@ -329,9 +285,9 @@ void main() {
   // The rim of a pool does not stand in it.
   vec2 inside_m = min(u_volume_max_m.xz, -u_volume_min_m.xz) - abs(u_camera_m + (from - u_camera_m) * (shown_m / at_floor.z)).xz;
   is_shown = is_shown && min(inside_m.x, inside_m.y) > u_radius_m;
-  vec3 behind = is_floor && !is_shown ? texture(u_floor_light, vec2(1.0, -1.0) * clamp(from.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb : behindAt(from, leaving, past_m, ahead_m);
+  vec3 behind = is_floor && !is_shown ? floorLight(from) : behindAt(from, leaving, past_m, ahead_m);
+  behind = mix(behind, floorLight(from), caught);
 #endif
-
   behind = mix(behind, again.rgb, again.a);
 #ifdef GLASS
   // Along a tank it is hardly darker than across.
@@ -348,7 +304,7 @@ void main() {
   scattered *= 0.75 + 0.8 * smoothstep(0.0, kLitRadii, (surface.y - u_volume_min_m.y) / u_radius_m);
 #endif
   scattered += u_crest * u_sun_light * against_sun * against_sun * 0.35;
-  vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + u_ambient_up * vec3(1.05, 0.98, 0.91));
+  vec3 lit_froth = kFroth * (u_sun_light * mix(kFrothSun.x, kFrothSun.y, sun * sun) + 1.15 * u_ambient_up);
 #ifdef GLASS
   // Through glass its bubbles are seen from near.
   vec3 bubbles_at = surface / u_radius_m;
@@ -358,7 +314,7 @@ void main() {
     bubbles_at = vec3(0.8 * bubbles_at.x - 0.6 * bubbles_at.y, 0.6 * bubbles_at.x + 0.8 * bubbles_at.y, bubbles_at.z).yzx * 2.3;
     mottled += lumps(bubbles_at);
   }
-  white_m *= clamp(0.7 + 0.8 * mottled, 0.35, 1.7);
+  white_m *= clamp(0.85 + 0.6 * mottled, 0.5, 1.6);
 #endif
   float white = 1.0 - exp(-kWhiteness * white_m / u_radius_m);
   vec3 under = mix(behind * passed + scattered * (1.0 - passed), lit_froth, white);

@@ -36,6 +36,7 @@ import fluidSurfaceFrag from "./fluid_surface.frag?raw";
 import fluidTileMarkVert from "./fluid_tile_mark.vert?raw";
 import fluidTileMarkFrag from "./fluid_tile_mark.frag?raw";
 import fluidTileVert from "./fluid_tile.vert?raw";
+import fluidLiquid from "./fluid_liquid.glsl?raw";
 import fluidVolume from "./fluid_volume.glsl?raw";
 import fluidVolumeFrag from "./fluid_volume.frag?raw";
 import fluidVolumeVert from "./fluid_volume.vert?raw";
@@ -146,6 +147,7 @@ const kShared: Record<string, string> = {
   drop,
   far_land: farLand,
   foam,
+  fluid_liquid: fluidLiquid,
   fluid_volume: fluidVolume,
   fluid_words: fluidWords,
   glitter,

@@ -11,14 +11,6 @@ const float kVeiledShare = 0.7;
 const float kVeiledShare = 0.85;
 #endif
 
-// The normal of a slope as far as the eye sees it: what turns away from it is hidden behind other slopes, and those that are seen face it at
-// least about half as much as level water. Cut off at a right angle they would all mirror the horizon, in patches with hard edges.
-vec3 seenNormal(vec3 normal, vec3 ray) {
-  float faces = -dot(normal, ray), level = max(-ray.y, 0.03);
-  if (faces > 0.9 * level) return normal;
-  return normalize(normal + (faces - level * (0.5 + 0.4 * exp((faces / level - 0.9) / 0.4))) * ray);
-}
-
 // The colours of sky_bake.frag with the clouds' mean: on ripples clouds cannot be made out, and a cube map is slow to read.
 vec3 veiledSky(vec3 direction) {
   vec3 sky = mix(u_veiled_sky[1], u_veiled_sky[0], smoothstep(0.12, 0.75, direction.y));

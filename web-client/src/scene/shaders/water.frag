@@ -204,7 +204,7 @@ void main() {
   // What is below is refracted by the waves that are larger than a pixel: finer ones would tear its lines into dots.
   vec3 bending = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
   vec3 normal = normalize(vec3(-field.g, 1.0, -field.b));
-  normal = seenNormal(normal, ray);
+  normal = seenNormal(normal, ray, 0.9 * max(-ray.y, 0.03), 0.5 * max(-ray.y, 0.03));
 #endif
 
   float solid_m = distance_m * (viewZ(behind_depth) / v_view_z - 1.0);

@@ -13,3 +13,13 @@ float waterFresnel(float facing) {
   float away = (1.0 - facing) * (1.0 - facing);
   return 0.02 + 0.98 * away * away * (1.0 - facing);
 }
+
+// The normal of a slope as far as the eye sees it: slopes that turn away are hidden behind others. Where it faces the eye by less than `from`
+// (as a cosine) it is turned toward it, and faces it by at least `least`. Cut off there, all of them would mirror the same, in patches with
+// hard edges.
+vec3 seenNormal(vec3 normal, vec3 ray, float from, float least) {
+  float faces = -dot(normal, ray);
+  if (faces > from) return normal;
+  float slack = from - least;
+  return normalize(normal + (faces - least - slack * exp((faces - from) / slack)) * ray);
+}
