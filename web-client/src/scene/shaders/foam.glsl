@@ -2,11 +2,11 @@
 // has just begun is a heap of domes with creases between them. After u_noise, u_lace_m, sky.glsl and water_optics.glsl.
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn. Share
-// of the sky that is seen from the deepest crease.
+// of the light that reaches its middle height, and by how much it is more on the domes than in the creases.
 #ifndef GLASS
-const float kReliefSlope = 5.5, kLeastOpen = 0.3;
+const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.7;
 #else
-const float kReliefSlope = 0.9, kLeastOpen = 0.6;  // fine froth
+const float kReliefSlope = 0.9, kOpen = 0.95, kCreased = 0.8;  // fine froth
 #endif
 const float kReliefTiles = 0.02, kSteepest = 1.1;
 
@@ -49,9 +49,9 @@ vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, floa
   bent = normalize(bent - clamp(kBillowSlope * fresh * billow, -kSteepest, kSteepest) * vec3(toward_sun.x, 0.0, toward_sun.y));
 #endif
   // Light that enters at one side of a lump leaves it at the others.
-  float sun = sunlit_share * clamp(0.25 + 0.75 * dot(bent, u_sun_direction), 0.0, 1.0);
+  float sun = sunlit_share * clamp(0.2 + 0.8 * dot(bent, u_sun_direction), 0.0, 1.0);
   // Little of the sky is seen from a crease.
-  float open = mix(kLeastOpen + lace, 0.8, smoothstep(0.05, 0.3, blur));
+  float open = mix(clamp(kOpen + kCreased * (lace - 0.5), 0.2, 1.05), 0.8, smoothstep(0.05, 0.3, blur));
   return vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
 }
 
