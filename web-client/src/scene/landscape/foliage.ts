@@ -12,10 +12,10 @@ const kBark: Paint = [0.19, 0.14, 0.10, 1];
 const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
 /** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
-const kCells = { garden: [8, 14, 0.35], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
+const kCells = { garden: [8, 14, 0.15], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
 /** Sprigs of a clump, which tear its outline, and how far they reach, relative to the ellipsoid. */
-const kSprigsCount = 36;
-const kSprigReach = [1.0, 1.22] as const;
+const kSprigsCount = 48;
+const kSprigReach = [1.0, 1.2] as const;
 
 export class Foliage {
   private readonly random = makeFastRandom(4242);

@@ -40,7 +40,7 @@ uniform sampler2D u_field;
 const float kWetBandM = 0.15, kDarkBandM = 0.3;
 #endif
 // Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
-const float kLeavesGrain = 1.6, kLeavesTiles = 0.9;
+const float kLeavesGrain = 1.6, kLeavesTiles = 0.9, kSprigLeaf = 0.46;
 // A mown lawn has more grain than this.
 const float kLawnGrain = 1.05, kLeavesShadeM = 0.3;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
@@ -66,8 +66,9 @@ void main() {
     vec3 grain_at = v_own * vec3(grain < 0.8 ? 0.15 : 1.0, 1.0, 1.0);
     float grain_m = kGrainSizes;
 #else
-    // Sprigs are not lit as they face (foliage.ts).
-    vec3 steep = abs(grain > kLeavesGrain ? cross(dFdx(v_world), dFdy(v_world)) : normal);
+    // Sprigs are lit as their clump, not as they face (foliage.ts).
+    vec3 facet = grain > kLeavesGrain ? normalize(cross(dFdx(v_world), dFdy(v_world))) : normal;
+    vec3 steep = abs(facet);
     vec3 grain_at = v_world;
     float grain_m = u_grain_m;
 #endif
@@ -88,7 +89,8 @@ void main() {
       float leaf = texture(u_noise, leaf_at).g;
       float bunch = texture(u_noise, leaf_at.yx / 4.7).g;
       vec3 toward = normalize(u_camera_m - v_world);
-      if (dot(normal, toward) < 0.75 * (0.85 - 0.5 * leaf - 0.65 * bunch)) discard;
+      bool is_sprig = abs(dot(facet, normal)) < 0.4;
+      if (is_sprig ? leaf < kSprigLeaf : dot(normal, toward) < 0.75 * (0.85 - 0.5 * leaf - 0.65 * bunch)) discard;
       albedo *= (0.25 + 1.7 * leaf) * (0.45 + 1.25 * bunch);
     }
     if (u_haze_m > 0.0 && grain < kLawnGrain && normal.y > 0.7 && albedo.r > 1.05 * albedo.b) {
