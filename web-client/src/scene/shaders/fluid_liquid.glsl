@@ -6,7 +6,11 @@ const float kAiry = 0.45, kTorn = 0.25;  // what is left of a clump are its drop
 const float kLaceRadii = 31.0;           // one tile of the noise
 const float kSlopeRadii = 2.0;           // slopes are taken over so much to each side
 #else
+#ifdef GLASS
+const float kAiry = 0.3, kTorn = 0.25;
+#else
 const float kAiry = 0.08, kTorn = 0.1;
+#endif
 const float kLaceRadii = 22.0;
 const float kSlopeRadii = 3.0;
 #endif
@@ -30,6 +34,9 @@ vec2 liquidAt(vec3 at_m) {
   if (density.r > 0.6 * kSurface && white > 0.05) {
     float torn = lumps(at_m / u_radius_m);
     density.r -= white * (kAiry + kTorn * torn);
+#ifdef GLASS
+    white *= smoothstep(0.15, 0.75, white);
+#endif
 #ifndef WAVE
     white *= clamp(0.85 + 1.1 * torn, 0.0, 1.0);
 #endif

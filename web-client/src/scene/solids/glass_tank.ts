@@ -31,7 +31,7 @@ const kPlinth = 5;
 const kTileShare = 1 / 44;
 const kTrayTileShare = 1 / 20;
 /** Height of the walls as a share of that of the glass. */
-const kWallHeight = 0.75;
+const kWallHeight = 0.5;
 /** What is kept free around a tank, from its middle and beside it. */
 const kFreeHalfM = 3;
 const kFreeBesideM = 1.6;
