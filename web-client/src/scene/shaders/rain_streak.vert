@@ -21,5 +21,7 @@ void main() {
   v_strength = smoothstep(0.4, 1.5, away_m) * smoothstep(0.5 * kBoxM.y, 0.3 * kBoxM.y, abs(from_camera.y)) *
                (1.0 - smoothstep(0.3 * kBoxM.x, 0.5 * kBoxM.x, length(from_camera.xz)));
   vec3 at = u_camera_m + from_camera - position.w * kExposureS * velocity;
+  // It ends at the still water: where the camera is half below the surface, there are no streaks in the water.
+  v_strength *= step(0.0, at.y);
   gl_Position = projectionMatrix * (viewMatrix * vec4(at, 1.0));
 }
