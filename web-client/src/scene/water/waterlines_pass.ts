@@ -15,7 +15,7 @@ const kCellsLeast = 1.5;
 /** Its pressure in the middle over that of the same water in a box. */
 const kPeak = 1 / 0.9064 ** 2;
 /** Boats lie deeper than their draught by this share of their height: light hulls seemed to stand on the water. */
-const kDeeperHeights = 0.08;
+const kDeeperHeights = 0.15;
 /** Height of the bow wave: this share of that at which water of the hull's speed comes to rest, U^2 / 2g, and at most so many draughts. */
 const kBowShare = 0.18;
 const kMostBowDraughts = 1.2;
