@@ -30,8 +30,10 @@ const kPlinth = 5;
 /** Side of the tiles in a tank, and in a tray: a share of its size. */
 const kTileShare = 1 / 44;
 const kTrayTileShare = 1 / 20;
-/** Height of the walls as a share of that of the glass. */
-const kWallHeight = 0.5;
+/** Height of the walls: a share of the free one over the resting water; of a channel of particles, whose waves are to be seen against the
+ * sky, a share of that of the glass. */
+const kWallFreeboard = 0.25;
+const kChannelWallHeight = 0.5;
 /** What is kept free around a tank, from its middle and beside it. */
 const kFreeHalfM = 3;
 const kFreeBesideM = 1.6;
@@ -49,8 +51,9 @@ const kCutEdge: Paint = [1, 1, 1, 1];
 interface TankSize {
   sideM: number;
   widthM: number;
-  /** From the floor to the rim. */
+  /** From the floor to the rim of the glass, and to the top of the walls. */
   heightM: number;
+  wallM: number;
 }
 
 /** The length that glass and rim are shares of: the longer side. */
@@ -80,8 +83,10 @@ export function shownHeightM(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "
 export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "waterExtents" | "wave">): TankSize {
   const { sideM, widthM, waterExtents } = greeting;
   const { depthM } = waterExtents;
-  const freeboardM = Math.max(kFreeboardDepths * depthM, (isChannelOfParticles(greeting) ? kParticlesFreeboardSides : kFreeboardSides) * sizeM({ sideM, widthM }));
-  return { sideM, widthM, heightM: depthM + freeboardM };
+  const isChannel = isChannelOfParticles(greeting);
+  const freeboardM = Math.max(kFreeboardDepths * depthM, (isChannel ? kParticlesFreeboardSides : kFreeboardSides) * sizeM({ sideM, widthM }));
+  const heightM = depthM + freeboardM;
+  return { sideM, widthM, heightM, wallM: isChannel ? kChannelWallHeight * heightM : depthM + kWallFreeboard * freeboardM };
 }
 
 /** Four panes between four edges, with a rim. The floor of the tank is at y = 0. */
@@ -116,9 +121,9 @@ function addTable(builder: MeshBuilder, halfX: number, halfZ: number, footM: num
 }
 
 /** The painted walls of a tray, in its glass. */
-function addTrayWalls(builder: MeshBuilder, { sideM, widthM }: TankSize, topM: number): void {
+function addTrayWalls(builder: MeshBuilder, { sideM, widthM, wallM }: TankSize): void {
   const halfM = kGlassThickness * sizeM({ sideM, widthM });
-  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: topM, halfX, halfZ }, [...kTankTile, 0.2]);
+  const wall = (xM: number, zM: number, halfX: number, halfZ: number): MeshBuilder => builder.block(xM, zM, { yM: 0, halfX, halfZ }, { yM: wallM, halfX, halfZ }, [...kTankTile, 0.2]);
   for (const side of [-1, 1]) {
     wall(0, side * (widthM / 2 + 1.05 * halfM), sideM / 2 + 2.05 * halfM, halfM);
     wall(side * (sideM / 2 + 1.05 * halfM), 0, halfM, widthM / 2);
@@ -138,7 +143,7 @@ export function makeBaseGeometry(size: TankSize): BufferGeometry {
   builder.block(0, 0, { yM: -kPlinth * thickM, halfX, halfZ }, { yM: -0.12 * thickM, halfX, halfZ }, kBase);
   if (isTray(size)) {
     addTable(builder, halfX + kTableBesideM, halfZ + kTableBesideM, deckM(size));
-    addTrayWalls(builder, size, kWallHeight * size.heightM);
+    addTrayWalls(builder, size);
   }
   return builder.build();
 }
@@ -160,7 +165,7 @@ function makeLining(size: TankSize): BufferGeometry {
   const gapM = 0.06 * kGlassThickness * sizeM(size);
   const paint: Paint = [...kTankTile, tileSides(size)];
   const lining = level(halfX, -gapM, halfZ, paint);
-  if (!isTray(size)) addWalls(lining, [halfX + gapM, halfZ + gapM], -gapM, kWallHeight * size.heightM, true, paint);
+  if (!isTray(size)) addWalls(lining, [halfX + gapM, halfZ + gapM], -gapM, size.wallM, true, paint);
   return lining.build();
 }
 
