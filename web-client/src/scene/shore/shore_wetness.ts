@@ -11,7 +11,7 @@ export const kFilmM = 0.003;
 export const kDryingS = 45;
 /** Foam fades by a factor of e within this time: on water, and as lace on the ground. */
 const kFoamOnWaterS = 1.6;
-const kFoamOnGroundS = 5;
+const kFoamOnGroundS = 3.5;
 /** Water that came to a position within this time belongs to the front. */
 const kFrontS = 0.5;
 /** A front is white by the speed at which it floods the ground: none below the first, all above the second. */
