@@ -16,9 +16,9 @@ vec3 meniscusLight() { return vec3(0.8, 0.95, 1.0) * u_ambient_up + 0.2 * u_sun_
 
 vec3 skyLight(vec3 direction) { return texture(u_sky, direction).rgb; }
 
-// Linear light → display: a shoulder that reaches white at 1.6, then gamma 2 (docs/light.md). Divisions and a square root only:
-// exponentials cost software renderers a third of the frame.
+// Linear light → display: a filmic curve with a softer foot, then gamma 2 (docs/light.md). Divisions and a square root only: exponentials
+// cost software renderers a third of the frame.
 vec3 toDisplay(vec3 linear) {
-  vec3 x = linear * (1.9 * u_exposure);
-  return sqrt(clamp(x * (1.0 + x / 9.0) / (1.0 + x), 0.0, 1.0));
+  vec3 x = linear * (0.86 * u_exposure);
+  return sqrt(clamp(x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.09), 0.0, 1.0));
 }
