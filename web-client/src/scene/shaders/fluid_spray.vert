@@ -6,7 +6,7 @@
 #include <fluid_volume>
 #endif
 #define EXPOSURE_S 0.008
-#define MOST_SHARE 0.0014
+#define MOST_SHARE 0.0019
 #include <drop>
 
 uniform float u_drop;
@@ -22,7 +22,7 @@ const float kShade = 6.0;
 // Particles larger than this are drawn like those of this radius, m.
 const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
-const float kMist = 0.03, kMistRadii = 2.6;
+const float kMist = 0.04, kMistRadii = 2.2;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
 const float kFineRadii = 2.4, kLargeRadii = 1.6, kTrailS = 0.05;
 
@@ -48,7 +48,7 @@ void main() {
   vec4 random = hash(vec3(level, u_drop));
   float radius_m = min(u_radius_m, kLargeM);
   // Few are large.
-  float large = pow(random.w, 9.0);
+  float large = pow(random.w, 10.0);
   bool is_mist = u_drop == 0.0;
   vec3 center_m = particle.center_m;
   if (!is_mist) center_m += u_radius_m * mix(kFineRadii, kLargeRadii, random.w) * (random.xyz - 0.5) + particle.velocity_mps * (kTrailS * (random.w - 0.5));
@@ -59,5 +59,5 @@ void main() {
   const float sunlit = 0.6;
 #endif
   if (is_mist) drawDrop(center_m, particle.velocity_mps, kMistRadii * radius_m, true, strength * kMist * particle.foam, sunlit);
-  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.03, 0.26, large), false, strength * (0.35 + 0.65 * particle.foam), sunlit);
+  else drawDrop(center_m, particle.velocity_mps, radius_m * mix(0.028, 0.32, large), false, strength * (0.35 + 0.65 * particle.foam) * mix(0.6, 1.15, random.x), sunlit);
 }
