@@ -12,8 +12,6 @@ import { makeSkerry } from "./skerry";
 import { depthAtM, groundExtent, groundHeightM, longSideM, type Bed } from "./terrain";
 
 const kCut: Paint = [0.74, 0.58, 0.40, 0.8];
-/** The cut sides of a bed in a tank. */
-const kConcrete = [0.64, 0.61, 0.55] as const;
 /** The floor around the water is lowered by this share of the side, to avoid z-fighting with the bed. */
 const kFloorDropSides = 0.002;
 
@@ -34,10 +32,11 @@ export function makeGroundGeometry(bed: Bed, cellsCount: number, tileSides?: num
   // From near to far: rows go up and columns go right, seen from above.
   const rows = lines(maxZM, minZM).map((zM) => columns.map((xM) => at(xM, zM)));
   const builder = new MeshBuilder();
-  builder.grid(rows, tileSides ? [...kTankTile, tileSides] : (row, column) => bedPaint(rows[row]![column]![1], bed.depthM));
+  const tile: Paint | undefined = tileSides ? [...kTankTile, tileSides] : undefined;
+  builder.grid(rows, tile ?? ((row, column) => bedPaint(rows[row]![column]![1], bed.depthM)));
   const down = ([xM, , zM]: Point): Point => [xM, floorM, zM];
   const edges = [rows[0]!, [...rows.at(-1)!].reverse(), rows.map((row) => row.at(-1)!), rows.map((row) => row[0]!).reverse()];
-  for (const edge of edges) builder.grid([edge.map(down), edge], tileSides ? [...kConcrete, 1] : kCut);
+  for (const edge of edges) builder.grid([edge.map(down), edge], tile ?? kCut);
   return builder.build();
 }
 

@@ -52,7 +52,7 @@ vec4 stoneAt(vec3 albedo, vec2 at, float tile_m, float out_m) {
   albedo *= mix(vec3(1.10, 1.0, 0.88), vec3(0.90, 0.97, 1.04), cellHash(slab + 41.0)) * (0.86 + 0.28 * cellHash(slab + 7.0));
   albedo *= 1.0 + 0.22 * clouds + 0.30 * grain;
 #ifdef WET
-  float wet = 1.0 - smoothstep(0.1, 0.75, out_m / kWetM + 1.1 * clouds + 0.3 * grain);
+  float wet = 1.0 - smoothstep(0.1, 0.75, out_m / kWetM + 0.5 * clouds + 0.15 * grain);
 #else
   const float wet = 0.0;
 #endif
