@@ -23,6 +23,9 @@ interface DrawnBoat {
   lamps: BoatLamp[];
 }
 
+/** Hulls are drawn deeper by this share of their height: on a swell, light ones show their forefoot and their transom down to the keel. */
+const kSunkHeights = 0.06;
+
 export class Boats {
   private readonly boats = new Map<number, DrawnBoat>();
   private readonly poses: BodyPose[] = [];
@@ -60,10 +63,11 @@ export class Boats {
     for (const { group } of this.boats.values()) group.visible = false;
     for (let i = 0; i < this.posesCount; ++i) {
       const pose = this.poses[i]!;
-      const group = this.boats.get(pose.boatId)?.group;
-      if (!group) continue;
+      const boat = this.boats.get(pose.boatId);
+      if (!boat) continue;
+      const { group, detail } = boat;
       group.visible = true;
-      group.position.set(pose.xM, pose.yM, pose.zM);
+      group.position.set(pose.xM, pose.yM - kSunkHeights * detail.heightM, pose.zM);
       group.rotation.set(pose.rollRad, -pose.headingRad, pose.pitchRad, "YZX");
     }
   }

@@ -52,7 +52,7 @@ void main() {
   float low_sun = 1.0 - smoothstep(-0.05, 0.25, u_sun_direction.y);
   vec3 horizon = mix(u_horizon, u_middle, low_sun * 0.85 * (1.0 - side * side));
   sky = mix(horizon, sky, smoothstep(-0.02, 0.20, up));
-  sky += u_glow * (0.07 * pow(toward_sun, 5.0) + 0.28 * pow(toward_sun, 110.0));
+  sky += u_glow * (0.07 * pow(toward_sun, 5.0) + 0.36 * pow(toward_sun, 70.0));
   float toward_moon = max(dot(direction, u_moon_direction), 0.0);
   sky += u_halo * (0.4 * pow(toward_moon, 8.0) + pow(toward_moon, 160.0));
   vec2 plane = direction.xz / (up + 0.09);
