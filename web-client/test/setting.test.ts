@@ -113,6 +113,21 @@ describe("a tray", () => {
   });
 });
 
+describe("the walls of a tank", () => {
+  const particles = { sideM: 4, widthM: 0.8, waterExtents: { sideM: 4, longM: 4, depthM: 2 }, wave: undefined };
+  it("stand over the resting water, and leave the upper part of the glass free", () => {
+    for (const [sideM, widthM, depthM] of [[0.45, 0.45, 0.05], [6, 4, 1.5]] as const) {
+      const { wallM, heightM } = tankSize({ sideM, widthM, waterExtents: { sideM, longM: sideM, depthM }, wave: undefined });
+      expect(wallM).toBeGreaterThan(depthM);
+      expect(wallM).toBeLessThan(0.5 * (depthM + heightM));
+    }
+  });
+  it("are half as high as the glass of a channel of particles", () => {
+    const { wallM, heightM } = tankSize(particles);
+    expect(wallM).toBeCloseTo(heightM / 2, 9);
+  });
+});
+
 describe("a pool", () => {
   it("has its floor at 0, a rim above the water, and nothing inside the square above the floor", () => {
     const { tiled, planted } = makeBasinGeometries(16, 16, 1.5);

@@ -1,12 +1,14 @@
-import type { BufferGeometry } from "three";
+import { Vector3, type BufferGeometry } from "three";
 import { describe, expect, it } from "vitest";
 
 import type { BreakwaterInfo, RockInfo } from "../client/codec/scene_info";
 import { makeBreakwater } from "../src/scene/landscape/breakwater_mesh";
 import { clearanceM } from "../src/scene/landscape/clearance";
 import { makeGroundGeometry } from "../src/scene/landscape/landscape";
+import { makeLeaves } from "../src/scene/drawing/leaves";
 import { makeLace } from "../src/scene/drawing/noise_texture";
 import { makeRockGeometry } from "../src/scene/landscape/rock_mesh";
+import { MeshBuilder, type Point } from "../src/scene/meshes/mesh_builder";
 import { bedUniformValues, depthAtM, groundExtent, groundHeightM, landWidthM, type Bed } from "../src/scene/landscape/terrain";
 import { spawnPlace } from "../src/ui/spawn_place";
 
@@ -102,6 +104,39 @@ describe("the lace of foam", () => {
     const lace = makeLace(64);
     const sorted = [...lace].sort((a, b) => a - b);
     for (const share of [0.1, 0.5, 0.9]) expect(sorted[Math.floor(share * sorted.length)]! / 256).toBeCloseTo(share, 2);
+  });
+});
+
+describe("the tile of leaves", () => {
+  it("is covered but for a few dark gaps, and has no seam where it repeats", () => {
+    const side = 128;
+    const leaves = makeLeaves(side);
+    const gap = Math.min(...leaves);
+    const share = leaves.filter((each) => each === gap).length / leaves.length;
+    expect(share).toBeGreaterThan(0);
+    expect(share).toBeLessThan(0.2);
+    expect(Math.max(...leaves)).toBeGreaterThan(200);
+    const across = (x0: number, x1: number): number => {
+      let sum = 0;
+      for (let y = 0; y < side; ++y) sum += Math.abs(leaves[y * side + x0]! - leaves[y * side + x1]!);
+      return sum / side;
+    };
+    const inside = Array.from({ length: side - 1 }, (_, x) => across(x, x + 1));
+    expect(across(side - 1, 0)).toBeLessThan(Math.max(...inside));
+  });
+});
+
+describe("a sprig of a plant", () => {
+  it("has two sides that are lit alike, as it is told", () => {
+    const normal: Point = [0, 1, 0];
+    const mesh = new MeshBuilder().leaf([0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], normal, [1, 1, 1, 1.8]).build();
+    const normals = mesh.getAttribute("normal");
+    for (let n = 0; n < normals.count; ++n) expect([normals.getX(n), normals.getY(n), normals.getZ(n)]).toEqual(normal);
+    const facing = (first: number): number => {
+      const [a, b, c] = [0, 1, 2].map((k) => new Vector3().fromBufferAttribute(mesh.getAttribute("position"), mesh.getIndex()!.getX(first + k)));
+      return b!.sub(a!).cross(c!.sub(a!)).z;
+    };
+    expect(facing(0) * facing(6)).toBeLessThan(0);
   });
 });
 

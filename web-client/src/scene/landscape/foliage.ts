@@ -13,9 +13,11 @@ const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
 /** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
 const kCells = { garden: [8, 14, 0.15], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
-/** Sprigs of a clump, which tear its outline, and how far they reach, relative to the ellipsoid. */
+/** Sprigs of a clump, which tear its outline; where they begin and end, and half of their widths there, relative to the ellipsoid. */
 const kSprigsCount = 48;
+const kSprigFoot = 0.7;
 const kSprigReach = [1.0, 1.2] as const;
+const kSprigHalfWidths = [0.26, 0.12] as const;
 
 export class Foliage {
   private readonly random = makeFastRandom(4242);
@@ -60,7 +62,8 @@ export class Foliage {
     const corner = (size: number, wide: number): Point => out.map((each, k) => middle[k]! + half[k]! * (size * each + wide * (Math.cos(turnRad) * up[k]! + Math.sin(turnRad) * around[k]!))) as unknown as Point;
     const tip = mix(...kSprigReach, random());
     const paint = this.paint(leaves, 0.8 - 0.4 * Math.cos(upRad), random);
-    this.builder.leaf(corner(0.7, -0.26), corner(0.7, 0.26), corner(tip, 0.12), corner(tip, -0.12), out, paint);
+    const [wide, narrow] = kSprigHalfWidths;
+    this.builder.leaf(corner(kSprigFoot, -wide), corner(kSprigFoot, wide), corner(tip, narrow), corner(tip, -narrow), out, paint);
   }
 
   /** Adds a crown of clumps. */

@@ -209,6 +209,7 @@ void main() {
   bool is_floor = false;
   float caught = 0.0;  // share of the light that is reflected back where the rest leaves
   for (int part = 0; part < kParts; ++part) {
+    caught = 0.0;
     float along_m = 0.2 * u_radius_m;
     float most_m = throughVolume(from, bent).y;
     bool is_side = true;
