@@ -12,7 +12,7 @@ import fluidPlainFloor from "../src/scene/shaders/fluid_plain_floor.frag?raw";
 import skyPlain from "../src/scene/shaders/sky_plain.frag?raw";
 import solidPlain from "../src/scene/shaders/solid_plain.frag?raw";
 import waterPlain from "../src/scene/shaders/water_plain.frag?raw";
-import { gridLines } from "../src/scene/water/water_grid";
+import { cellsAlong, gridLines } from "../src/scene/water/water_grid";
 import { WaterScene } from "../src/scene/water_scene";
 import { fakeRenderer } from "./fake_renderer";
 
@@ -139,6 +139,18 @@ describe("a picture in the tier minimal", () => {
     const onCanvas = new Set(draws.filter(({ targetPx }) => targetPx === undefined).flatMap(({ materials }) => [...materials]));
     for (const name of ["solidPlain", "waterPlain", "skyPlain"]) expect(onCanvas).toContain(name);
     for (const name of ["solid", "water", "skyDome", "present"]) expect(onCanvas).not.toContain(name);
+  });
+
+  it("draws a channel with cells that are about as long as wide, as many as a square's", () => {
+    for (const [sideM, widthM] of [[20, 1], [1, 20], [7, 7], [16, 9]] as const) {
+      const [cellsX, cellsZ] = cellsAlong(96, { sideM, widthM });
+      const ratio = (sideM / cellsX) / (widthM / cellsZ);
+      expect(ratio).toBeGreaterThan(0.9);
+      expect(ratio).toBeLessThan(1.1);
+      expect(cellsX * cellsZ).toBeGreaterThan(0.95 * 96 * 96);
+      expect(cellsX * cellsZ).toBeLessThan(1.05 * 96 * 96);
+    }
+    expect(cellsAlong(96, { sideM: 1000, widthM: 1 })[1]).toBe(8);
   });
 
   it("has a grid of few vertices", () => {

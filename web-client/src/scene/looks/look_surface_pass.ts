@@ -82,7 +82,7 @@ export class LookSurfacePass implements Pass {
     if (this.ground) defines["GROUND"] = 1;
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     if (loweredM > 0) defines["LOWERED"] = 1;
-    const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
+    const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount, greeting);
     this.meshes = [new Mesh(top, makeMaterial("lookSurface", this.uniforms, { side: DoubleSide, defines }))];
     if (sides) this.meshes.push(new Mesh(sides, makeMaterial("lookSurface", this.uniforms, { side: FrontSide, defines: { ...defines, SKIRT: 1 } })));
     for (const mesh of this.meshes) {

@@ -14,6 +14,9 @@ uniform sampler2D u_field;
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_depth_m;
 
+#ifdef GLASS
+#include <bicubic>
+#endif
 #ifdef LOWERED
 uniform float u_lowered_m;
 #endif
@@ -42,6 +45,9 @@ void main() {
 #ifdef UNEVEN
   vec4 field = texture(u_field, unevenAt(position.xz * u_extent_m) / u_extent_m + 0.5);
   field.r *= unevenHeight(position.xz * u_extent_m, field.r);
+#elif defined(GLASS)
+  // Between the samples, which the cut of a tank would show as corners.
+  vec4 field = smoothTexel(u_field, position.xz + 0.5);
 #else
   vec4 field = texture(u_field, position.xz + 0.5);
 #endif

@@ -8,7 +8,7 @@ import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
 import type { OpenSea } from "../sea/open_sea";
 import { makeMaterial, type Uniforms } from "../shaders/materials";
-import { gridLines, makeGrid } from "./water_grid";
+import { cellsAlong, gridLines, makeGrid } from "./water_grid";
 
 /** The grid reaches beyond the square, in sides: light that comes in from beside it. */
 const kReachSides = 1.12;
@@ -59,10 +59,12 @@ export class CausticsPass implements Pass {
     const extentM = new Vector2(sideM, widthM);
     const shrunk = sea ? Math.min(depthM / (kDepthPerRipple * sea.longestRippleM), 1) : 1;
     const tileM = shrunk * ((sea?.uniforms["u_tiles_m"]!.value as Vector2 | undefined)?.y ?? 1);
-    const makeTarget = (sideCount: number): WebGLRenderTarget =>
-      new WebGLRenderTarget(sideCount, sideCount, { format: RGFormat, type: HalfFloatType, minFilter: LinearMipmapLinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping, generateMipmaps: true, depthBuffer: false });
-    this.target = makeTarget(field ? texelsCount : 1);
-    this.tile = makeTarget(isPool ? kTileTexels * texelsCount : 1);
+    const makeTarget = (xCount: number, zCount: number): WebGLRenderTarget =>
+      new WebGLRenderTarget(xCount, zCount, { format: RGFormat, type: HalfFloatType, minFilter: LinearMipmapLinearFilter, wrapS: RepeatWrapping, wrapT: RepeatWrapping, generateMipmaps: true, depthBuffer: false });
+    const size = { sideM, widthM };
+    const tileTexels = isPool ? kTileTexels * texelsCount : 1;
+    this.target = field ? makeTarget(...cellsAlong(texelsCount, size)) : makeTarget(1, 1);
+    this.tile = makeTarget(tileTexels, tileTexels);
     this.uniforms = {
       u_caustics: { value: this.target.texture },
       u_caustic_depth_m: { value: depthM },
@@ -70,8 +72,8 @@ export class CausticsPass implements Pass {
       u_caustic_ripples: { value: this.tile.texture },
       u_caustic_tile_m: { value: tileM },
     };
-    const lines = gridLines(cellsCount, false, false);
-    this.geometry = makeGrid(lines, lines);
+    const [lines, across] = cellsAlong(cellsCount, size).map((count) => gridLines(count, false, false));
+    this.geometry = makeGrid(lines!, across!);
     const makeScene = (defines: Record<string, number>, overM: Vector2, deepM: number, channel: readonly number[], texels = texelsCount, gain = 1): Scene => {
       const uniforms = {
         ...sky.uniforms,

@@ -2,7 +2,13 @@
 import { BufferAttribute, BufferGeometry } from "three";
 
 import type { SideName } from "../../../client/codec/scene_info";
+import { clamp } from "../maths/interpolate";
 import type { WaterEdge } from "../solids/surroundings_context";
+
+interface Size {
+  sideM: number;
+  widthM: number;
+}
 
 /** The grid of an open sea reaches this many sides of the square, past the horizon's last pixel. */
 const kSeaReachSides = 300;
@@ -53,14 +59,15 @@ export function makeGrid(xs: readonly number[], zs: readonly number[]): BufferGe
   return geometry;
 }
 
-/** Four strips, each `cellsCount` quads from the surface (y = 1) to the floor (y = 0), normals outward. */
-function makeSkirt(cellsCount: number): BufferGeometry {
+/** Four strips of quads from the surface (y = 1) to the floor (y = 0), as many as there are cells along each axis, normals outward. */
+function makeSkirt(cellsX: number, cellsZ: number): BufferGeometry {
   const positions: number[] = [];
   const normals: number[] = [];
   const index: number[] = [];
   const sides: [number, number][] = [[0, 1], [1, 0], [0, -1], [-1, 0]];
   for (const [nx, nz] of sides) {
     const first = positions.length / 3;
+    const cellsCount = nx === 0 ? cellsX : cellsZ;
     for (let i = 0; i <= cellsCount; ++i) {
       const along = i / cellsCount - 0.5;
       const x = nx * 0.5 + nz * along;
@@ -81,12 +88,22 @@ function makeSkirt(cellsCount: number): BufferGeometry {
 
 const kBeside: Record<"x" | "z", readonly SideName[]> = { x: ["+z", "-z"], z: ["+x", "-x"] };
 
-/** Returns the meshes of a water's surface and, where they are seen, of its sides. */
-export function makeWaterGeometries(edge: WaterEdge, cellsCount: number): { top: BufferGeometry; sides: BufferGeometry | undefined } {
+/** A channel has at least so many cells across. */
+const kLeastCells = 8;
+
+/** Returns the cells of a grid along x and z, about as long as wide: together as many as those of a square with `cellsCount` along each side. */
+export function cellsAlong(cellsCount: number, { sideM, widthM }: Size): [number, number] {
+  const slender = clamp(Math.sqrt(sideM / widthM), kLeastCells / cellsCount, cellsCount / kLeastCells);
+  return [Math.round(cellsCount * slender), Math.round(cellsCount / slender)];
+}
+
+/** Returns the meshes of a water's surface and, where they are seen, of its sides. `cellsCount`: along each side of a square. */
+export function makeWaterGeometries(edge: WaterEdge, cellsCount: number, size: Size): { top: BufferGeometry; sides: BufferGeometry | undefined } {
   // Land at a closed side draws back where the sides beside it are open (landscape/coast.ts).
   const opens = (side: SideName): boolean => edge.kind === "sea" && (edge.sides[side] !== "closed" || kBeside[side[1] as "x" | "z"].some((each) => edge.sides[each] !== "closed"));
+  const [cellsX, cellsZ] = cellsAlong(cellsCount, size);
   return {
-    top: makeGrid(gridLines(cellsCount, opens("-x"), opens("+x")), gridLines(cellsCount, opens("-z"), opens("+z"))),
-    sides: edge.kind === "cut" ? makeSkirt(cellsCount) : undefined,
+    top: makeGrid(gridLines(cellsX, opens("-x"), opens("+x")), gridLines(cellsZ, opens("-z"), opens("+z"))),
+    sides: edge.kind === "cut" ? makeSkirt(cellsX, cellsZ) : undefined,
   };
 }

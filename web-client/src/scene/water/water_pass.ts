@@ -111,7 +111,7 @@ export class WaterPass implements Pass {
     else if (edge.ripples) defines["RIPPLES"] = 1;
     if (edge.kind === "sea" && !quality.plain && isDrawnUneven(greeting)) defines["UNEVEN"] = 1;
     if (edge.kind === "cut") defines["GLASS"] = 1;
-    const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount);
+    const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount, greeting);
     // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.
     const surface = (side: Side, more: Record<string, number> = {}): RawShaderMaterial =>
       quality.plain
