@@ -1,10 +1,10 @@
 // Foam as a texture over the water, which the water shows together with the streamed foam. Reads the white water. Writes the froth, seen
 // from above: 0 none, 1 white; u along x, v along z. Its second channel is the light that
 // hulls take from the water beside them, and of the flat shadows (shadows/flat_shadow_pass.ts).
-import { AddEquation, CustomBlending, OneFactor, RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
+import { RGFormat, Vector2, WebGLRenderTarget, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
-import { makeMaterial } from "../shaders/materials";
+import { kAdding, makeMaterial } from "../shaders/materials";
 import type { WhitePoints } from "./white_points";
 
 export class FrothPass implements Pass {
@@ -25,13 +25,7 @@ export class FrothPass implements Pass {
     this.target = new WebGLRenderTarget(along(sideM), along(widthM), { format: RGFormat, depthBuffer: false });
     this.material = makeMaterial("froth", { u_extent_m: { value: new Vector2(sideM, widthM) }, u_target_px: { value: texelsCount } }, {
       defines: { FROTH: 1 },
-      blending: CustomBlending,
-      blendEquation: AddEquation,
-      blendSrc: OneFactor,
-      blendDst: OneFactor,
-      depthTest: false,
-      depthWrite: false,
-      transparent: true,
+      ...kAdding,
     });
   }
 
