@@ -13,8 +13,9 @@ const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
 /** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
 const kCells = { garden: [8, 14, 0.15], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
-/** Sprigs of a clump, which tear its outline; where they begin and end, and half of their widths there, relative to the ellipsoid. */
+/** Sprigs of a clump, which tear its outline, nearby and far away; where they begin and end, and half of their widths there, relative to the ellipsoid. */
 const kSprigsCount = 48;
+const kFarSprigsCount = 28;
 const kSprigFoot = 0.7;
 const kSprigReach = [1.0, 1.2] as const;
 const kSprigHalfWidths = [0.26, 0.12] as const;
@@ -34,8 +35,8 @@ export class Foliage {
     return mix(low, high, this.random());
   }
 
-  /** Adds a clump within an ellipsoid. */
-  clump(middle: Point, half: Point, leaves: Leaves): void {
+  /** Adds a clump within an ellipsoid, out of which sprigs stick. */
+  clump(middle: Point, half: Point, leaves: Leaves, sprigsCount = kSprigsCount): void {
     const [rowsCount, columnsCount, uneven] = kCells[this.cells];
     const phase = [0, 1, 2, 3].map(() => this.between(0, 2 * Math.PI));
     // 0 in a hollow, 1 on a lump; the last column is the first one again.
@@ -49,7 +50,7 @@ export class Foliage {
     });
     const rows = lumps.map((row, r) => row.map((lump, c) => onEllipsoid(middle, half, (Math.PI * r) / rowsCount, (-2 * Math.PI * c) / columnsCount, mix(...kSizes, lump))));
     this.builder.grid(rows, (r, c) => this.paint(leaves, mix(...kBrightness, lumps[r]![c]!) * (0.8 - 0.4 * Math.cos((Math.PI * r) / rowsCount))));
-    if (!this.plain) for (let n = 0; n < kSprigsCount; ++n) this.sprig(middle, half, leaves);
+    if (!this.plain) for (let n = 0; n < sprigsCount; ++n) this.sprig(middle, half, leaves);
   }
 
   /** Adds a sprig that sticks out of an ellipsoid and is lit as the ellipsoid is there. */
@@ -67,14 +68,14 @@ export class Foliage {
   }
 
   /** Adds a crown of clumps. */
-  crown([xM, yM, zM]: Point, radiusM: number, leaves: Leaves): void {
+  crown([xM, yM, zM]: Point, radiusM: number, leaves: Leaves, isFar = false): void {
     const clumpsCount = this.plain ? 3 : 6;
     for (let i = 0; i < clumpsCount; ++i) {
       const round = (2 * Math.PI * (i + this.between(-0.3, 0.3))) / (clumpsCount - 1);
       const outM = i === 0 ? 0 : this.between(0.55, 0.8) * radiusM;
       const sizeM = (i === 0 ? 0.85 : this.between(0.55, 0.8)) * radiusM;
       const upM = (i === 0 ? 0.44 : this.between(-0.67, 0.26)) * radiusM;
-      this.clump([xM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)], [sizeM, 0.85 * sizeM, sizeM], leaves);
+      this.clump([xM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)], [sizeM, 0.85 * sizeM, sizeM], leaves, isFar ? kFarSprigsCount : kSprigsCount);
     }
   }
 

@@ -19,7 +19,7 @@ export class MeshBuilder {
   private readonly index: number[] = [];
   /** Vertices at one position that share a normal. */
   private readonly welds: [number, number][] = [];
-  /** Normals that do not follow from the triangles, from a vertex on. */
+  /** Normals of leaves, which do not follow from their triangles, from their first vertex on. */
   private readonly leaves: { first: number; normal: Point }[] = [];
 
   /**
@@ -73,8 +73,11 @@ export class MeshBuilder {
 
   /** Adds a flat face that is seen from both sides and lit as if it faced `normal`, of length 1. */
   leaf(a: Point, b: Point, c: Point, d: Point, normal: Point, paint: Paint): this {
-    this.leaves.push({ first: this.positions.length / 3, normal });
-    return this.quad(a, b, c, d, paint).quad(d, c, b, a, paint);
+    const first = this.positions.length / 3;
+    this.leaves.push({ first, normal });
+    this.quad(a, b, c, d, paint);
+    this.index.push(first + 1, first, first + 2, first + 1, first + 2, first + 3);
+    return this;
   }
 
   /** Adds an upright block round (x, z) between two heights; top and bottom have half sizes along x and z. */
@@ -115,7 +118,7 @@ export class MeshBuilder {
       if (length === 0) continue;
       for (const vertex of [a, b]) normals.setXYZ(vertex, x / length, y / length, z / length);
     }
-    for (const { first, normal } of this.leaves) for (let n = 0; n < 8; ++n) normals.setXYZ(first + n, ...normal);
+    for (const { first, normal } of this.leaves) for (let n = 0; n < 4; ++n) normals.setXYZ(first + n, ...normal);
     // A vertex of left out triangles only.
     for (let n = 0; n < normals.count; ++n) if (normals.getX(n) === 0 && normals.getY(n) === 0 && normals.getZ(n) === 0) normals.setY(n, 1);
   }
