@@ -114,7 +114,6 @@ describe("a tray", () => {
 });
 
 describe("the walls of a tank", () => {
-  const particles = { sideM: 4, widthM: 0.8, waterExtents: { sideM: 4, longM: 4, depthM: 2 }, wave: undefined };
   it("stand over the resting water, and leave the upper part of the glass free", () => {
     for (const [sideM, widthM, depthM] of [[0.45, 0.45, 0.05], [6, 4, 1.5]] as const) {
       const { wallM, heightM } = tankSize({ sideM, widthM, waterExtents: { sideM, longM: sideM, depthM }, wave: undefined });
@@ -122,8 +121,9 @@ describe("the walls of a tank", () => {
       expect(wallM).toBeLessThan(0.5 * (depthM + heightM));
     }
   });
+
   it("are half as high as the glass of a channel of particles", () => {
-    const { wallM, heightM } = tankSize(particles);
+    const { wallM, heightM } = tankSize({ sideM: 4, widthM: 0.8, waterExtents: { sideM: 4, longM: 4, depthM: 2 }, wave: undefined });
     expect(wallM).toBeCloseTo(heightM / 2, 9);
   });
 });

@@ -1,4 +1,5 @@
 // A repeating tile of leaves that lie over one another: dark in the gaps, brighter the nearer to the eye.
+import { mix } from "../maths/interpolate";
 import { makeFastRandom } from "../maths/random";
 
 /** On one tile, from the farthest to the nearest. */
@@ -20,8 +21,8 @@ export function makeLeaves(side: number): Uint8Array<ArrayBuffer> {
   const leaves = new Uint8Array(side * side).fill(kGap);
   for (let n = 0; n < kLeavesCount; ++n) {
     const [x, y, turnRad] = [side * random(), side * random(), 2 * Math.PI * random()];
-    const half = 0.5 * side * (kLengths[0] + (kLengths[1] - kLengths[0]) * random());
-    const light = kFarthest + ((kNearest - kFarthest) * n) / kLeavesCount + kUneven * (2 * random() - 1);
+    const half = 0.5 * side * mix(...kLengths, random());
+    const light = mix(kFarthest, kNearest, n / kLeavesCount) + mix(-kUneven, kUneven, random());
     const [cos, sin] = [Math.cos(turnRad), Math.sin(turnRad)];
     const reach = Math.ceil(half);
     for (let dy = -reach; dy <= reach; ++dy)

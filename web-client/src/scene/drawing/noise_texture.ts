@@ -1,5 +1,6 @@
 // A repeating noise tile ("lace"): cells with bright walls over cloudy noise, every brightness equally frequent. Foam shows where the
-// tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it.
+// tile is brighter than a threshold, so that foam of 0.5 covers half the water. Stone and sand take their grain from it. Beside it a tile of
+// leaves, for plants.
 import { DataTexture, LinearFilter, LinearMipmapLinearFilter, RedFormat, RGFormat, RepeatWrapping, UnsignedByteType } from "three";
 
 import { smooth } from "../maths/interpolate";
@@ -74,7 +75,7 @@ export function makeLace(side: number): Uint8Array<ArrayBuffer> {
 let lace: Uint8Array<ArrayBuffer> | undefined;
 let laceAndLeaves: Uint8Array<ArrayBuffer> | undefined;
 
-/** Green: the tile of leaves. `plain`: no leaves, and no mip levels, between which software renderers would interpolate at twice the cost. */
+/** Red: the lace; green: the leaves. `plain`: no leaves, and no mip levels, between which software renderers would interpolate at twice the cost. */
 export function makeNoiseTexture(plain: boolean): DataTexture {
   const red = (lace ??= makeLace(kSide));
   if (!plain && !laceAndLeaves) {

@@ -13,9 +13,10 @@ const kSizes = [0.72, 1.0] as const;
 const kBrightness = [0.3, 1.0] as const;
 /** Its rows, its columns, and how uneven its lumps are: in a garden, on the land behind a sea, and in the plain tiers. */
 const kCells = { garden: [8, 14, 0.15], land: [6, 10, 0.35], plain: [4, 7, 0.15] } as const;
-/** Sprigs of a clump, which tear its outline, nearby and far away; where they begin and end, and half of their widths there, relative to the ellipsoid. */
+/** Sprigs of a clump, which tear its outline, and of one far away. */
 const kSprigsCount = 48;
-const kFarSprigsCount = 28;
+export const kFarSprigsCount = 28;
+/** Where they begin and end, and half of their widths there, relative to the ellipsoid. */
 const kSprigFoot = 0.7;
 const kSprigReach = [1.0, 1.2] as const;
 const kSprigHalfWidths = [0.26, 0.12] as const;
@@ -68,14 +69,14 @@ export class Foliage {
   }
 
   /** Adds a crown of clumps. */
-  crown([xM, yM, zM]: Point, radiusM: number, leaves: Leaves, isFar = false): void {
+  crown([xM, yM, zM]: Point, radiusM: number, leaves: Leaves, sprigsCount = kSprigsCount): void {
     const clumpsCount = this.plain ? 3 : 6;
     for (let i = 0; i < clumpsCount; ++i) {
       const round = (2 * Math.PI * (i + this.between(-0.3, 0.3))) / (clumpsCount - 1);
       const outM = i === 0 ? 0 : this.between(0.55, 0.8) * radiusM;
       const sizeM = (i === 0 ? 0.85 : this.between(0.55, 0.8)) * radiusM;
       const upM = (i === 0 ? 0.44 : this.between(-0.67, 0.26)) * radiusM;
-      this.clump([xM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)], [sizeM, 0.85 * sizeM, sizeM], leaves, isFar ? kFarSprigsCount : kSprigsCount);
+      this.clump([xM + outM * Math.cos(round), yM + upM, zM + outM * Math.sin(round)], [sizeM, 0.85 * sizeM, sizeM], leaves, sprigsCount);
     }
   }
 

@@ -2,7 +2,7 @@
 import { clamp } from "../maths/interpolate";
 import { MeshBuilder, type Paint, type Point } from "../meshes/mesh_builder";
 import { addPlate, addRod, addTurned } from "../meshes/shapes";
-import { Foliage, type Leaves } from "./foliage";
+import { Foliage, kFarSprigsCount, type Leaves } from "./foliage";
 
 interface GardenSize {
   /** Half of the water, or of the free space around a tank, along x and z. */
@@ -199,7 +199,7 @@ export function addGarden(builder: MeshBuilder, deck: MeshBuilder, paint: Paint,
       const highM = treeM * plants.between(0.7, 1.5);
       const middle = at((n / 7) * (half + 4 * awayM) + plants.between(-1, 1), lawnM + 0.4 * highM, 3.4 * awayM + plants.between(0, 1) * awayM);
       if (plain) plants.clump(middle, [0.8 * highM, 0.65 * highM, 0.8 * highM], kWood);
-      else plants.crown(middle, 0.6 * highM, kWood, true);
+      else plants.crown(middle, 0.6 * highM, kWood, kFarSprigsCount);
     }
     if (waterM !== undefined && (side === 0 || (isOpen && sideM > kSmallM))) addLadder(builder, at, 0.5 * half, waterM, deckM);
     // Beside a small pool, nothing stands where the first views come from.

@@ -152,8 +152,8 @@ const kLampSines = [0.12, -0.06] as const;
 /** Returns the values for the display of linear light, as toDisplay() of sky.glsl does. */
 export function displayed({ x, y, z }: { x: number; y: number; z: number }, exposure: number): Rgb {
   const of = (linear: number): number => {
-    const x = 0.86 * exposure * linear;
-    return Math.sqrt(clamp((x * (2.51 * x + 0.03)) / (x * (2.43 * x + 0.59) + 0.09), 0, 1));
+    const light = 0.86 * exposure * linear;
+    return Math.sqrt(clamp((light * (2.51 * light + 0.03)) / (light * (2.43 * light + 0.59) + 0.09), 0, 1));
   };
   return [of(x), of(y), of(z)];
 }

@@ -19,7 +19,7 @@ export class MeshBuilder {
   private readonly index: number[] = [];
   /** Vertices at one position that share a normal. */
   private readonly welds: [number, number][] = [];
-  /** Normals of leaves, which do not follow from their triangles, from their first vertex on. */
+  /** First of the four vertices of each leaf, and its normal, which does not follow from its triangles. */
   private readonly leaves: { first: number; normal: Point }[] = [];
 
   /**
@@ -71,12 +71,13 @@ export class MeshBuilder {
     return this.grid([[a, b], [d, c]], paint);
   }
 
-  /** Adds a flat face that is seen from both sides and lit as if it faced `normal`, of length 1. */
+  /** Adds a face that is seen from both sides and lit as if it faced `normal`, of length 1; not in a flat mesh. */
   leaf(a: Point, b: Point, c: Point, d: Point, normal: Point, paint: Paint): this {
     const first = this.positions.length / 3;
     this.leaves.push({ first, normal });
     this.quad(a, b, c, d, paint);
-    this.index.push(first + 1, first, first + 2, first + 1, first + 2, first + 3);
+    this.triangle(first + 1, first, first + 2);
+    this.triangle(first + 1, first + 2, first + 3);
     return this;
   }
 

@@ -1,4 +1,4 @@
-// Include in fluid_surface.frag, behind its uniforms: where the liquid is, and how its surface lies. WAVE as there.
+// Include in fluid_surface.frag, behind its uniforms: where the liquid is, and how its surface lies. WAVE, GLASS as there.
 
 // White water is torn: its density less that of the air in it, and how far that varies.
 #ifdef WAVE
@@ -35,6 +35,7 @@ vec2 liquidAt(vec3 at_m) {
     float torn = lumps(at_m / u_radius_m);
     density.r -= white * (kAiry + kTorn * torn);
 #ifdef GLASS
+    // Seen from near, a little air leaves water clear.
     white *= smoothstep(0.15, 0.75, white);
 #endif
 #ifndef WAVE

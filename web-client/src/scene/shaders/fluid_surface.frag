@@ -141,10 +141,6 @@ vec3 lightAround(vec3 from, vec3 ray) {
   return light;
 }
 
-#ifndef WAVE
-vec3 floorLight(vec3 at_m) { return texture(u_floor_light, vec2(1.0, -1.0) * clamp(at_m.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb; }
-#endif
-
 void main() {
   vec3 view_ray = vec3((v_uv * 2.0 - 1.0) * u_ray.xy + u_ray.zw, -1.0);
   float per_m = length(view_ray);
@@ -207,7 +203,7 @@ void main() {
   vec3 from = surface, bent = refract(ray, bending, kFromAir), leaving = bent;
   float length_m = 0.0, white_m = 0.0, past_m = 0.0;
   bool is_floor = false;
-  float caught = 0.0;  // share of the light that is reflected back where the rest leaves
+  float caught;  // share of the light that is reflected back into the liquid where the rest leaves it; it comes from the floor
   for (int part = 0; part < kParts; ++part) {
     caught = 0.0;
     float along_m = 0.2 * u_radius_m;
@@ -286,8 +282,8 @@ void main() {
   // The rim of a pool does not stand in it.
   vec2 inside_m = min(u_volume_max_m.xz, -u_volume_min_m.xz) - abs(u_camera_m + (from - u_camera_m) * (shown_m / at_floor.z)).xz;
   is_shown = is_shown && min(inside_m.x, inside_m.y) > u_radius_m;
-  vec3 behind = is_floor && !is_shown ? floorLight(from) : behindAt(from, leaving, past_m, ahead_m);
-  behind = mix(behind, floorLight(from), caught);
+  vec3 floor_light = texture(u_floor_light, vec2(1.0, -1.0) * clamp(from.xz / u_floor_size_m, -kMapped, kMapped) + 0.5).rgb;
+  vec3 behind = is_floor && !is_shown ? floor_light : mix(behindAt(from, leaving, past_m, ahead_m), floor_light, caught);
 #endif
   behind = mix(behind, again.rgb, again.a);
 #ifdef GLASS

@@ -1,8 +1,8 @@
 // Include in water.frag and fluid_surface.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that
 // has just begun is a heap of domes with creases between them. After u_noise, u_lace_m, sky.glsl and water_optics.glsl.
 
-// Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn. Share
-// of the light that reaches its middle height, and by how much it is more on the domes than in the creases.
+// Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn
+// (kSteepest). Share of the light that reaches the middle height of the lace, and how fast it grows with height: less reaches the creases.
 #ifndef GLASS
 const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.7;
 #else

@@ -22,12 +22,13 @@ vec2 pixelSlopes(vec2 at) {
 }
 
 // Share of the variance that is drawn as waves of a few pixels: the more, the smaller and sparser the glints.
-// The finest waves are seen as an even gleam around the glints.
 #ifdef OPEN_SEA
-const float kDrawnShare = 0.9, kGleam = 0.10;
+const float kDrawnShare = 0.9;
 #else
-const float kDrawnShare = 0.8, kGleam = 0.1;
+const float kDrawnShare = 0.8;
 #endif
+// The finest waves are seen as an even gleam around the glints.
+const float kGleam = 0.10;
 
 // Share of the sunlight that slopes of this variance around `slopes` mirror, by the density of those that do (Cox & Munk 1954).
 // `missing`: the slopes that mirror the sun.

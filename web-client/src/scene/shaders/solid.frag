@@ -39,7 +39,8 @@ uniform sampler2D u_field;
 // Heights over the water's surface up to which it wets what stands in it, and up to which the sky's light is less, m.
 const float kWetBandM = 0.15, kDarkBandM = 0.3;
 #endif
-// Grain of what has leaves, and the size of one tile of the noise on it over that on the rest.
+// Grain of what has leaves, the size of one tile of leaves over that of the noise, and the least brightness of a leaf on a sprig: one sees
+// through the rest.
 const float kLeavesGrain = 1.6, kLeavesTiles = 0.9, kSprigLeaf = 0.46;
 // A mown lawn has more grain than this.
 const float kLawnGrain = 1.05, kLeavesShadeM = 0.3;

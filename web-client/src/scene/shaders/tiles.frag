@@ -1,6 +1,6 @@
 // Tiles and slabs with joints: floor and walls of a pool, rim and deck, table tops. Under water, crests focus the sunlight (caustics),
 // and walls shade the floor. Reads v_color: colour, and the side of a tile in sides of the water.
-// PLAIN: also for the display. DECK: around a pool or a tank, slabs of natural stone; WET: near the water they are wet.
+// PLAIN: also for the display. DECK: around a pool or a tank, slabs of natural stone. WET: water splashes on them.
 // CAUSTICS: from a photon grid; otherwise from the surface's curvature.
 #include <sky>
 #include <cell_hash>

@@ -30,8 +30,8 @@ const kPlinth = 5;
 /** Side of the tiles in a tank, and in a tray: a share of its size. */
 const kTileShare = 1 / 44;
 const kTrayTileShare = 1 / 20;
-/** Height of the walls: a share of the free one over the resting water; of a channel of particles, whose waves are to be seen against the
- * sky, a share of that of the glass. */
+/** The walls end at this share of the glass that stands over the resting water. In a channel of particles, whose waves shall be seen
+ * against the sky, they have this share of the height of the glass. */
 const kWallFreeboard = 0.25;
 const kChannelWallHeight = 0.5;
 /** What is kept free around a tank, from its middle and beside it. */
