@@ -4,9 +4,11 @@
 #include <cassert>
 #include <cctype>
 #include <chrono>
+#include <iterator>
 #include <thread>
 #include <utility>
 
+#include <fmt/format.h>
 #include <glad/gl.h>
 #include <spdlog/spdlog.h>
 
@@ -98,19 +100,19 @@ bool isWord(char c) {
   return c == '_' || std::isalnum(static_cast<unsigned char>(c)) != 0;
 }
 
-/// Returns the defines whose names are in the text. Another one would make the same program from a different text,
-/// which drivers compile anew: to Mesa the digest of the text is part of the program.
-Defines usedIn(std::string_view text, const Defines& defines) {
+/// Returns the defines that the shader can use. Another one would make the same program from a different text, which
+/// drivers compile anew: to Mesa the digest of the text is part of the program.
+Defines usedIn(const EmbeddedShader& shader, const Defines& defines) {
   Defines out;
-  for (const auto& define : defines) {
-    const std::string& name = define.first;
-    for (std::size_t at = text.find(name); at != std::string_view::npos; at = text.find(name, at + 1)) {
-      const std::size_t end = at + name.size();
-      if ((end < text.size() && isWord(text[end])) || (at > 0 && isWord(text[at - 1]))) continue;
-      out.push_back(define);
-      break;
-    }
-  }
+  std::ranges::copy_if(defines, std::back_inserter(out), [&](const auto& define) {
+    return std::ranges::binary_search(shader.names, std::string_view(define.first));
+  });
+  return out;
+}
+
+std::string linesOf(const Defines& defines) {
+  std::string out;
+  for (const auto& [name, value] : defines) out += "#define " + name + " " + value + "\n";
   return out;
 }
 
@@ -162,8 +164,9 @@ void waitForCompiler(const Context& ctx, GLuint program) {
 }
 
 /// Returns the identity of a program on disk: another driver, or another version of it, compiles anew.
-std::string storeKey(const DeviceInfo& device, std::string_view text) {
-  return device.vendor + "\n" + device.name + "\n" + device.gl_version + "\n" + std::string(text);
+std::string storeKey(const DeviceInfo& device, const EmbeddedShader& shader, std::string_view defines) {
+  return fmt::format("{}\n{}\n{}\n{}{}\n{}", device.vendor, device.name, device.gl_version, kVersionLine, shader.digest,
+                     defines);
 }
 
 /// Drivers without formats keep nothing; Mesa's have one where Mesa's own cache of shaders works.
@@ -279,20 +282,21 @@ core::Result<std::shared_ptr<CompiledProgram>> CompiledProgram::compile(Context&
     source.text = read.text;
     source.lines = read.lines;
   }
-  std::string text(kVersionLine);
-  for (const Defines& each : {ctx.tuning().defines(), defines})
-    for (const auto& [name, value] : usedIn(source.text, each)) text += "#define " + name + " " + value + "\n";
-  // The whole text is one string, because each source string has its own number in driver messages.
-  text += "#line 1\n";
-  const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
-  text += shuffle_seed == 0 ? std::string(source.text) : shuffledGroups(source.text, shuffle_seed);
+  Defines all = ctx.tuning().defines();
+  if (!ctx.shaderFolder()) all = usedIn(*embedded, all);
+  all.insert(all.end(), defines.begin(), defines.end());
+  const std::string define_lines = linesOf(all);
 
   ProgramStore& store = ctx.programs().store();
-  const std::string key = store.isOn() ? storeKey(ctx.device(), text) : std::string{};
+  const std::string key = store.isOn() ? storeKey(ctx.device(), source, define_lines) : std::string{};
   auto program = std::make_shared<CompiledProgram>();
   if (store.isOn()) program->id = fromStore(ctx, key, shader_path);
   if (program->id != 0) return finished(ctx, std::move(program), source, std::move(read.files));
 
+  // The whole text is one string, because each source string has its own number in driver messages.
+  const std::uint32_t shuffle_seed = ctx.checks().shuffle_seed;
+  const std::string text = std::string(kVersionLine) + define_lines + "#line 1\n" +
+                           (shuffle_seed == 0 ? std::string(source.text) : shuffledGroups(source.text, shuffle_seed));
   const GLchar* const pointer = text.data();
   const auto length = static_cast<GLint>(text.size());
   const GLuint shader = glCreateShader(GL_COMPUTE_SHADER);
@@ -339,7 +343,7 @@ core::Result<std::shared_ptr<CompiledProgram>> ProgramCache::get(Context& ctx, s
                                                                  const Defines& all_defines) {
   // A file of a folder may use other ones when it is read again.
   const EmbeddedShader* const embedded = ctx.shaderFolder() ? nullptr : findShader(shader_path);
-  const Defines defines = embedded ? usedIn(embedded->text, all_defines) : all_defines;
+  const Defines defines = embedded ? usedIn(*embedded, all_defines) : all_defines;
   const auto known = std::ranges::find_if(
       entries_, [&](const Entry& entry) { return entry.shader_path == shader_path && entry.defines == defines; });
   if (known != entries_.end()) {

@@ -10,11 +10,13 @@ set is validated as GLSL and as the SPIR-V that glslc generates from it. An entr
 once, without defines. Refused: an entry point that is not listed, and a define that its shader does not use.
 
 Files in shared/ are C++ headers as well: `#pragma once` and includes under `#ifdef __cplusplus` are left out.
-The result is one C++ source with the expanded texts and, for each text, the files and lines that it comes from.
+The result is one C++ source with the expanded texts and, for each text, the files and lines that it comes from,
+the names that defines may set, and a digest.
 """
 
 import argparse
 import concurrent.futures
+import hashlib
 import os
 import pathlib
 import re
@@ -131,8 +133,11 @@ class Expansion:
 
     def unused(self, defines):
         """Names in the set of defines that the shader's text does not contain outside comments."""
-        words = set(re.findall(r"\w+", COMMENT.sub(" ", self.text())))
-        return [name for name, _ in defines if name not in words]
+        return [name for name, _ in defines if name not in self.names()]
+
+    def names(self):
+        """Words in capitals outside comments: what a define can change."""
+        return set(re.findall(r"\b[A-Z][A-Z0-9_]*\b", COMMENT.sub(" ", self.text())))
 
 
 def read_variants(root, entries):
@@ -165,9 +170,9 @@ def read_variants(root, entries):
 def parse_defines(text, where, entry):
     defines = []
     for word in text.split():
-        match = re.fullmatch(r"([A-Za-z_]\w*)=(\S+)", word)
+        match = re.fullmatch(r"([A-Z][A-Z0-9_]*)=(\S+)", word)
         if not match:
-            raise ShaderError(f"{where}: {entry}: write NAME=VALUE instead of {word}")
+            raise ShaderError(f"{where}: {entry}: write NAME=VALUE, the name in capitals, instead of {word}")
         defines.append(match.groups())
     return defines
 
@@ -231,12 +236,15 @@ def cpp_source(expansions, function):
     for index, expansion in enumerate(expansions):
         runs = "".join(f'    LineRange{{{first}, "{name}", {number}}},\n' for first, name, number in expansion.ranges())
         parts.append(f"constexpr auto kLines{index} = std::to_array<LineRange>({{\n{runs}}});\n")
+        names = "".join(f'    "{name}",\n' for name in sorted(expansion.names()))
+        parts.append(f"constexpr std::array<std::string_view, {len(expansion.names())}> kNames{index} = {{\n{names}}};\n")
         # The newline after the opening parenthesis is not part of the text.
         parts.append(f"constexpr std::string_view kText{index} =\n"
                      f'    std::string_view(R"{DELIMITER}(\n{expansion.text()}){DELIMITER}").substr(1);\n\n')
     parts.append(f"constexpr std::array<EmbeddedShader, {len(expansions)}> kShaders = {{{{\n")
     for index, expansion in enumerate(expansions):
-        parts.append(f'    EmbeddedShader{{"{expansion.entry}", kText{index}, kLines{index}}},\n')
+        digest = hashlib.sha256(expansion.text().encode()).hexdigest()
+        parts.append(f'    EmbeddedShader{{"{expansion.entry}", kText{index}, kLines{index}, kNames{index}, "{digest}"}},\n')
     parts.append("}};\n\n}  // namespace\n\n"
                  f"std::span<const EmbeddedShader> {function}();\n"
                  f"std::span<const EmbeddedShader> {function}() {{ return kShaders; }}\n\n"

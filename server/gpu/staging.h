@@ -11,7 +11,7 @@
 
 namespace spindrift::gpu {
 
-/// Two persistently mapped buffers of 4 MiB, each made at its first use; larger transfers are split. One per context,
+/// Two persistently mapped buffers of 1 MiB, each made at its first use; larger transfers are split. One per context,
 /// on its thread.
 class Staging {
  public:
@@ -28,7 +28,7 @@ class Staging {
   void download(std::uint32_t buffer_id, std::size_t offset_bytes, std::span<std::byte> bytes);
 
  private:
-  static constexpr std::size_t kPartBytes = std::size_t{1} << 20;
+  static constexpr std::size_t kPartBytes = std::size_t{256} << 10;
   static constexpr std::size_t kPartCount = 4;
   /// Longer than the time after which drivers reset a hanging device.
   static constexpr std::chrono::seconds kLimit{30};

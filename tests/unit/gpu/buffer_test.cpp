@@ -63,7 +63,7 @@ TEST_F(BufferTest, LivesInDeviceMemoryUnlessItIsUpdatable) {
 }
 
 TEST_F(BufferTest, TransfersMoreThanItsStagingMemoryHolds) {
-  constexpr std::size_t kBytes = (std::size_t{11} << 20) + 13;  // almost three times 4 MiB
+  constexpr std::size_t kBytes = (std::size_t{11} << 20) + 13;  // more than ten times its 1 MiB
   auto buffer = Buffer::create(*ctx, "large", kBytes);
   ASSERT_TRUE(buffer);
   const auto bytes = ramp(kBytes);

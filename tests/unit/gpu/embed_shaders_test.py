@@ -3,6 +3,7 @@ SPIRV_VAL."""
 
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
@@ -134,7 +135,7 @@ class EmbedShaders(unittest.TestCase):
 
     def test_refuses_a_define_without_a_value(self):
         self.write_shader("a.comp", MAIN, "N")
-        self.assert_refused("variants.txt:2: a.comp: write NAME=VALUE instead of N")
+        self.assert_refused("variants.txt:2: a.comp: write NAME=VALUE, the name in capitals, instead of N")
 
     def test_refuses_a_shader_that_is_not_listed(self):
         self.write("sub/a.comp", MAIN)
@@ -183,6 +184,16 @@ class EmbedShaders(unittest.TestCase):
         text = self.assert_embedded()
         for line in ('LineRange{1, "a.comp", 1}', 'LineRange{2, "b.glsl", 1}', 'LineRange{4, "a.comp", 3}'):
             self.assertIn(line, text)
+
+    def test_names_what_defines_can_set_and_changes_the_digest_with_the_text(self):
+        self.write_shader("a.comp", '// COMMENT\n#include "b.glsl"\n' + MAIN, "WIDTH=1")
+        self.write("b.glsl", "#ifdef SECOND_ORDER\n#endif\nconst int width = WIDTH;\n")
+        text = self.assert_embedded()
+        names = re.search(r"kNames0 = \{\n(.*?)\}", text, re.DOTALL).group(1)
+        self.assertEqual(re.findall(r'"(\w+)"', names), ["SECOND_ORDER", "WIDTH"])
+        digest = re.search(r'kNames0, "([0-9a-f]{64})"', text).group(1)
+        self.write("b.glsl", "const int width = WIDTH + 1;\n")
+        self.assertNotIn(digest, self.assert_embedded())
 
     def test_lists_every_file_it_read_for_the_build(self):
         self.write_shader("a.comp", '#include "b.glsl"\n' + MAIN)

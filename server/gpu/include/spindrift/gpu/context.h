@@ -45,7 +45,7 @@ constexpr Barrier operator|(Barrier a, Barrier b) {
 }
 
 /// Objects on the device now, and counters since the context was made. Tests check them per scene. The context's own
-/// memory (at most 8 MiB for uploads and downloads) is not included.
+/// memory (at most 2 MiB for uploads and downloads) is not included.
 struct Ledger {
   std::uint64_t buffer_count = 0;         ///< live buffers
   std::uint64_t buffer_bytes = 0;         ///< bytes of the live buffers
