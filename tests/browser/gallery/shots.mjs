@@ -26,7 +26,7 @@ const kShots = {
   breaking_wave_particles: { tick: 496 },
   breaking_wave_wave: { tick: 105 },
   dam_break: { tick: 104 },
-  flume: { tick: 915 },
+  flume: { tick: 925 },
   flotsam: { tick: 300 },
   harbor: { tick: 1410 },
   island: { tick: 510, historyTicks: 300 },

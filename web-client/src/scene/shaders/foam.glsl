@@ -10,8 +10,8 @@ const float kReliefSlope = 0.9, kOpen = 0.95, kCreased = 0.8;  // fine froth
 #endif
 const float kReliefTiles = 0.02, kSteepest = 1.1;
 
-// Size of the billows of masses of foam, and the step over which their slope is taken, in tiles of the lace; slope per difference of the noise.
-const float kBillows = 1.7, kBillowStep = 0.12, kBillowSlope = 1.9;
+// Step over which the slope of billows is taken, in tiles of the lace; slope per difference of their height.
+const float kBillowStep = 0.12, kBillowSlope = 1.9;
 
 // Size of a tile of bubbles, in tiles of the lace, and how much they add to its height.
 const float kBubbles = 0.05, kTornByBubbles = 0.4;
@@ -24,6 +24,8 @@ float laceAt(vec2 at, vec2 drawn_m, float fresh) {
   float broad = texture(u_noise, (at + drawn_m).yx / (2.7 * u_lace_m)).r;
   return mix(0.36 * wide + 0.32 * middle + 0.32 * fine, 1.0 - (0.14 * broad + 0.2 * wide + 0.3 * middle + 0.36 * fine), fresh);
 }
+
+#include <billows>
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
 float shownFoam(float streamed) {
@@ -42,16 +44,20 @@ vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, floa
   float rise = laceAt(at + step_tiles * u_lace_m * toward_sun, drawn_m, fresh) - lace;
   float slope = clamp(kReliefSlope * rise * kReliefTiles / step_tiles, -kSteepest, kSteepest);
   vec3 bent = normalize(normal - slope * vec3(toward_sun.x, 0.0, toward_sun.y));
-#ifdef OPEN_SEA
-  // Masses of it are billows.
-  float broad = texture(u_noise, at.yx / (kBillows * u_lace_m)).r;
-  float billow = texture(u_noise, (at + kBillowStep * u_lace_m * toward_sun).yx / (kBillows * u_lace_m)).r - broad;
-  bent = normalize(bent - clamp(kBillowSlope * fresh * billow, -kSteepest, kSteepest) * vec3(toward_sun.x, 0.0, toward_sun.y));
+#ifdef HEAPED
+  // Masses of it are billows, one upon the other.
+  float heap = billowsAt(at);
+  float billow = (billowsAt(at + kBillowStep * u_lace_m * toward_sun) - heap) * fresh;
+  bent = normalize(bent - clamp(kBillowSlope * billow, -kSteepest, kSteepest) * vec3(toward_sun.x, 0.0, toward_sun.y));
 #endif
   // Light that enters at one side of a lump leaves it at the others.
-  float sun = sunlit_share * clamp(0.2 + 0.8 * dot(bent, u_sun_direction), 0.0, 1.0);
+  float sun = sunlit_share * mix(clamp(0.2 + 0.8 * dot(bent, u_sun_direction), 0.0, 1.0), clamp(0.4 + 0.6 * dot(bent, u_sun_direction), 0.0, 1.0), fresh);
   // Little of the sky is seen from a crease.
   float open = mix(clamp(kOpen + kCreased * (lace - 0.5), 0.2, 1.05), 0.8, smoothstep(0.05, 0.3, blur));
+#ifdef HEAPED
+  // Much light passes through the heaps of fresh foam.
+  open = mix(open, max(open * (0.75 + 0.4 * heap), 0.5), fresh);
+#endif
   return vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
 }
 
@@ -66,13 +72,13 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   // Thinning foam comes apart in patches; fresh foam is one body.
   foam *= mix(0.5 + 0.9 * curl.y, 1.0, smoothstep(0.35, 0.9, foam));
   float cover = min(foam, 1.0);
-  float fresh = smoothstep(0.45, 0.9, cover);
+  float fresh = heapedShare(cover);
   float lace = laceAt(at, drawn_m, fresh);
   // Near the camera its edges come apart in bubbles.
   float bubbly = 0.5 * (texture(u_noise, at.yx / (kBubbles * u_lace_m)).r + texture(u_noise, at / (0.37 * kBubbles * u_lace_m)).r) - 0.5;
   float torn = lace + kTornByBubbles * bubbly * (1.0 - smoothstep(0.0, kBubbles, 0.6 * blur));
   // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.3 * fresh + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
   float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
   // Bubbles below the surface reach further than the froth on it.
   water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));

@@ -4,6 +4,7 @@ import { AddEquation, CustomBlending, DstColorFactor, GLSL3, OneFactor, RawShade
 import bed from "./bed.glsl?raw";
 import below from "./below.glsl?raw";
 import bicubic from "./bicubic.glsl?raw";
+import billows from "./billows.glsl?raw";
 import border from "./border.glsl?raw";
 import bubblesFrag from "./bubbles.frag?raw";
 import caustics from "./caustics.glsl?raw";
@@ -141,6 +142,7 @@ const kShared: Record<string, string> = {
   bed,
   below,
   bicubic,
+  billows,
   border,
   caustics,
   cell_hash: cellHash,

@@ -16,6 +16,7 @@ in float v_view_z;
 in float v_top_m;
 #ifdef SKIRT
 in vec3 v_side_normal;
+in float v_heap_m;
 #endif
 
 uniform vec3 u_camera_m;
@@ -313,7 +314,7 @@ void main() {
   fresnel *= edge;
 #ifdef SKIRT
   vec3 water = mix(under, skyLight(vec3(mirrored.x, abs(mirrored.y), mirrored.z)), 0.2 * fresnel);
-  water = withMeniscus(water, v_top_m - v_world.y);
+  water = withAir(withMeniscus(water, v_top_m - v_world.y), v_top_m - v_world.y, v_heap_m);
 #else
   float upward = mirrored.y;
   mirrored.y = abs(upward);
@@ -372,13 +373,10 @@ void main() {
 #endif
 #endif
   if (foam > 0.01) {
-    vec2 at = v_world.xz;
+    vec2 at = placeOfFoam(v_world.xz, foam_slopes, v_top_m);
     vec3 foam_normal = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
-#ifdef UNEVEN
-    // The face of a breaker is steep: its height counts as a way along it.
-    at -= v_shoreward * v_top_m;
-#elif defined(OPEN_SEA)
-    // Elsewhere steep waves draw out the foam of a breaker; ripples tear that of wakes and shores.
+#if defined(OPEN_SEA) && !defined(UNEVEN)
+    // Steep waves draw out the foam of a breaker; ripples tear that of wakes and shores.
     float torn = 1.0 - smoothstep(0.1, 0.4, broken);
     at -= mix(0.25 * foam_slopes, 0.6 * field.gb, torn);
     foam_normal = mix(foam_normal, normal, torn);

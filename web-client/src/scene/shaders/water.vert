@@ -1,6 +1,6 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
 // VERTEX_LIT: for water_plain.frag. LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
-// UNEVEN: straight crests are drawn uneven.
+// UNEVEN: straight crests are drawn uneven. HEAPED: fresh foam lies on them in heaps.
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
@@ -37,6 +37,22 @@ out vec2 v_shoreward;  // direction toward shallower water; 0 over a level bed
 out vec3 v_world;
 out float v_view_z;
 out float v_top_m;
+#ifdef HEAPED
+uniform sampler2D u_noise;
+uniform float u_lace_m;
+uniform sampler2D u_froth;
+#ifdef FOAM
+uniform sampler2D u_foam_to;
+#endif
+#include <billows>
+// Height of heaps of foam, in tiles of the lace.
+#ifdef GLASS
+const float kHeap = 0.32;
+out float v_heap_m;
+#else
+const float kHeap = 0.05;
+#endif
+#endif
 #if defined(VERTEX_LIT) && !defined(SKIRT)
 #include <water_plain>
 #endif
@@ -78,6 +94,20 @@ void main() {
                       bedDepth(at - kStepM.yx, u_extent_m, u_depth_m) - bedDepth(at + kStepM.yx, u_extent_m, u_depth_m));
   v_shoreward = falling / max(length(falling), 0.05);
   v_world.xz += v_shoreward * leanM(v_top_m);
+#endif
+#endif
+#ifdef HEAPED
+  float foam = texture(u_froth, position.xz + 0.5).r;
+#ifdef FOAM
+  foam = max(foam, texture(u_foam_to, position.xz + 0.5).r);
+#endif
+#ifdef OPEN_SEA
+  foam = max(foam, crestFoam(field.r, field.a)) * v_share_away.x;
+#endif
+  float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
+  v_world.y += heap_m * position.y;
+#ifdef GLASS
+  v_heap_m = heap_m;
 #endif
 #endif
 #ifdef SKIRT

@@ -110,6 +110,7 @@ export class WaterPass implements Pass {
     if (edge.kind === "sea") defines["OPEN_SEA"] = 1;
     else if (edge.ripples) defines["RIPPLES"] = 1;
     if (edge.kind === "sea" && !quality.plain && isDrawnUneven(greeting)) defines["UNEVEN"] = 1;
+    if (!quality.plain && edge.kind !== "walls") defines["HEAPED"] = 1;
     if (edge.kind === "cut") defines["GLASS"] = 1;
     const { top, sides } = makeWaterGeometries(edge, quality.surfaceCellsCount, greeting);
     // Plain water is blended over the solids. Its upper side is enough: only the real one shows the back of a steep wave.
