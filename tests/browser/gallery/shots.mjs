@@ -25,7 +25,7 @@ const kShots = {
   breaking_wave: { tick: 111 },
   breaking_wave_particles: { tick: 496 },
   breaking_wave_wave: { tick: 105 },
-  dam_break: { tick: 104 },
+  dam_break: { tick: 132 },
   flume: { tick: 925 },
   flotsam: { tick: 300 },
   harbor: { tick: 1410 },

@@ -1,6 +1,6 @@
 // The density of the particles in cells: a volume, as horizontal slices side by side in one texture. Reads the particles. Writes density
 // over that at rest, and the white share of it.
-import { LinearFilter, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
+import { LinearFilter, RGBAFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { TexelType } from "../drawing/quality";
@@ -30,7 +30,7 @@ export class FluidVolumePass implements Pass {
     private readonly cellsPerSpacing: number,
     texelType: TexelType,
   ) {
-    this.target = new WebGLRenderTarget(1, 1, { format: RGFormat, type: texelType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
+    this.target = new WebGLRenderTarget(1, 1, { format: RGBAFormat, type: texelType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
     this.uniforms = {
       u_volume: { value: this.target.texture },
       u_volume_min_m: { value: new Vector3() },

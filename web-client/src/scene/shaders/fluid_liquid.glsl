@@ -13,6 +13,9 @@ const float kAiry = 0.08, kTorn = 0.1;
 #endif
 const float kLaceRadii = 22.0;
 const float kSlopeRadii = 3.0;
+// Roughness of fast water, coarse and fine, as density, and its white share where most air is.
+const vec2 kRough = vec2(0.2, 0.09);
+const float kStirredIn = 0.6;
 #endif
 // Halvings of a step, to find the surface.
 const int kHalvings = 5;
@@ -29,7 +32,7 @@ vec2 liquidAt(vec3 at_m) {
   // Level toward the glass, from which the particles keep away.
   at_m.xz = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
 #endif
-  vec2 density = volumeAt(at_m);
+  vec3 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
   if (density.r > 0.6 * kSurface && white > 0.05) {
     float torn = lumps(at_m / u_radius_m);
@@ -42,6 +45,14 @@ vec2 liquidAt(vec3 at_m) {
     white *= clamp(0.85 + 1.1 * torn, 0.0, 1.0);
 #endif
   }
+#ifndef WAVE
+  // The surface of water that moves fast is rough, and takes in air.
+  if (density.b > 0.05 && density.r < 0.9) {
+    float coarse = lumps(1.3 * at_m / u_radius_m), fine = lumps(3.7 * at_m.zyx / u_radius_m);
+    density.r += density.b * (kRough.x * coarse + kRough.y * fine);
+    white = max(white, kStirredIn * density.b * smoothstep(0.15, 0.6, 0.6 * coarse + 0.8 * fine) * smoothstep(0.7, 0.4, density.r));
+  }
+#endif
   return vec2(density.r - kSurface, white);
 }
 

@@ -6,8 +6,8 @@ uniform float u_reach_m;
 uniform float u_at_rest;    // sum of the kernel over the lattice at rest
 flat in vec3 v_center;
 flat in vec3 v_slice;
-flat in float v_foam;
-layout(location = 0) out vec2 density;
+flat in vec2 v_foam_stirred;
+layout(location = 0) out vec4 density;
 
 // Share of a kernel that lies on this side of a wall at a distance in its radii: the integral of (1 - t^2)^4 within 2 %.
 float uncut(float away) { float left = clamp(1.0 - away, 0.0, 1.0); return 1.0 - 0.5 * left * left * left; }
@@ -24,5 +24,5 @@ void main() {
   vec3 at_m = at * u_cell_m, size_m = u_volume_max_m - u_volume_min_m;
   weight /= uncut(at_m.x / u_reach_m) * uncut((size_m.x - at_m.x) / u_reach_m) * uncut(at_m.y / u_reach_m) * uncut(at_m.z / u_reach_m) * uncut((size_m.z - at_m.z) / u_reach_m);
 #endif
-  density = vec2(weight, weight * v_foam);
+  density = vec4(weight, weight * v_foam_stirred, 0.0);
 }

@@ -1,5 +1,5 @@
 // Include: the volume that the particles fill, as horizontal slices side by side in one texture (fluid_volume.frag).
-uniform sampler2D u_volume;     // red: density over that at rest; green: the white part of it
+uniform sampler2D u_volume;     // density over that at rest, the white part of it, the part that moves fast
 uniform vec3 u_volume_min_m;
 uniform vec3 u_volume_max_m;
 uniform vec3 u_cells_count;     // along x, y, z
@@ -12,13 +12,13 @@ const float kSurface = 0.36;
 // First texel of a slice.
 vec2 sliceOrigin(float slice) { return vec2(mod(slice, u_slices_per_row), floor(slice / u_slices_per_row)) * u_cells_count.xz; }
 
-vec2 volumeAt(vec3 at_m) {
+vec3 volumeAt(vec3 at_m) {
   vec3 at = (at_m - u_volume_min_m) / u_cell_m;
   vec2 xz = clamp(at.xz, vec2(0.5), u_cells_count.xz - 0.5);
   float y = clamp(at.y - 0.5, 0.0, u_cells_count.y - 1.001);
   float low = floor(y);
   vec2 per_texel = 1.0 / vec2(textureSize(u_volume, 0));
-  return mix(textureLod(u_volume, (sliceOrigin(low) + xz) * per_texel, 0.0).rg, textureLod(u_volume, (sliceOrigin(low + 1.0) + xz) * per_texel, 0.0).rg, y - low);
+  return mix(textureLod(u_volume, (sliceOrigin(low) + xz) * per_texel, 0.0).rgb, textureLod(u_volume, (sliceOrigin(low + 1.0) + xz) * per_texel, 0.0).rgb, y - low);
 }
 
 // Lengths of the ray at which it enters the volume and leaves it.

@@ -11,12 +11,15 @@ uniform bool u_has_water;
 
 flat out vec3 v_center;     // cells
 flat out vec3 v_slice;      // its first texel, its height in cells
-flat out float v_foam;
+flat out vec2 v_foam_stirred;
+
+// Speeds between which water becomes stirred, m/s.
+const vec2 kStirredMps = vec2(0.3, 2.0);
 
 void main() {
   Particle particle = unpackParticle();
   v_center = (particle.center_m - u_volume_min_m) / u_cell_m;
-  v_foam = smoothstep(0.45, 1.0, particle.foam);
+  v_foam_stirred = vec2(smoothstep(0.45, 1.0, particle.foam), smoothstep(kStirredMps.x, kStirredMps.y, length(particle.velocity_mps)));
   float slice = floor(v_center.y - u_reach_m / u_cell_m + 0.5) + u_slice;
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 1.0;
