@@ -30,7 +30,9 @@ float lumps(vec3 at) {
 vec2 liquidAt(vec3 at_m) {
 #ifndef WAVE
   // Level toward the glass, from which the particles keep away.
-  at_m.xz = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
+  vec2 inside = clamp(at_m.xz, u_volume_min_m.xz + 2.0 * u_radius_m, u_volume_max_m.xz - 2.0 * u_radius_m);
+  bool is_beside_wall = inside != at_m.xz;
+  at_m.xz = inside;
 #endif
   vec3 density = volumeAt(at_m);
   float white = density.g / max(density.r, 1e-3);
@@ -47,10 +49,10 @@ vec2 liquidAt(vec3 at_m) {
   }
 #ifndef WAVE
   // The surface of water that moves fast is rough, and takes in air.
-  if (density.b > 0.05 && density.r < 0.9) {
+  if (density.b > 0.05 && density.r < 0.9 && !is_beside_wall) {
     float coarse = lumps(1.3 * at_m / u_radius_m), fine = lumps(3.7 * at_m.zyx / u_radius_m);
     density.r += density.b * (kRough.x * coarse + kRough.y * fine);
-    white = max(white, kStirredIn * density.b * smoothstep(0.15, 0.6, 0.6 * coarse + 0.8 * fine) * smoothstep(0.7, 0.4, density.r));
+    white = max(white, kStirredIn * density.b * smoothstep(0.2, 0.7, 0.5 * coarse + fine) * smoothstep(0.7, 0.4, density.r));
   }
 #endif
   return vec2(density.r - kSurface, white);

@@ -58,7 +58,12 @@ vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, floa
   // Much light passes through the heaps of fresh foam.
   open = mix(open, max(open * (0.75 + 0.4 * heap), 0.5), fresh);
 #endif
-  return vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(1.0, 0.96, 0.9));
+  vec3 light = vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(0.97, 0.98, 0.98));
+#ifdef HEAPED
+  // In the valleys between billows there is more water than air.
+  light = mix(light, u_bubbly * u_water_light, 0.6 * fresh * smoothstep(0.75, 0.2, heap) * smoothstep(0.75, 0.35, lace));
+#endif
+  return light;
 }
 
 // Water with `foam` on it, more than 0. `bubbles`: share of those below it that are drawn.
@@ -78,7 +83,7 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   float bubbly = 0.5 * (texture(u_noise, at.yx / (kBubbles * u_lace_m)).r + texture(u_noise, at / (0.37 * kBubbles * u_lace_m)).r) - 0.5;
   float torn = lace + kTornByBubbles * bubbly * (1.0 - smoothstep(0.0, kBubbles, 0.6 * blur));
   // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.3 * fresh + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.22 * fresh + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
   float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
   // Bubbles below the surface reach further than the froth on it.
   water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));

@@ -47,11 +47,13 @@ uniform sampler2D u_foam_to;
 #include <billows>
 // Height of heaps of foam, in tiles of the lace.
 #ifdef GLASS
-const float kHeap = 0.32;
+const float kHeap = 0.24;
 out float v_heap_m;
 #else
 const float kHeap = 0.05;
 #endif
+// The wash along hulls is lower.
+const float kAlongHulls = 0.75;
 #endif
 #if defined(VERTEX_LIT) && !defined(SKIRT)
 #include <water_plain>
@@ -97,7 +99,7 @@ void main() {
 #endif
 #endif
 #ifdef HEAPED
-  float foam = texture(u_froth, position.xz + 0.5).r;
+  float foam = kAlongHulls * texture(u_froth, position.xz + 0.5).r;
 #ifdef FOAM
   foam = max(foam, texture(u_foam_to, position.xz + 0.5).r);
 #endif
@@ -105,9 +107,11 @@ void main() {
   foam = max(foam, crestFoam(field.r, field.a)) * v_share_away.x;
 #endif
   float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
-  v_world.y += heap_m * position.y;
 #ifdef GLASS
   v_heap_m = heap_m;
+  v_world.y += heap_m * position.y;
+#else
+  v_world += heap_m * normalize(vec3(-field.g, 1.0, -field.b));
 #endif
 #endif
 #ifdef SKIRT
