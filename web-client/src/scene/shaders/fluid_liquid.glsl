@@ -15,7 +15,7 @@ const float kLaceRadii = 22.0;
 const float kSlopeRadii = 3.0;
 // Roughness of fast water, coarse and fine, as density, and its white share where most air is.
 const vec2 kRough = vec2(0.2, 0.09);
-const float kStirredIn = 0.6;
+const float kStirredIn = 0.4;
 #endif
 // Halvings of a step, to find the surface.
 const int kHalvings = 5;
@@ -52,7 +52,7 @@ vec2 liquidAt(vec3 at_m) {
   if (density.b > 0.05 && density.r < 0.9 && !is_beside_wall) {
     float coarse = lumps(1.3 * at_m / u_radius_m), fine = lumps(3.7 * at_m.zyx / u_radius_m);
     density.r += density.b * (kRough.x * coarse + kRough.y * fine);
-    white = max(white, kStirredIn * density.b * smoothstep(0.2, 0.7, 0.5 * coarse + fine) * smoothstep(0.7, 0.4, density.r));
+    white = max(white, kStirredIn * density.b * smoothstep(-0.1, 0.9, 0.4 * coarse + fine) * smoothstep(0.7, 0.4, density.r));
   }
 #endif
   return vec2(density.r - kSurface, white);
