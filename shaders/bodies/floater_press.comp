@@ -3,6 +3,7 @@
 // The pressure is exp(-(q / 2 sqrt(pi))^2), q being the distance squared in standard deviations. It has the second moments of the
 // floater's volume, and at least those of kLeastCells, so that the grid carries it; its integral is pi^2 products of deviations. The floater presses where it will be in the middle of the next tick.
 #include "bodies/floater_texels.glsl"
+#include "common/place_of.glsl"
 #include "shared/fixed_point.h"
 
 layout(local_size_x = FLOATER_GROUP) in;
@@ -38,7 +39,7 @@ void main() {
   const vec2 middle = clamp((middleOf(b).xz + waveHalf_m()) / cell_m, vec2(-1e6), vec2(1e6));
   const ivec2 first = ivec2(floor(middle)) - across / 2;
   for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += FLOATER_GROUP) {
-    ivec2 cell = first + ivec2(k % across.x, k / across.x);
+    ivec2 cell = first + placeOf(k, across.x);
     const vec2 d = (vec2(cell) + 0.5 - middle) * cell_m;
     const float distance2 = (zz * d.x * d.x - 2.0 * xz * d.x * d.y + xx * d.y * d.y) / determinant;
 #if WAVE_PERIODIC_X

@@ -13,6 +13,7 @@
 #include "shared/fixed_point.h"
 #define MOVED 1
 #include "bodies/hull_cells.glsl"
+#include "common/place_of.glsl"
 
 const uint kGroup = 64u;
 layout(local_size_x = kGroup) in;
@@ -109,7 +110,7 @@ void main() {
   const ivec2 first = ivec2(floor((b.centre_m.xz + waveHalf_m()) / sim.wave_cell_m)) - across / 2;
   Sums share = Sums(vec4(0.0), vec4(0.0), vec3(0.0), vec3(0.0));
   for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += int(kGroup))
-    add(share, b, half_m, first + ivec2(k % across.x, k / across.x));
+    add(share, b, half_m, first + placeOf(k, across.x));
   const Sums sums = totalOf(share);
   if (gl_LocalInvocationID.x > 0u) return;
 

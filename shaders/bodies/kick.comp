@@ -23,6 +23,7 @@ layout(binding = SURFACE) uniform samplerBuffer surface_texels;
 layout(binding = SURFACE_FLOW) uniform samplerBuffer flow_texels;
 #endif
 #include "bodies/hull_cells.glsl"
+#include "common/place_of.glsl"
 
 const uint kGroup = 64u;
 layout(local_size_x = kGroup) in;
@@ -137,7 +138,7 @@ HullSums shareOf(BoatState b, vec2 half_m, float peak_m) {
   const ivec2 first = ivec2(floor(middle)) - across / 2;
   const BoatState before = drifted(b, -0.5 * sim.wave_dt_s);
   for (int k = int(gl_LocalInvocationID.x); k < across.x * across.y; k += int(kGroup))
-    add(sums, b, before, half_m, peak_m, first + ivec2(k % across.x, k / across.x));
+    add(sums, b, before, half_m, peak_m, first + placeOf(k, across.x));
   return sums;
 }
 

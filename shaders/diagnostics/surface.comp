@@ -5,6 +5,7 @@
 // of ELEVATION & 0xffff, sums of OUTFLOW's upper and lower part (integers, so the volume is exact).
 #include "shared/groups.h"
 #include "common/finite.glsl"
+#include "common/place_of.glsl"
 #include "wave/transfer.glsl"
 #include "wave/wave_faces.glsl"
 #if NONLINEAR
@@ -41,7 +42,7 @@ void main() {
   uvec4 volume = uvec4(0u);
   for (uint at = share; at < uint(n.x * n.y); at += shares) {
     const int i = int(at);
-    const ivec2 cell = ivec2(i % n.x, i / n.x);
+    const ivec2 cell = placeOf(i, n.x);
     const int left = wrapped(cell.x - 1, n.x);
     const int last_row = n.x * wrapped(cell.y - 1, n.y);
     const int units = texelFetch(elevation, i).x;
