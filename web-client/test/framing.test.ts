@@ -1,7 +1,7 @@
 import { PerspectiveCamera, Vector3 } from "three";
 import { describe, expect, it } from "vitest";
 
-import { firstView, focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/camera/framing";
+import { firstView, focusBox, frameBox, freeTangents, raisedBy, raisedTo, turnedTo, type PixelRect, type ViewedBox } from "../src/scene/camera/framing";
 
 const backwards = [new Vector3(0.43, 0.5, 1.22), new Vector3(0.2, 0.13, 1.3), new Vector3(-1, 2, 0.1)];
 const waters: ViewedBox[] = [
@@ -144,7 +144,14 @@ describe("the first view of a scene", () => {
   });
 });
 
-describe("a direction turned to another side", () => {
+describe("a direction to the camera", () => {
+  it("looks down by at least an angle, from the same side", () => {
+    const low = raisedTo(0.5, new Vector3(3, 0.2, -4));
+    expect([low.x, low.z]).toEqual([3, -4]);
+    expect(Math.atan2(low.y, 5)).toBeCloseTo(0.5, 9);
+    expect(raisedTo(0.5, new Vector3(3, 9, -4))).toEqual(new Vector3(3, 9, -4));
+  });
+
   it("points out of that side, and keeps its length and its share along the side", () => {
     const direction = new Vector3(0.2, 0.13, 1.3);
     expect(turnedTo("+z", direction)).toEqual(direction);

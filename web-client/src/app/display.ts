@@ -55,7 +55,7 @@ export class Display {
     this.drawnTier = this.governor.tier;
     this.scene = new WaterScene(renderer, this.qualityOf(this.drawnTier), (frame) => hooks.release(frame));
     this.views = new CameraViews(this.scene.camera, this.canvas, reducedMotion);
-    this.layout = new PageLayout(() => this.resize());
+    this.layout = new PageLayout(() => this.frameFreePart());
     this.loop = new DisplayLoop(renderer, {
       draw: (frameMs) => {
         if (this.governor.note(frameMs)) {
@@ -132,8 +132,17 @@ export class Display {
 
   resize(): void {
     this.renderer.setPixelRatio(this.pixelRatio);
-    this.covered = this.layout.covered();
     this.renderer.setSize(window.innerWidth, window.innerHeight, false);
+    this.frameFreePart();
+  }
+
+  /** From now on the water is seen beside this element, which lies over the right edge. */
+  keepClearOf(aside: HTMLElement): void {
+    this.layout.keepClearOf(aside);
+  }
+
+  private frameFreePart(): void {
+    this.covered = this.layout.covered();
     this.views.resize(window.innerWidth, window.innerHeight, this.layout.freePart());
   }
 

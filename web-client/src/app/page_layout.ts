@@ -16,6 +16,8 @@ export class PageLayout {
   private readonly toggle = byId("panel-toggle");
   private readonly panel = byId("panel");
   private readonly sheet: Sheet;
+  /** Lies over the right edge of the water. */
+  private aside: HTMLElement | undefined;
 
   /** `changed`: the free part of the canvas may have changed. */
   constructor(private readonly changed: () => void) {
@@ -39,25 +41,33 @@ export class PageLayout {
     }).observe(this.panel);
   }
 
+  /** From now on the free part ends at this element's left edge. */
+  keepClearOf(aside: HTMLElement): void {
+    this.aside = aside;
+    new ResizeObserver(() => this.changed()).observe(aside);
+  }
+
   /** The part that card, panel and the buttons beside it leave free: beside and below them, on narrow screens between them. */
   freePart(): PixelRect {
     const panel = this.panel.getBoundingClientRect();
     const card = byId("card").getBoundingClientRect();
     const buttons = byId("actions").getBoundingClientRect();
     const isShown = panel.height > 0;
+    const aside = this.aside?.getBoundingClientRect();
+    const endPx = isShown && !isNarrow() ? (buttons.width > 0 ? buttons : panel).left : window.innerWidth;
     return {
       leftPx: 0,
       // The far side of the water looks narrow, so the card's corner may overlap the free part a little.
       topPx: isNarrow() ? card.bottom : 0.7 * card.bottom,
-      rightPx: isShown && !isNarrow() ? (buttons.width > 0 ? buttons : panel).left : window.innerWidth,
+      rightPx: aside && aside.width > 0 ? Math.min(endPx, aside.left) : endPx,
       bottomPx: isShown && isNarrow() ? panel.top : window.innerHeight,
     };
   }
 
   /** The parts of the page that card, panel and the buttons beside it cover. */
   covered(): PixelRect[] {
-    return ["card", "actions", "panel"].map((id) => {
-      const { left, top, right, bottom } = byId(id).getBoundingClientRect();
+    return [...["card", "actions", "panel"].map(byId), ...(this.aside ? [this.aside] : [])].map((element) => {
+      const { left, top, right, bottom } = element.getBoundingClientRect();
       return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };
     });
   }

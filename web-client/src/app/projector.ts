@@ -26,6 +26,7 @@ export function openProjector(app: App): void {
   const boards = new Boards(app.lessons);
   const card = new JoinCard();
   byId("view").after(boards.element, card.element);
+  app.display.keepClearOf(boards.side);
   joinAddresses(location.search, app.token).then(
     (addresses) => card.show(addresses),
     (error: unknown) => app.warn(error instanceof Error ? error.message : String(error)),

@@ -5,7 +5,7 @@ import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { clamp, smooth, wrapAngle } from "../maths/interpolate";
 import { CameraHand } from "./camera_hand";
 import { diveView, keepClear, type DiveWater } from "./dive";
-import { firstView, focusBox, frameBox, freeTangents, raisedBy, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
+import { firstView, focusBox, frameBox, freeTangents, raisedBy, raisedTo, turnedTo, type PixelRect, type Placement, type ViewedBox } from "./framing";
 
 export type ViewName = "start" | "side" | "boat" | "overview" | "below";
 type FixedView = Exclude<ViewName, "boat">;
@@ -25,6 +25,8 @@ const kBelowFovDegrees = 72;
 const kSteepestRad = 0.12;
 const kLowestRad = 0.03;
 const kTravelS = 0.9;
+/** A part of the water is shown from at least so high: from as low as many first views, boats hide one another. */
+const kFramedPitchRad = 0.45;
 /** The boat's view: distance behind and above in boat lengths, and the rates at which it follows position, heading and camera position. */
 const kBehindLengths = 2.5;
 const kAboveLengths = 1.05;
@@ -178,21 +180,20 @@ export class CameraViews {
     this.turned();
   }
 
-  /** Returns where the camera shows a disc of the water, from the direction of the first view; one as large as the water is that view. */
+  /** Returns where the camera shows a disc of the water, from the side of the first view. */
   frame({ xM, zM, radiusM }: { xM: number; zM: number; radiusM: number }): Placement {
     const tangents = freeTangents(kFovDegrees, this.heightPx, this.widthPx, this.free);
-    const whole = focusBox(this.extent, tangents);
-    const widthM = whole.widthM ?? whole.sideM;
+    const { sideM, widthM = sideM, minYM, maxYM } = this.extent;
     const within = (atM: number, outM: number): number => clamp(atM, -Math.max(outM, 0), Math.max(outM, 0));
     const box = {
-      ...whole,
-      sideM: Math.min(2 * radiusM, whole.sideM),
+      sideM: Math.min(2 * radiusM, sideM),
       widthM: Math.min(2 * radiusM, widthM),
-      centreM: { x: (whole.centreM?.x ?? 0) + within(xM, this.extent.sideM / 2 - radiusM), z: (whole.centreM?.z ?? 0) + within(zM, (this.extent.widthM ?? this.extent.sideM) / 2 - radiusM) },
+      centreM: { x: within(xM, sideM / 2 - radiusM), z: within(zM, widthM / 2 - radiusM) },
       // The bed does not matter for a part of the water.
-      minYM: Math.max(whole.minYM, -0.25 * radiusM),
+      minYM: Math.max(minYM, -0.25 * radiusM),
+      maxYM,
     };
-    return frameBox(box, this.aimed("start", tangents).backward, tangents);
+    return frameBox(box, raisedTo(kFramedPitchRad, this.aimed("start", tangents).backward), tangents);
   }
 
   /** Returns where the first view is, and lets the user come as near as there. */

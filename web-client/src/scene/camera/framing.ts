@@ -109,6 +109,11 @@ export function firstView(box: ViewedBox, first: FirstViewInfo, tangents: { acro
   };
 }
 
+/** Returns a direction to the camera that looks down by at least this angle. */
+export function raisedTo(pitchRad: number, { x, y, z }: Vector3): Vector3 {
+  return new Vector3(x, Math.max(y, Math.tan(pitchRad) * Math.hypot(x, z)), z);
+}
+
 /** Unit vectors out of the sides, along x and z. */
 const kOutward: Record<SideName, readonly [number, number]> = { "+x": [1, 0], "-x": [-1, 0], "+z": [0, 1], "-z": [0, -1] };
 
