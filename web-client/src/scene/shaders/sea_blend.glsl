@@ -12,6 +12,12 @@ float simulatedShare(vec2 at, vec2 extent_m) {
   return min(min(share.x, share.y), min(share.z, share.w));
 }
 
+// 1 in the square whose textures end at its edges, and 0 beyond them, where these repeat their last texels. `place`: 0..1 in the square.
+float insideSquare(vec2 place) {
+  vec2 inside = smoothstep(0.5, 0.485, abs(place - 0.5));
+  return inside.x * inside.y;
+}
+
 // Distance from the simulated water; 0 inside.
 float awayFromWater(vec2 at, vec2 extent_m) { return length(max(abs(at) - 0.5 * extent_m, 0.0)); }
 

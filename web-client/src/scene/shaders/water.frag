@@ -346,8 +346,10 @@ void main() {
   float broken = 0.0;  // of crests that break
 #ifdef OPEN_SEA
   if (v_share_away.x > 0.0) {
-#endif
+    vec2 foam_shade = insideSquare(place) * textureLod(u_froth, place, 0.0).rg;
+#else
     vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
+#endif
     foam = max(foam, foam_shade.r);
     water *= 1.0 - foam_shade.g;
 #ifdef FOAM

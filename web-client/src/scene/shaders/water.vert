@@ -104,7 +104,7 @@ void main() {
   foam = max(foam, texture(u_foam_to, position.xz + 0.5).r);
 #endif
 #ifdef OPEN_SEA
-  foam = max(foam, crestFoam(field.r, field.a)) * v_share_away.x;
+  foam = max(foam * insideSquare(position.xz + 0.5), crestFoam(field.r, field.a)) * v_share_away.x;
 #endif
   float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
 #ifdef GLASS

@@ -44,6 +44,9 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
   v_at = at;
   vec2 place = at / u_extent_m + 0.5;
   vec2 foam_shade = textureLod(u_froth, place, 0.0).rg;
+#ifdef OPEN_SEA
+  foam_shade *= insideSquare(place);
+#endif
 #ifdef FOAM
   foam_shade.r = max(foam_shade.r, mix(textureLod(u_foam_from, place, 0.0).r, textureLod(u_foam_to, place, 0.0).r, u_foam_mix));
 #endif
