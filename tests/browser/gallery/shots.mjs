@@ -29,7 +29,7 @@ const kShots = {
   flume: { tick: 925 },
   flotsam: { tick: 300 },
   harbor: { tick: 1410 },
-  island: { tick: 510, historyTicks: 300 },
+  island: { tick: 222, historyTicks: 210 },
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
   particles_only: { tick: 30, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
