@@ -64,7 +64,7 @@ export class PageLayout {
     };
   }
 
-  /** The parts of the page that card, panel and the buttons beside it cover. */
+  /** The parts of the page that card, panel, the buttons beside it and the element to keep clear of cover. */
   covered(): PixelRect[] {
     return [...["card", "actions", "panel"].map(byId), ...(this.aside ? [this.aside] : [])].map((element) => {
       const { left, top, right, bottom } = element.getBoundingClientRect();

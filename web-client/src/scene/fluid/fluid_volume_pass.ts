@@ -1,5 +1,5 @@
 // The density of the particles in cells: a volume, as horizontal slices side by side in one texture. Reads the particles. Writes density
-// over that at rest, and the white share of it.
+// over that at rest, the white part of it, and the part that moves fast.
 import { LinearFilter, RGBAFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";

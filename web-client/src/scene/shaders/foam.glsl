@@ -1,6 +1,8 @@
 // Include in water.frag and fluid_surface.frag: the relief of foam, and how the sun lights it. Old foam is a network around holes; foam that
 // has just begun is a heap of domes with creases between them. After u_noise, u_lace_m, sky.glsl and water_optics.glsl.
 
+#include <billows>
+
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn
 // (kSteepest). Share of the light that reaches the middle height of the lace, and how fast it grows with height: less reaches the creases.
 #ifndef GLASS
@@ -24,8 +26,6 @@ float laceAt(vec2 at, vec2 drawn_m, float fresh) {
   float broad = texture(u_noise, (at + drawn_m).yx / (2.7 * u_lace_m)).r;
   return mix(0.36 * wide + 0.32 * middle + 0.32 * fine, 1.0 - (0.14 * broad + 0.2 * wide + 0.3 * middle + 0.36 * fine), fresh);
 }
-
-#include <billows>
 
 // Foam that is drawn where the server streams so much. Old foam is a network; only what has just begun is a body.
 float shownFoam(float streamed) {
@@ -51,7 +51,8 @@ vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, floa
   bent = normalize(bent - clamp(kBillowSlope * billow, -kSteepest, kSteepest) * vec3(toward_sun.x, 0.0, toward_sun.y));
 #endif
   // Light that enters at one side of a lump leaves it at the others.
-  float sun = sunlit_share * mix(clamp(0.2 + 0.8 * dot(bent, u_sun_direction), 0.0, 1.0), clamp(0.4 + 0.6 * dot(bent, u_sun_direction), 0.0, 1.0), fresh);
+  float through = mix(0.2, 0.4, fresh);
+  float sun = sunlit_share * clamp(mix(dot(bent, u_sun_direction), 1.0, through), 0.0, 1.0);
   // Little of the sky is seen from a crease.
   float open = mix(clamp(kOpen + kCreased * (lace - 0.5), 0.2, 1.05), 0.8, smoothstep(0.05, 0.3, blur));
 #ifdef HEAPED

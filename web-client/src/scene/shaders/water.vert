@@ -42,7 +42,9 @@ uniform sampler2D u_noise;
 uniform float u_lace_m;
 uniform sampler2D u_froth;
 #ifdef FOAM
+uniform sampler2D u_foam_from;
 uniform sampler2D u_foam_to;
+uniform float u_foam_mix;
 #endif
 #include <billows>
 // Height of heaps of foam, in tiles of the lace.
@@ -99,12 +101,17 @@ void main() {
 #endif
 #endif
 #ifdef HEAPED
-  float foam = kAlongHulls * texture(u_froth, position.xz + 0.5).r;
+  vec2 place = position.xz + 0.5;
+  float foam = kAlongHulls * texture(u_froth, place).r;
 #ifdef FOAM
-  foam = max(foam, texture(u_foam_to, position.xz + 0.5).r);
+  foam = max(foam, mix(texture(u_foam_from, place).r, texture(u_foam_to, place).r, u_foam_mix));
 #endif
 #ifdef OPEN_SEA
-  foam = max(foam * insideSquare(position.xz + 0.5), crestFoam(field.r, field.a)) * v_share_away.x;
+  foam = max(foam * insideSquare(place), crestFoam(field.r, field.a)) * v_share_away.x;
+#endif
+#ifdef BEACH
+  // Thin water ends on the ground.
+  foam *= smoothstep(0.03, 0.3, v_top_m + depth_m);
 #endif
   float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
 #ifdef GLASS
