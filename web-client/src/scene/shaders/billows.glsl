@@ -18,7 +18,7 @@ vec2 placeOfFoam(vec2 at, vec2 slopes, float top_m) {
 #ifdef UNEVEN
   return at - v_shoreward * top_m;
 #elif defined(GLASS)
-  return at + 2.0 * top_m * slopes / (0.3 + length(slopes));
+  return at + top_m * slopes / (0.3 + length(slopes));
 #else
   return at;
 #endif

@@ -8,14 +8,13 @@ const float kSlopeRadii = 2.0;           // slopes are taken over so much to eac
 #else
 #ifdef GLASS
 const float kAiry = 0.3, kTorn = 0.25;
+const vec2 kRough = vec2(0.14, 0.04);  // of fast water, coarse and fine, as density
 #else
 const float kAiry = 0.08, kTorn = 0.1;
+const vec2 kRough = vec2(0.09, 0.01);
 #endif
 const float kLaceRadii = 22.0;
 const float kSlopeRadii = 3.0;
-// Roughness of fast water, coarse and fine, as density, and its white share where most air is.
-const vec2 kRough = vec2(0.2, 0.09);
-const float kStirredIn = 0.4;
 #endif
 // Halvings of a step, to find the surface.
 const int kHalvings = 5;
@@ -48,12 +47,9 @@ vec2 liquidAt(vec3 at_m) {
 #endif
   }
 #ifndef WAVE
-  // The surface of water that moves fast is rough, and takes in air.
-  if (density.b > 0.05 && density.r < 0.9 && !is_beside_wall) {
-    float coarse = lumps(1.3 * at_m / u_radius_m), fine = lumps(3.7 * at_m.zyx / u_radius_m);
-    density.r += density.b * (kRough.x * coarse + kRough.y * fine);
-    white = max(white, kStirredIn * density.b * smoothstep(-0.1, 0.9, 0.4 * coarse + fine) * smoothstep(0.7, 0.4, density.r));
-  }
+  // The surface of water that moves fast is rough.
+  if (density.b > 0.05 && density.r < 0.9 && !is_beside_wall)
+    density.r += density.b * (kRough.x * lumps(1.3 * at_m / u_radius_m) + kRough.y * lumps(3.7 * at_m.zyx / u_radius_m));
 #endif
   return vec2(density.r - kSurface, white);
 }

@@ -4,11 +4,12 @@
 #include <billows>
 
 // Slope of the relief per difference of the lace between two points that are kReliefTiles of its tile apart, and the most that is drawn
-// (kSteepest). Share of the light that reaches the middle height of the lace, and how fast it grows with height: less reaches the creases.
+// (kSteepest). Share of the light that reaches the middle height of the lace, and how fast it grows with height: less reaches
+// the creases. By how much fresh foam has fewer holes than other foam (kFilled).
 #ifndef GLASS
-const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.7;
+const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.7, kFilled = 0.22;
 #else
-const float kReliefSlope = 0.9, kOpen = 0.95, kCreased = 0.8;  // fine froth
+const float kReliefSlope = 0.9, kOpen = 0.95, kCreased = 0.8, kFilled = 0.08;  // fine froth
 #endif
 const float kReliefTiles = 0.02, kSteepest = 1.1;
 
@@ -84,7 +85,7 @@ vec3 withFoam(vec3 water, vec2 at, float foam, float bubbles, vec3 normal, float
   float bubbly = 0.5 * (texture(u_noise, at.yx / (kBubbles * u_lace_m)).r + texture(u_noise, at / (0.37 * kBubbles * u_lace_m)).r) - 0.5;
   float torn = lace + kTornByBubbles * bubbly * (1.0 - smoothstep(0.0, kBubbles, 0.6 * blur));
   // How far the lace lies above the threshold is how thick the foam is: it becomes transparent toward its edges and holes, and as it fades.
-  float thick = clamp((torn - 0.83 + 0.78 * cover + 0.22 * fresh + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
+  float thick = clamp((torn - 0.83 + 0.78 * cover + kFilled * fresh + 0.5 * blur) / (0.3 + 0.12 * cover + blur), 0.0, 1.0);
   float white = thick * thick * (3.0 - 2.0 * thick) * smoothstep(0.0, 0.3, foam) * mix(0.6, 0.97, cover);
   // Bubbles below the surface reach further than the froth on it.
   water = mix(water, u_bubbly * u_water_light, bubbles * 0.42 * cover * (0.35 + 0.65 * lace));

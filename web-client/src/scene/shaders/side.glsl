@@ -76,6 +76,6 @@ vec3 withAir(vec3 water, float under_m, float heap_m) {
   float lumps = texture(u_noise, at / 0.4).r + 0.6 * texture(u_noise, at.yx / 0.13).r - 0.8;
   float sunk = (under_m + lumps * heap_m) / max(heap_m, 1e-4);
   vec3 foam = vec3(0.91, 0.95, 0.97) * (0.85 * u_ambient_up + (0.2 + 0.6 * max(dot(v_side_normal, u_sun_direction), 0.0)) * u_sun_light);
-  foam = mix(foam, u_bubbly * u_water_light, 0.7 * smoothstep(-0.3, 2.0, sunk));
-  return mix(water, foam, 0.95 * smoothstep(3.5, -0.6, sunk) * smoothstep(0.0, 0.02 * u_lace_m, heap_m));
+  foam = mix(foam, u_bubbly * u_water_light, 0.7 * smoothstep(-0.3, 3.0, sunk));
+  return mix(water, foam, 0.95 * smoothstep(5.0, -0.6, sunk) * smoothstep(0.0, 0.02 * u_lace_m, heap_m));
 }

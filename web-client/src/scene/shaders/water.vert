@@ -49,7 +49,7 @@ uniform float u_foam_mix;
 #include <billows>
 // Height of heaps of foam, in tiles of the lace.
 #ifdef GLASS
-const float kHeap = 0.24;
+const float kHeap = 0.14;
 out float v_heap_m;
 #else
 const float kHeap = 0.05;
@@ -111,7 +111,7 @@ void main() {
 #endif
 #ifdef BEACH
   // Thin water ends on the ground.
-  foam *= smoothstep(0.03, 0.3, v_top_m + depth_m);
+  foam *= smoothstep(0.02, 0.2, (v_top_m + depth_m) / u_lace_m);
 #endif
   float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
 #ifdef GLASS
