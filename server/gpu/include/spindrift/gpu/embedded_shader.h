@@ -20,9 +20,8 @@ struct EmbeddedShader {
   std::string_view path;  ///< relative to shaders/, e.g. "sph/density.comp"
   std::string_view text;
   std::span<const LineRange> lines;  ///< ascending in first_line, the first is 1
-  std::span<const std::string_view> names =
-      {};                        ///< words in capitals outside comments, ascending: what defines can set
-  std::string_view digest = {};  ///< SHA-256 of the text, hexadecimal
+  std::span<const std::string_view> names = {};  ///< words in capitals outside comments, ascending
+  std::string_view digest = {};                  ///< SHA-256 of the text, hexadecimal
 };
 
 /// Returns all shaders, ordered by path; generated at build time.
