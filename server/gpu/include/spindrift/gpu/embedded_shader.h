@@ -19,7 +19,7 @@ struct LineRange {
 struct EmbeddedShader {
   std::string_view path;  ///< relative to shaders/, e.g. "sph/density.comp"
   std::string_view text;
-  std::span<const LineRange> lines;  ///< ascending in first_line, the first is 1
+  std::span<const LineRange> lines;              ///< ascending in first_line, the first is 1
   std::span<const std::string_view> names = {};  ///< words in capitals outside comments, ascending
   std::string_view digest = {};                  ///< SHA-256 of the text, hexadecimal
 };
