@@ -1,7 +1,7 @@
 import { Matrix4, PerspectiveCamera } from "three";
 import { describe, expect, it } from "vitest";
 
-import { nearestTags } from "../src/ui/boat_tags";
+import { tagsApart } from "../src/ui/boat_tags";
 import { tagPlace } from "../src/ui/tag_place";
 
 function seenFrom(zM: number): Matrix4 {
@@ -34,8 +34,16 @@ describe("a boat's name tag", () => {
     expect(tagPlace(seen, [1, 0, 0], 390, 844, [card])).toBeDefined();
   });
 
-  it("is shown for the nearest boats only", () => {
-    const tags = [5, 1, 4, 2, 3].map((awayM) => ({ place: { xPx: 0, yPx: 0, awayM } }));
-    expect(nearestTags(tags, 3).map(({ place }) => place.awayM)).toEqual([1, 2, 3]);
+  it("is shown for the nearest boats only, and for the first of a race before them", () => {
+    const tags = [5, 1, 4, 2, 3].map((awayM) => ({ place: { xPx: 100 * awayM, yPx: 0, awayM }, rank: undefined as number | undefined }));
+    expect(tagsApart(tags, 3).map(({ place }) => place.awayM)).toEqual([1, 2, 3]);
+    tags[0]!.rank = 2;
+    tags[2]!.rank = 1;
+    expect(tagsApart(tags, 3).map(({ place }) => place.awayM)).toEqual([4, 5, 1]);
+  });
+
+  it("is not shown over another one", () => {
+    const at = (xPx: number, yPx: number, awayM: number): { place: { xPx: number; yPx: number; awayM: number }; rank: undefined } => ({ place: { xPx, yPx, awayM }, rank: undefined });
+    expect(tagsApart([at(0, 0, 2), at(40, 10, 1), at(40, 60, 3), at(200, 10, 4)], 8).map(({ place }) => place.awayM)).toEqual([1, 3, 4]);
   });
 });

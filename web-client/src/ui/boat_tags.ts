@@ -8,16 +8,28 @@ import type { PersonInfo } from "../../client/codec/people";
 import type { BodyPose } from "../../client/codec/bodies";
 import type { PixelRect } from "../scene/camera/framing";
 import { make, setText } from "./dom";
-import { tagPlace, type TagPlace } from "./tag_place";
+import { areApart, tagPlace, type TagPlace } from "./tag_place";
 
-/** Only the nearest boats have tags. */
+/** Only so many boats have tags. */
 const kTagsMax = 8;
 /** Height of a tag's foot over the boat's middle, in boat lengths. */
 const kOverBoatLengths = 0.5;
 
-/** Returns at most `most` boats with an owner, the nearest first. */
-export function nearestTags<T extends { place: TagPlace }>(tags: T[], most: number): T[] {
-  return tags.sort((a, b) => a.place.awayM - b.place.awayM).slice(0, most);
+interface Tag {
+  boatId: number;
+  person: PersonInfo;
+  place: TagPlace;
+  /** Place in a race. */
+  rank: number | undefined;
+}
+
+/** Returns at most `most` tags of which none hides another: the first of a race (`rank`) before the others, the nearest before those behind. */
+export function tagsApart<T extends Pick<Tag, "place" | "rank">>(tags: readonly T[], most: number): T[] {
+  const last = Number.MAX_SAFE_INTEGER;
+  const shown: T[] = [];
+  for (const tag of [...tags].sort((a, b) => (a.rank ?? last) - (b.rank ?? last) || a.place.awayM - b.place.awayM))
+    if (shown.length < most && shown.every(({ place }) => areApart(place, tag.place))) shown.push(tag);
+  return shown;
 }
 
 export class BoatTags {
@@ -50,28 +62,26 @@ export class BoatTags {
   /** Called for each picture. `hiddenId`: the boat that the camera follows, which needs no name; 0 for none. */
   update(camera: PerspectiveCamera, poseOf: (boatId: number) => BodyPose | undefined, hiddenId: number, covered: readonly PixelRect[]): void {
     this.seen.multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse);
-    const found: { boatId: number; person: PersonInfo; place: TagPlace }[] = [];
+    const found: Tag[] = [];
     for (const [boatId, person] of this.owners) {
       const lengthM = this.lengthsM.get(boatId);
       const pose = boatId === hiddenId || lengthM === undefined ? undefined : poseOf(boatId);
       const place = pose && tagPlace(this.seen, [pose.xM, pose.yM + kOverBoatLengths * lengthM!, pose.zM], window.innerWidth, window.innerHeight, covered);
-      if (place) found.push({ boatId, person, place });
+      if (place) found.push({ boatId, person, place, rank: this.places.get(person.personId) });
     }
-    const shown = nearestTags(found, kTagsMax);
+    const shown = tagsApart(found, kTagsMax);
     for (const [boatId, label] of this.labels)
       if (!shown.some((tag) => tag.boatId === boatId)) {
         label.remove();
         this.labels.delete(boatId);
       }
-    shown.forEach(({ boatId, person, place }, order) => this.show(this.labelOf(boatId), person, place, order));
+    for (const tag of shown) this.show(this.labelOf(tag.boatId), tag);
   }
 
-  private show(label: HTMLElement, person: PersonInfo, { xPx, yPx }: TagPlace, order: number): void {
-    const at = this.places.get(person.personId);
-    setText(label, at === undefined ? person.name : `${at}. ${person.name}`);
+  private show(label: HTMLElement, { person, place: { xPx, yPx }, rank }: Tag): void {
+    setText(label, rank === undefined ? person.name : `${rank}. ${person.name}`);
     label.classList.toggle("away", person.away);
     label.style.setProperty("--owner", person.color);
-    label.style.zIndex = String(kTagsMax - order);
     label.style.transform = `translate(${xPx.toFixed(1)}px, ${yPx.toFixed(1)}px) translate(-50%, -100%)`;
   }
 

@@ -14,6 +14,11 @@ export interface TagPlace {
   awayM: number;
 }
 
+/** Returns whether tags at both places can be read. */
+export function areApart(a: TagPlace, b: TagPlace): boolean {
+  return Math.abs(a.xPx - b.xPx) >= 2 * kHalfWidthPx || Math.abs(a.yPx - b.yPx) >= kHeightPx;
+}
+
 const scratch = new Vector4();
 
 /** Returns where a point is on the page; undefined behind the camera, outside the window, or where a panel covers the tag. */
