@@ -64,10 +64,10 @@ export class PageLayout {
     };
   }
 
-  /** The parts of the page that card, panel, the buttons beside it and the element to keep clear of cover. */
+  /** The parts of the page that card, panel and the buttons beside it cover. */
   covered(): PixelRect[] {
-    return [...["card", "actions", "panel"].map(byId), ...(this.aside ? [this.aside] : [])].map((element) => {
-      const { left, top, right, bottom } = element.getBoundingClientRect();
+    return ["card", "actions", "panel"].map((id) => {
+      const { left, top, right, bottom } = byId(id).getBoundingClientRect();
       return { leftPx: left, topPx: top, rightPx: right, bottomPx: bottom };
     });
   }

@@ -23,7 +23,7 @@ export class Boards {
   private readonly frozen = make("p", { class: "board-frozen glass", "data-testid": "board-frozen", role: "status", hidden: "" }, [kClassTexts.padsPaused]);
   private readonly race = make("table", { class: "board-race glass", "data-testid": "board-race", hidden: "" });
   private readonly people = make("ul", { class: "board-people glass", "data-testid": "board-people", "aria-label": kTexts.page.peopleList, hidden: "" });
-  /** Lies over the water; everything else is above or below the action. */
+  /** The order of a race, or everybody's names, at the right edge of the water. */
   readonly side = make("div", { class: "board-side" }, [this.race, this.people]);
   /** Changes ten times per second, which no screen reader has to say. */
   private readonly clock = make("span", { "aria-hidden": "true" });

@@ -14,7 +14,7 @@ export interface TagPlace {
   awayM: number;
 }
 
-/** Returns whether tags at both places can be read. */
+/** Returns whether tags at these places do not lie over one another. */
 export function areApart(a: TagPlace, b: TagPlace): boolean {
   return Math.abs(a.xPx - b.xPx) >= 2 * kHalfWidthPx || Math.abs(a.yPx - b.yPx) >= kHeightPx;
 }

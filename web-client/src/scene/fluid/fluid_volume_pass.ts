@@ -1,6 +1,6 @@
 // The density of the particles in cells: a volume, as horizontal slices side by side in one texture. Reads the particles. Writes density
-// over that at rest, the white part of it, and the part that moves fast.
-import { LinearFilter, RGBAFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
+// over that at rest, the white part of it, and in pools and tanks the part that moves fast.
+import { LinearFilter, RGBAFormat, RGFormat, Vector2, Vector3, WebGLRenderTarget, type RawShaderMaterial } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { TexelType } from "../drawing/quality";
@@ -30,7 +30,7 @@ export class FluidVolumePass implements Pass {
     private readonly cellsPerSpacing: number,
     texelType: TexelType,
   ) {
-    this.target = new WebGLRenderTarget(1, 1, { format: RGBAFormat, type: texelType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
+    this.target = new WebGLRenderTarget(1, 1, { format: surroundings ? RGBAFormat : RGFormat, type: texelType, minFilter: LinearFilter, magFilter: LinearFilter, depthBuffer: false });
     this.uniforms = {
       u_volume: { value: this.target.texture },
       u_volume_min_m: { value: new Vector3() },

@@ -1,6 +1,6 @@
 // Surface: a unit grid displaced by the field. Skirt (SKIRT): the four sides, top edge displaced, bottom edge on the floor.
 // VERTEX_LIT: for water_plain.frag. LOWERED: drawn below where it is, under the particles that it carries. BEACH: the floor rises toward some sides. OPEN_SEA: the grid continues to the horizon (sea/open_sea.ts).
-// UNEVEN: straight crests are drawn uneven. HEAPED: fresh foam lies on them in heaps.
+// UNEVEN: straight crests are drawn uneven. HEAPED: fresh foam lies on the water in heaps.
 
 in vec3 position;  // x, z in -1/2..1/2 over the square; y: 1 on the surface, 0 on the floor
 #ifdef SKIRT
