@@ -30,11 +30,11 @@ float noise(vec2 p) {
 }
 
 float cloud(vec2 p) {
-  float sum = 0.0, weight = 0.5;
+  float sum = 0.0, weight = 0.45;
   for (int octave = 0; octave < 6; ++octave) {
     sum += weight * noise(p);
     p = mat2(1.6, 1.2, -1.2, 1.6) * p + 7.3;
-    weight *= 0.5;
+    weight *= 0.56;
   }
   return sum;
 }
@@ -51,25 +51,32 @@ void main() {
   float side = 0.5 + 0.5 * dot(direction, normalize(vec3(u_sun_direction.x, 0.0, u_sun_direction.z)));
   float low_sun = 1.0 - smoothstep(-0.05, 0.25, u_sun_direction.y);
   vec3 horizon = mix(u_horizon, u_middle, low_sun * 0.85 * (1.0 - side * side));
-  sky = mix(horizon, sky, smoothstep(-0.02, 0.20, up));
+  sky = mix(horizon, sky, smoothstep(-0.02, 0.15, up));
   sky += u_glow * (0.07 * pow(toward_sun, 5.0) + 0.36 * pow(toward_sun, 70.0));
   float toward_moon = max(dot(direction, u_moon_direction), 0.0);
   sky += u_halo * (0.4 * pow(toward_moon, 8.0) + pow(toward_moon, 160.0));
   vec2 plane = direction.xz / (up + 0.09);
-  vec2 at = plane * vec2(0.55, 0.75) + vec2(3.1, 1.7);
-  float dense = cloud(at);
+  vec2 at = plane * vec2(0.95, 1.25) + vec2(3.1, 1.7);
+  at += 0.35 * vec2(noise(1.7 * at + 5.0), noise(1.7 * at + 23.0));
   float heavy = clamp((u_cloud_cover - 0.22) / 0.78, 0.0, 1.0);
-  // Heaps are bright where they are thinner toward the sun, and grey at their bases; a closed layer shows its thickness.
-  vec2 sunward = normalize(u_sun_direction.xz + vec2(1e-4));
-  float edge = clamp(0.5 + 2.6 * (dense - cloud(at + 0.16 * sunward)), 0.0, 1.0);
-  vec3 lit = mix(u_cloud, u_cloud_lit, clamp(pow(toward_sun, 3.0) + 0.75 * edge * (1.0 - heavy), 0.0, 1.0));
-  lit *= mix(mix(0.72, 1.12, edge), 0.45 + 1.1 * smoothstep(0.25, 0.75, dense), heavy);
-  float cover = smoothstep(0.48 - 0.58 * heavy, 0.76 - 0.26 * heavy, dense) * smoothstep(0.0, 0.06, up);
+  float least = 0.48 - 0.58 * heavy;
+  float dense = cloud(at);
+  // Light that comes through a heap: less through what lies between it and the sun. A closed layer shows its thickness.
+  float through = 1.0;
+  if (dense > least) {
+    vec2 sunward = normalize(u_sun_direction.xz + vec2(1e-4));
+    float passed = 0.0;
+    for (int part = 1; part <= 3; ++part) passed += max(cloud(at + 0.09 * float(part) * sunward) - least, 0.0);
+    through = exp(-2.6 * passed - 1.5 * (dense - least));
+  }
+  vec3 lit = mix(u_cloud, u_cloud_lit, min(through * (pow(toward_sun, 3.0) + 1.3 * (1.0 - heavy)), 1.0));
+  lit *= mix(mix(0.62, 1.2, through), 0.45 + 1.1 * smoothstep(0.25, 0.75, dense), heavy);
+  float cover = smoothstep(least, least + 0.1 + 0.38 * heavy, dense) * smoothstep(0.0, 0.06, up);
   // Thin high clouds between them.
   cover = max(cover, 0.35 * (1.0 - heavy) * smoothstep(0.4, 0.9, cloud(plane * vec2(0.2, 0.9) + 11.0)) * smoothstep(0.1, 0.4, up));
   cover *= mix(0.8, 0.95, heavy);
   // Air lies between the eye and the low ones.
-  sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.16, up), 1.0, heavy)), cover);
+  sky = mix(sky, mix(horizon, lit, mix(smoothstep(0.0, 0.1, up), 1.0, heavy)), cover);
   sky = mix(sky, ground, smoothstep(0.0, -0.08, direction.y));
 #ifdef PLAIN
   if (u_lowest > -1.0) sky = withFarLand(sky, direction, 0.004);

@@ -26,20 +26,22 @@ uniform sampler2D u_noise;
 uniform vec3 cameraPosition;
 // Reach of splashed water on the deck, m, and the sizes of the stone's clouds and grain.
 const float kWetM = 1.0, kCloudsM = 3.1, kGrainM = 0.7;
+#else
+const float kStonesPerSheet = 5.0;  // along its side
 #endif
 layout(location = 0) out vec4 color;
 
-// Brightness factor about 1. Detail finer than a pixel fades to its mean, so that distant tiles neither flicker nor show as blocks.
-float tiles(vec2 at, float tile_m, float joint_tiles) {
-  vec2 cell = at / tile_m;
+// Brightness about 1 of tiles with sides of `side_m`: `shades` is the range from the darkest to the lightest, `joint` what joints differ by,
+// which reach `joint_sides` into each. Detail finer than a pixel fades to its mean, so that distant tiles neither flicker nor show as blocks.
+float tiles(vec2 at, float side_m, float shades, float joint_sides, float joint) {
+  vec2 cell = at / side_m;
   vec2 step_cells = fwidth(cell);
   float blur = max(step_cells.x, step_cells.y);
   float fine = 1.0 - smoothstep(0.2, 0.7, blur);
-  if (fine <= 0.0) return 0.97;
+  if (fine <= 0.0) return 1.0 + 4.0 * joint_sides * joint;
   vec2 edge = 0.5 - abs(fract(cell) - 0.5);
-  float joint = 1.0 - smoothstep(joint_tiles - 0.5 * blur, joint_tiles + 0.6 * blur, min(edge.x, edge.y));
-  float seen = fine * min(0.14 / blur, 1.0);
-  return 1.0 + fine * 0.14 * (cellHash(floor(cell)) - 0.5) - seen * 0.46 * joint;
+  float share = 1.0 - smoothstep(joint_sides - 0.5 * blur, joint_sides + 0.6 * blur, min(edge.x, edge.y));
+  return 1.0 + fine * shades * (cellHash(floor(cell)) - 0.5) + fine * min(0.14 / blur, 1.0) * joint * share;
 }
 
 #ifdef DECK
@@ -76,10 +78,11 @@ void main() {
 #ifdef DECK
   vec2 outside_m = abs(v_world.xz) - u_half_m;
   float out_m = max(outside_m.x, outside_m.y);
-  vec4 stone = stoneAt(v_color.rgb * tiles(at, tile_m, 0.016), at, tile_m, out_m);
+  vec4 stone = stoneAt(v_color.rgb * tiles(at, tile_m, 0.14, 0.016, -0.46), at, tile_m, out_m);
   vec3 albedo = stone.rgb;
 #else
-  vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.03);
+  // Sheets of mosaic, whose stones have light joints.
+  vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.14, 0.02, -0.22) * tiles(at, tile_m / kStonesPerSheet, 0.14, 0.05, 0.1);
 #endif
   float deep_m = u_level_m - v_world.y;
 #ifdef DECK

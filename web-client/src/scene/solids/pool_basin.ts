@@ -19,8 +19,8 @@ const kLaneCount = 3;
 const kLaneWidth = 0.022;
 
 // The fourth number is the side of a tile, in sides of the water (tiles.frag).
-const kFloorTile: Paint = [0.36, 0.66, 0.72, 1 / kTilesPerSide];
-const kWallTile: Paint = [0.42, 0.70, 0.75, 1 / kTilesPerSide];
+const kFloorTile: Paint = [0.60, 0.72, 0.73, 1 / kTilesPerSide];
+const kWallTile: Paint = [0.60, 0.72, 0.74, 1 / kTilesPerSide];
 const kBandTile: Paint = [0.05, 0.17, 0.36, 1 / kTilesPerSide];
 const kRim: Paint = [0.80, 0.77, 0.70, 1 / 20];
 /** Rounded edge of the coping: outward and upward, in its height. */
