@@ -33,7 +33,7 @@ const kShots = {
   kelvin: { tick: 840 },
   open_water: { tick: 300 },
   particles_only: { tick: 24, visitors: [{ splash: { x_m: 0, z_m: -0.2, radius_m: 0.35, depth_m: 0.3 } }] },
-  pool: { tick: 132 },
+  pool: { tick: 78 },
   regatta: { tick: 188, visitors: kRacers },
   river_mouth: { tick: 800, historyTicks: 300 },
   ripple_tank: { tick: 600 },

@@ -6,7 +6,7 @@
 #include <fluid_volume>
 #endif
 #define EXPOSURE_S 0.008
-#define MOST_SHARE 0.0019
+#define MOST_SHARE 0.0014
 #include <drop>
 
 uniform float u_drop;
@@ -24,7 +24,7 @@ const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
 const float kMist = 0.04, kMistRadii = 2.2;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
-const float kFineRadii = 2.4, kLargeRadii = 1.6, kTrailS = 0.05;
+const float kFineRadii = 1.1, kLargeRadii = 0.9, kTrailS = 0.14;
 
 vec4 hash(vec3 at) {
   vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
