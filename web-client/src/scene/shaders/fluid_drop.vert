@@ -1,5 +1,5 @@
 // Drops of a tank: what flies apart from the liquid. A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
-// around it and stretched along their flight. They keep their places while it flies freely: their hash is that of its level velocity.
+// around it and stretched along their flight. They keep their places while it flies freely (fluid_words.glsl).
 // FROTH: none beside hulls, where they would hang before the boat.
 #include <fluid_words>
 #include <fluid_volume>
@@ -30,11 +30,6 @@ const float kMist = 0.12;
 // Drops near the eye are not larger than this share of their distance: they would be flakes.
 const float kMostShare = 0.003;
 
-vec4 hash(vec3 at) {
-  vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
-  return fract(sin(mixed) * 43758.5453);
-}
-
 void main() {
   Particle particle = unpackParticle();
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
@@ -47,8 +42,7 @@ void main() {
 #endif
   float strength = 1.0 - smoothstep(kAlone, mix(kAmongOthers, kAmongWhite, particle.foam), volumeAt(particle.center_m).r);
   if (strength <= 0.0) return;
-  vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
-  vec4 random = hash(vec3(level, u_drop));
+  vec4 random = randomOf(particle, u_drop);
   // Those of a particle that flies alone lie far apart: close ones would be a flock.
   vec3 center_m = particle.center_m + (3.0 + 5.0 * strength * strength) * u_radius_m * (random.xyz - 0.5);
   // Few are large. The first stands for the mist among them.

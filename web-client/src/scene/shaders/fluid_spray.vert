@@ -1,6 +1,6 @@
 // Drops of particles over a wave: those that fly apart from the liquid (VOLUME), or all. A particle stands for many drops and is drawn as a
-// few of them, one per draw (u_drop), around it and along its flight. They keep their places while it flies freely: their hash is that of
-// its level velocity. The first is the mist among them.
+// few of them, one per draw (u_drop), along its flight. They keep their places while it flies freely (fluid_words.glsl). The first is the
+// mist among them.
 #include <fluid_words>
 #ifdef VOLUME
 #include <fluid_volume>
@@ -26,11 +26,6 @@ const float kMist = 0.04, kMistRadii = 2.2;
 // Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
 const float kFineRadii = 1.1, kLargeRadii = 0.9, kTrailS = 0.14;
 
-vec4 hash(vec3 at) {
-  vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
-  return fract(sin(mixed) * 43758.5453);
-}
-
 void main() {
   Particle particle = unpackParticle();
   noDrop();
@@ -42,10 +37,7 @@ void main() {
 #else
   float strength = 1.0;
 #endif
-  vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
-  // Particles that fly straight up have the same level velocity, but keep to their place.
-  if (dot(level, level) < 7.0) level += 31.0 * floor(particle.center_m.xz / (2.0 * u_radius_m));
-  vec4 random = hash(vec3(level, u_drop));
+  vec4 random = randomOf(particle, u_drop);
   float radius_m = min(u_radius_m, kLargeM);
   // Few are large.
   float large = pow(random.w, 10.0);

@@ -29,3 +29,13 @@ Particle unpackParticle() {
   particle.density = float(words.y >> 8u) / 255.0;
   return particle;
 }
+
+// Four numbers in [0, 1) of one of the drops that stand for a particle: the same while it flies freely, by its level velocity.
+vec4 randomOf(Particle particle, float drop) {
+  vec2 level = round(127.0 * particle.velocity_mps.xz / max(u_max_speed_mps, 1e-3));
+  // Particles that fly straight up have the same level velocity, but keep to their place.
+  if (dot(level, level) < 7.0) level += 31.0 * floor(particle.center_m.xz / (2.0 * u_radius_m));
+  vec3 at = vec3(level, drop);
+  vec4 mixed = vec4(dot(at, vec3(127.1, 311.7, 74.7)), dot(at, vec3(269.5, 183.3, 246.1)), dot(at, vec3(113.5, 271.9, 124.6)), dot(at, vec3(419.2, 371.9, 95.3)));
+  return fract(sin(mixed) * 43758.5453);
+}

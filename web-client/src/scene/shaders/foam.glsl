@@ -7,7 +7,7 @@
 // (kSteepest). Share of the light that reaches the middle height of the lace, and how fast it grows with height: less reaches
 // the creases. By how much fresh foam has fewer holes than other foam (kFilled).
 #ifndef GLASS
-const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.7, kFilled = 0.22;
+const float kReliefSlope = 7.0, kOpen = 0.7, kCreased = 1.9, kFilled = 0.14;
 #else
 const float kReliefSlope = 0.9, kOpen = 0.95, kCreased = 0.8, kFilled = 0.08;  // fine froth
 #endif
@@ -63,7 +63,7 @@ vec3 foamLight(vec2 at, vec2 drawn_m, float lace, float fresh, vec3 normal, floa
   vec3 light = vec3(0.91, 0.95, 0.97) * open * (1.1 * u_sun_light * sun + u_ambient_up * vec3(0.97, 0.98, 0.98));
 #ifdef HEAPED
   // In the valleys between billows there is more water than air.
-  light = mix(light, u_bubbly * u_water_light, 0.6 * fresh * smoothstep(0.75, 0.2, heap) * smoothstep(0.75, 0.35, lace));
+  light = mix(light, u_bubbly * u_water_light, 0.85 * fresh * smoothstep(0.8, 0.2, heap) * smoothstep(0.75, 0.35, lace));
 #endif
   return light;
 }

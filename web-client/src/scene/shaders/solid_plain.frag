@@ -17,12 +17,10 @@ void main() {
   wet = max(wet, smoothstep(0.2, 0.4, v_shore.x));
 #endif
   vec3 light = v_light * (1.0 - v_wet.y * wet);
-  if (v_leaves.z > 0.5) {
-    // The outline of a clump is torn where one looks along it.
-    float leaf = textureLod(u_noise, v_leaves.xy, 0.0).r;
-    if (v_leaves.w < 0.55 - 0.65 * leaf) discard;
-    light *= 0.6 + 0.9 * leaf;
-  }
+  // The outline of a clump is torn where one looks along it.
+  float leaf = textureLod(u_noise, v_leaves.xy, 0.0).r;
+  if (v_leaves.w < 0.55 - 0.65 * leaf) discard;
+  light *= 1.0 + v_leaves.z * (0.9 * leaf - 0.4);
 #ifdef SHORE
   if (v_shore.y > 0.02) {
     float lace = textureLod(u_noise, v_world.xz / (2.2 * u_grain_m), 0.0).r;

@@ -11,7 +11,7 @@ uniform float u_darkness; // 0 by day, 1 at night
 uniform vec2 u_extent_m;  // length and width of the water
 #endif
 out vec3 v_light;  // linear, or for the display
-out vec4 v_leaves; // place on the tile of leaves; 1: a plant; how far its clump faces the eye
+out vec4 v_leaves; // place on the noise; 1: a plant, which has leaves; how far its clump faces the eye, else 1
 out vec2 v_wet;    // height over the still water in u_wet_m; share of the light that water takes
 #ifdef SHORE
 #include <shore>
@@ -22,7 +22,8 @@ void lightSolid(vec3 world, vec3 normal, vec4 paint, bool is_over_water) {
   float grain = max(paint.a, 0.0);
   vec3 albedo = paint.rgb;
   if (grain > 0.0) albedo *= 1.0 + 0.55 * grain * (textureLod(u_noise, world.xz / (2.3 * u_grain_m), 0.0).r - 0.5);
-  v_leaves = vec4(vec2(world.x - 0.7 * world.z, world.y + 0.3 * world.z) / (1.7 * u_grain_m), step(1.6, grain), dot(normal, normalize(u_camera_m - world)));
+  float plant = step(1.6, grain);
+  v_leaves = vec4(vec2(world.x - 0.7 * world.z, world.y + 0.3 * world.z) / (1.7 * u_grain_m), plant, mix(1.0, dot(normal, normalize(u_camera_m - world)), plant));
   vec3 lit = albedo * (1.25 * u_sun_light * max(dot(normal, u_sun_direction), 0.0) + mix(u_ambient_down, u_ambient_up, 0.5 * normal.y + 0.5));
   // Lamps are painted brighter than white.
   lit += 1.5 * max(albedo - 1.0, 0.0);
