@@ -208,7 +208,7 @@ void Wave::accelerate(const gpu::TexelBuffer* breaking, const gpu::TexelBuffer* 
     if (breaking) breaking->bindTexel(BREAKING);
     dispersed_slope_->texels().bindTexel(DISPERSED);
     rise_.bindStorage(SURFACE_RISE);
-    slope_.run(count_);
+    slope_.runStrips(count_);
     rise_.bindTexel(SURFACE_RISE);
   }
   if (tense_level_) {

@@ -6,6 +6,7 @@
 // Equation: head_q = DYNAMIC_FACTOR h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h, h of at most HEAD_CELLS cells: a term of the equations of
 // Serre (1953; Green & Naghdi 1976), as is DYNAMIC_FACTOR.
 // Toward wave-makers the dynamic head fades out, within two depths of them.
+// An invocation passes over WAVE_STRIP rows of a column: what two rows have in common is fetched and computed once.
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
 #include "shared/side_bits.h"
@@ -35,39 +36,56 @@ float dynamicHead(Column water, vec4 u_mps) {
 
 void main() {
   const ivec2 n = waveCounts();
-  const ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-  if (any(greaterThanEqual(cell, n))) return;
-  const int row = n.x * cell.y;
-  const int row_before = n.x * wrapped(cell.y - 1, n.y);
-  const int row_after = n.x * wrapped(cell.y + 1, n.y);
-  const int x_before = wrapped(cell.x - 1, n.x);
-  const int x_after = wrapped(cell.x + 1, n.x);
-  const int i = cell.x + row;
-  const int i_x = x_after + row;
-  const int i_z = cell.x + row_after;
-  const vec2 own = texelFetch(flow, i).xy;
-  const vec2 at_x = texelFetch(flow, i_x).xy;
-  const vec2 at_z = texelFetch(flow, i_z).xy;
-  const Column here = columnOf(i, texelFetch(elevation, i).x);
-  const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
-  const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
-  float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, cell.x + row_before).y));
-  float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, texelFetch(flow, x_after + row_before).y));
-  float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
+  const int x = int(gl_GlobalInvocationID.x);
+  const int first_z = WAVE_STRIP * int(gl_GlobalInvocationID.y);
+  if (x >= n.x || first_z >= n.y) return;
+  const int x_before = wrapped(x - 1, n.x);
+  const int x_after = wrapped(x + 1, n.x);
+  const int before = n.x * wrapped(first_z - 1, n.y);
+  int row = n.x * first_z;
+  // Of the row; in the loop those of the row after it are fetched.
+  vec2 own = texelFetch(flow, x + row).xy;
+  float at_x_before_z = texelFetch(flow, x_after + before).y;
+  Column here = columnOf(x + row, texelFetch(elevation, x + row).x);
+  int head = headAt(x + row);
+  float breaks = breakingAt(x + row);
+  float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, x + before).y));
 #if MAKERS
-  const vec2 middle = vec2(cell) + 0.5;
-  pressed *= awayFromMakers(middle, n);
-  pressed_x *= awayFromMakers(middle + vec2(1.0, 0.0), n);
-  pressed_z *= awayFromMakers(middle + vec2(0.0, 1.0), n);
+  pressed *= awayFromMakers(vec2(x, first_z) + 0.5, n);
 #endif
-  const int head = headAt(i);
-  const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
-                         drivingRise(here, there_z, headAt(i_z) - head) + pressed_z - pressed);
-  const vec2 depth_m = texelFetch(basin, i).xy;
-  const float breaks = breakingAt(i);
-  const vec4 psi = texelFetch(dispersed, i);
-  const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)), psi.x, awayFromMakers(vec2(cell) + vec2(1.0, 0.5), n));
-  const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breakingAt(i_z)), psi.y, awayFromMakers(vec2(cell) + vec2(0.5, 1.0), n));
-  surface_rise[i] = rise * vec2(share_x.before, share_z.before) +
-                    vec2(share_x.fed, share_z.fed) * vec2(extrapolated(psi.x, psi.z), extrapolated(psi.y, psi.w));
+  for (int z = first_z; z < min(first_z + WAVE_STRIP, n.y); ++z) {
+    const vec2 cell = vec2(x, z);
+    const int row_after = n.x * wrapped(z + 1, n.y);
+    const int i = x + row;
+    const int i_x = x_after + row;
+    const int i_z = x + row_after;
+    const vec2 at_x = texelFetch(flow, i_x).xy;
+    const vec2 at_z = texelFetch(flow, i_z).xy;
+    const float at_z_before_x = texelFetch(flow, x_before + row_after).x;
+    const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
+    const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
+    float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, at_x_before_z));
+    float pressed_z = dynamicHead(there_z, vec4(at_z.x, at_z_before_x, at_z.y, own.y));
+#if MAKERS
+    pressed_x *= awayFromMakers(cell + vec2(1.5, 0.5), n);
+    pressed_z *= awayFromMakers(cell + vec2(0.5, 1.5), n);
+#endif
+    const int head_z = headAt(i_z);
+    const vec2 rise = vec2(drivingRise(here, there_x, headAt(i_x) - head) + pressed_x - pressed,
+                           drivingRise(here, there_z, head_z - head) + pressed_z - pressed);
+    const vec2 depth_m = texelFetch(basin, i).xy;
+    const float breaks_z = breakingAt(i_z);
+    const vec4 psi = texelFetch(dispersed, i);
+    const DispersedShare share_x = dispersedShare(depth_m.x, here, there_x, max(breaks, breakingAt(i_x)), psi.x, awayFromMakers(cell + vec2(1.0, 0.5), n));
+    const DispersedShare share_z = dispersedShare(depth_m.y, here, there_z, max(breaks, breaks_z), psi.y, awayFromMakers(cell + vec2(0.5, 1.0), n));
+    surface_rise[i] = rise * vec2(share_x.before, share_z.before) +
+                      vec2(share_x.fed, share_z.fed) * vec2(extrapolated(psi.x, psi.z), extrapolated(psi.y, psi.w));
+    row = row_after;
+    own = at_z;
+    at_x_before_z = at_x.y;
+    here = there_z;
+    head = head_z;
+    breaks = breaks_z;
+    pressed = pressed_z;
+  }
 }

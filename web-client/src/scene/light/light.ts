@@ -42,7 +42,7 @@ const kNoonAzimuthRad = Math.atan2(kNoon[0], -kNoon[2]);
 const kAzimuthRadPerHour = (7 * Math.PI) / 180;
 const kMoonAltitudeSine = 0.46;
 const kMoonAzimuthRad = (-16 * Math.PI) / 180;
-const kMoonLight: Rgb = [0.095, 0.125, 0.175];
+const kMoonLight: Rgb = [0.07, 0.092, 0.13];
 
 type Sky = Pick<Light, "key" | "zenith" | "middle" | "horizon" | "glow" | "cloud" | "cloudLit" | "ambientUp" | "ambientDown" | "exposure">;
 

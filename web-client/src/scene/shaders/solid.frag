@@ -182,7 +182,7 @@ void main() {
 #endif
   vec3 ambient = mix(u_ambient_down, u_ambient_up, normal.y * 0.5 + 0.5);
   // Lamps are painted brighter than white.
-  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) * seen_sky + 1.5 * max(albedo - 1.0, 0.0);
+  vec3 lit = albedo * (u_sun_light * 1.25 * sun + ambient) * seen_sky + 1.5 * max(v_color.rgb - 1.0, 0.0);
   vec3 ray = v_world - u_camera_m;
   float distance_m = length(ray);
   ray /= distance_m;

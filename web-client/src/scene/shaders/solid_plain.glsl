@@ -26,7 +26,7 @@ void lightSolid(vec3 world, vec3 normal, vec4 paint, bool is_over_water) {
   v_leaves = vec4(vec2(world.x - 0.7 * world.z, world.y + 0.3 * world.z) / (1.7 * u_grain_m), plant, mix(1.0, dot(normal, normalize(u_camera_m - world)), plant));
   vec3 lit = albedo * (1.25 * u_sun_light * max(dot(normal, u_sun_direction), 0.0) + mix(u_ambient_down, u_ambient_up, 0.5 * normal.y + 0.5));
   // Lamps are painted brighter than white.
-  lit += 1.5 * max(albedo - 1.0, 0.0);
+  lit += 1.5 * max(paint.rgb - 1.0, 0.0);
   v_wet = vec2(is_over_water ? 1e3 : world.y / u_wet_m, 0.24 * min(grain, 1.0));
 #ifdef SHORE
   vec3 shore = shoreAt(world.xz, u_extent_m);
