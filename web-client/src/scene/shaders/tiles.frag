@@ -38,10 +38,11 @@ float tiles(vec2 at, float side_m, float shades, float joint_sides, float joint)
   vec2 step_cells = fwidth(cell);
   float blur = max(step_cells.x, step_cells.y);
   float fine = 1.0 - smoothstep(0.2, 0.7, blur);
-  if (fine <= 0.0) return 1.0 + 4.0 * joint_sides * joint;
+  float mean = 1.0 + 4.0 * joint_sides * joint;
+  if (fine <= 0.0) return mean;
   vec2 edge = 0.5 - abs(fract(cell) - 0.5);
   float share = 1.0 - smoothstep(joint_sides - 0.5 * blur, joint_sides + 0.6 * blur, min(edge.x, edge.y));
-  return 1.0 + fine * shades * (cellHash(floor(cell)) - 0.5) + fine * min(0.14 / blur, 1.0) * joint * share;
+  return mix(mean, 1.0 + shades * (cellHash(floor(cell)) - 0.5) + min(0.14 / blur, 1.0) * joint * share, fine);
 }
 
 #ifdef DECK
