@@ -5,7 +5,7 @@ import type { Paint } from "../meshes/mesh_builder";
 
 const kSand: Paint = [0.66, 0.53, 0.36, 0.7];
 /** Of the tiles of a tank, on its bed and its walls: dark enough for white water to stand out. */
-export const kTankTile = [0.18, 0.40, 0.50] as const;
+export const kTankTile = [0.10, 0.30, 0.42] as const;
 const kSeabed: Paint = [0.36, 0.33, 0.25, 0.9];
 const kWeed = [0.075, 0.10, 0.045] as const;
 const kBarnacles = [0.47, 0.46, 0.41] as const;
