@@ -16,8 +16,8 @@
 #define WAVE_GROUP_Y 1
 #endif
 // Rows of cells of an invocation that first looks for rows with work and visits them in a second loop: llvmpipe takes both sides of a
-// branch, but repeats a loop only while a lane needs it. At most 32, the bits of a word; short where dispersion_strip is. Other passes keep
-// what two rows of a strip have in common.
+// branch, but repeats a loop only while a lane needs it. At most 32, the bits of a word; short where dispersion_strip is.
+// wave/shallow_slope.comp uses the same strips to fetch values that two rows share once.
 #define WAVE_STRIP_MAX 32
 #define WAVE_STRIP min(DISPERSION_STRIP, WAVE_STRIP_MAX)
 // One invocation per cell of a small square of the wave; z is the boat in it.

@@ -6,7 +6,7 @@
 // Equation: head_q = DYNAMIC_FACTOR h^2 (div u)^2 / g, at most MAX_DYNAMIC_HEAD h, h of at most HEAD_CELLS cells: a term of the equations of
 // Serre (1953; Green & Naghdi 1976), as is DYNAMIC_FACTOR.
 // Toward wave-makers the dynamic head fades out, within two depths of them.
-// An invocation passes over WAVE_STRIP rows of a column: what two rows have in common is fetched and computed once.
+// An invocation passes over WAVE_STRIP rows of a column: values that two rows share are fetched and computed once.
 // Invariant: exactly 0 between cells at the same level without flow, and beside a dry cell.
 #include "shared/groups.h"
 #include "shared/side_bits.h"
@@ -41,15 +41,15 @@ void main() {
   if (x >= n.x || first_z >= n.y) return;
   const int x_before = wrapped(x - 1, n.x);
   const int x_after = wrapped(x + 1, n.x);
-  const int before = n.x * wrapped(first_z - 1, n.y);
+  const int row_before = n.x * wrapped(first_z - 1, n.y);
   int row = n.x * first_z;
-  // Of the row; in the loop those of the row after it are fetched.
+  // Values of this row and of the one before it. The loop fetches the row after it.
   vec2 own = texelFetch(flow, x + row).xy;
-  float at_x_before_z = texelFetch(flow, x_after + before).y;
+  float at_x_before_z = texelFetch(flow, x_after + row_before).y;
   Column here = columnOf(x + row, texelFetch(elevation, x + row).x);
   int head = headAt(x + row);
   float breaks = breakingAt(x + row);
-  float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, x + before).y));
+  float pressed = dynamicHead(here, vec4(own.x, texelFetch(flow, x_before + row).x, own.y, texelFetch(flow, x + row_before).y));
 #if MAKERS
   pressed *= awayFromMakers(vec2(x, first_z) + 0.5, n);
 #endif
@@ -61,11 +61,10 @@ void main() {
     const int i_z = x + row_after;
     const vec2 at_x = texelFetch(flow, i_x).xy;
     const vec2 at_z = texelFetch(flow, i_z).xy;
-    const float at_z_before_x = texelFetch(flow, x_before + row_after).x;
     const Column there_x = columnOf(i_x, texelFetch(elevation, i_x).x);
     const Column there_z = columnOf(i_z, texelFetch(elevation, i_z).x);
     float pressed_x = dynamicHead(there_x, vec4(at_x.x, own.x, at_x.y, at_x_before_z));
-    float pressed_z = dynamicHead(there_z, vec4(at_z.x, at_z_before_x, at_z.y, own.y));
+    float pressed_z = dynamicHead(there_z, vec4(at_z.x, texelFetch(flow, x_before + row_after).x, at_z.y, own.y));
 #if MAKERS
     pressed_x *= awayFromMakers(cell + vec2(1.5, 0.5), n);
     pressed_z *= awayFromMakers(cell + vec2(0.5, 1.5), n);

@@ -206,7 +206,7 @@ describe("a pixel of the plain programs", () => {
     expect(readsOf(skyPlain)).toBe(0);
   });
 
-  it("does not branch, because both sides would be executed; it may end", () => {
+  it("does not branch, because both sides would be executed, except to discard a pixel", () => {
     for (const text of [waterPlain, solidPlain, skyPlain, fluidPlain, fluidPlainDrop, fluidPlainFloor]) expect(preprocessed(text, ["OPEN_SEA", "BEACH", "FOAM"])).not.toMatch(/\b(for|while)\s*\(|\bif\s*\((?!.*\) discard;)/);
   });
 });

@@ -14,6 +14,7 @@ interface Properties {
 /** Pure water absorbs (0.340, 0.0565, 0.0092) /m (Pope & Fry 1997). The rest is plankton, silt and what rivers bring, within the ranges that
  *  Mobley (Light and Water, 1994, chapter 3) reports. */
 const kProperties: Record<WaterTypeName, Properties> = {
+  // So clear that caustics on the floor stay white.
   pool: { absorption: [0.340, 0.065, 0.026], backscattering: [0.0060, 0.0120, 0.0180], realPerModelLength: 1.4 },
   lagoon: { absorption: [0.345, 0.060, 0.022], backscattering: [0.0050, 0.0085, 0.0130] },
   // So deep that no bed is seen.

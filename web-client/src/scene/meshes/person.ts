@@ -8,14 +8,18 @@ const kSkin: Paint = [0.48, 0.29, 0.20, 0.6];
 const kCap: Paint = [0.06, 0.07, 0.11, 0.6];
 const kSidesCount = 7, kPlainSidesCount = 3;
 
-/** Adds somebody, with arms if `isFine`, in a life jacket unless another is given: standing on a point, or seated on it with the legs out of sight. */
+/**
+ * Adds somebody in a life jacket, unless another is given: standing on a point, or seated on it with the legs out of sight. `isFine`: with
+ * arms, and more triangles.
+ */
 export function addPerson(builder: MeshBuilder, [x, y, z]: Point, tallM: number, isSeated: boolean, isFine: boolean, jacket = kLifeJacket): void {
   const seatedM = isSeated ? 0.45 * tallM : 0;
   const turn = (up: number, radius: number, paint: Paint): { yM: number; radiusM: number; paint: Paint } => ({ yM: up * tallM - seatedM, radiusM: radius * tallM, paint });
   const legs = isSeated ? [] : [turn(0, 0.09, kTrousers)];
   const body = [turn(0.47, 0.11, jacket), turn(0.74, 0.143, jacket), turn(0.81, 0.06, kSkin)];
-  const head = [turn(0.845, 0.045, kSkin), turn(0.875, 0.072, kSkin), turn(0.935, 0.079, kCap), turn(0.985, 0.06, kCap), turn(1.01, 0, kCap)];
-  addTurned(builder, [x, y, z], [...legs, ...body, ...(isFine ? head : [head[2]!, head[4]!])], isFine ? kSidesCount : kPlainSidesCount);
+  const face = isFine ? [turn(0.845, 0.045, kSkin), turn(0.875, 0.072, kSkin)] : [];
+  const cap = [turn(0.935, 0.079, kCap), ...(isFine ? [turn(0.985, 0.06, kCap)] : []), turn(1.01, 0, kCap)];
+  addTurned(builder, [x, y, z], [...legs, ...body, ...face, ...cap], isFine ? kSidesCount : kPlainSidesCount);
   if (!isFine) return;
   for (const side of [-1, 1]) {
     const at = (out: number, up: number, ahead: number): Point => [x + ahead * tallM, y + up * tallM - seatedM, z + side * out * tallM];

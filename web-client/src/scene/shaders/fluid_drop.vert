@@ -1,6 +1,6 @@
 // Drops of a tank: what flies apart from the liquid. A particle that stands for many drops is drawn as a few of them, one per draw (u_drop), spread
 // around it and stretched along their flight. They keep their places while it flies freely (fluid_words.glsl).
-// FROTH: none beside hulls, where they would hang before the boat.
+// FROTH: none beside hulls, where they would hang in front of the boat.
 #include <fluid_words>
 #include <fluid_volume>
 

@@ -23,7 +23,7 @@ const float kShade = 6.0;
 const float kLargeM = 0.07;
 // Strength of a puff of mist, and its radius in particle radii.
 const float kMist = 0.04, kMistRadii = 2.2;
-// Drops around a particle: within so many radii the fine ones, the large ones, and along this time of its flight.
+// How far drops lie from the path of their particle, fine and large ones, in particle radii; and the time of its flight that they span.
 const float kFineRadii = 1.1, kLargeRadii = 0.9, kTrailS = 0.14;
 
 void main() {

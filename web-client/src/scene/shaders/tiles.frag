@@ -82,7 +82,7 @@ void main() {
   vec4 stone = stoneAt(v_color.rgb * tiles(at, tile_m, 0.14, 0.016, -0.46), at, tile_m, out_m);
   vec3 albedo = stone.rgb;
 #else
-  // Sheets of mosaic, whose stones have light joints.
+  // A tile is a sheet of mosaic, whose stones have light joints.
   vec3 albedo = v_color.rgb * tiles(at, tile_m, 0.14, 0.02, -0.22) * tiles(at, tile_m / kStonesPerSheet, 0.14, 0.05, 0.1);
 #endif
   float deep_m = u_level_m - v_world.y;
