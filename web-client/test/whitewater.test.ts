@@ -1,11 +1,10 @@
 // White water without a renderer: how drops, foam and bubbles move, and where they begin.
 import { describe, expect, it } from "vitest";
 
-import type { FoamFrame, SurfaceFrame } from "../src/net/messages";
+import type { SurfaceFrame } from "../src/net/messages";
 import { makePose } from "../src/scene/frames/bodies";
 import { DiffuseParticles, kFloatsPerParticle, kinds, kLandedShare, kMaxStepS, type Birth, type Kind, type Medium } from "../src/scene/whitewater/diffuse_particles";
 import { MovingSurface, restingSurface, type Surface } from "../src/scene/whitewater/moving_surface";
-import { ramp } from "../src/scene/maths/interpolate";
 import { makeFastRandom } from "../src/scene/maths/random";
 import { addCrests, addHulls, addRims, rimOf, sizeRatioOf, type Births } from "../src/scene/whitewater/sources";
 
@@ -18,10 +17,6 @@ function surfaceFrame(timeS: number, elevationM: (xM: number, zM: number) => num
   const at = (i: number): number => ((i + 0.5) / kCount - 0.5) * kSideM;
   samples.forEach((_, n) => (samples[n] = Math.round(elevationM(at(n % kCount), at(Math.floor(n / kCount))) * 1000)));
   return { ...header, layer: "surface", timeS, resolutionCount: kCount, countZ: kCount, sideM: kSideM, widthM: kSideM, quantumM: 0.001, buffer: samples.buffer };
-}
-
-function foamFrame(timeS: number, value: number): FoamFrame {
-  return { ...header, layer: "foam", timeS, resolutionCount: kCount, countZ: kCount, sideM: kSideM, widthM: kSideM, buffer: new Uint8Array(kCount * kCount).fill(value).buffer };
 }
 
 /** A surface that rises everywhere by `riseMps`, with the slope `slope` along x. */
@@ -138,51 +133,70 @@ describe("the moving surface", () => {
   it("stands still with frames of two sizes", () => {
     const from = { ...surfaceFrame(0, () => 1), resolutionCount: 4, countZ: 4 };
     const surface = new MovingSurface({ before: undefined, from, to: surfaceFrame(0.1, () => 0.5), after: undefined, mix: 0.5 });
-    expect(surface.motionAt(0, 0)).toEqual({ elevationM: 0.5, riseMps: 0, slopeX: 0, slopeZ: 0 });
+    expect(surface.motionAt(0, 0)).toEqual({ elevationM: 0.5, riseMps: 0, slopeX: 0, slopeZ: 0, curvaturePerM: 0 });
   });
 });
 
 describe("breaking crests", () => {
-  it("throw drops ahead where foam grew and the surface rises, with bubbles below", () => {
-    const made = births();
-    addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(1, -0.5));
-    // 90 drops and 12 bubbles per m^2 of 256 m^2 that became white; a rise of 1 m/s makes 79 % of the drops.
-    const drops = made.particles.countOf(kinds.spray);
-    expect(drops).toBeGreaterThan(0.8 * 90 * 256 * ramp(0.25, 1.2, 1));
-    expect(drops).toBeLessThan(1.2 * 90 * 256 * ramp(0.25, 1.2, 1));
-    expect(made.particles.countOf(kinds.bubble)).toBeGreaterThan(0.8 * 12 * 256);
-    let forward = 0;
-    for (let n = 0; n < made.particles.count; ++n) {
-      const values = valuesOf(made.particles, n);
-      if (Math.floor(values[3]!) === kinds.spray) forward += values[4]! / drops;
+  /** A ridge along z that travels toward +x at `speedMps`; its top is at x = 0 after the interval of 0.1 s. */
+  const ridge = (heightM: number, speedMps: number, halfWidthM = 0.7): MovingSurface => {
+    const at = (topM: number) => (xM: number): number => heightM * Math.exp(-(((xM - topM) / halfWidthM) ** 2));
+    return new MovingSurface({ before: undefined, from: surfaceFrame(0, at(-0.1 * speedMps)), to: surfaceFrame(0.1, at(0)), after: undefined, mix: 1 });
+  };
+  const thrownBy = (surface: Surface, change: Partial<Births> = {}, stepS = 0.02): number[][] => {
+    const made = { ...births(), ...change };
+    for (let n = 0; n < 10; ++n) addCrests(made, surface, stepS);
+    return Array.from({ length: made.particles.count }, (_, n) => valuesOf(made.particles, n));
+  };
+  const kindOf = (values: readonly number[]): number => Math.floor(values[3]!);
+
+  it("throw drops and puffs ahead of their front, with bubbles below", () => {
+    const born = thrownBy(ridge(0.6, 2));
+    const inAir = born.filter((values) => kindOf(values) !== kinds.bubble);
+    const puffs = inAir.filter((values) => kindOf(values) === kinds.puff);
+    expect(inAir.length).toBeGreaterThan(500);
+    expect(puffs.length / inAir.length).toBeGreaterThan(0.45);
+    expect(puffs.length / inAir.length).toBeLessThan(0.55);
+    expect(born.length).toBeGreaterThan(inAir.length);
+    // Before the top, up to the reach of a front and of its lip.
+    for (const [xM] of inAir) {
+      expect(xM).toBeGreaterThan(-0.5);
+      expect(xM).toBeLessThan(1.5);
     }
-    // Down the slope of -0.5 along x: toward +x with about rise / slope, 2 m/s.
-    expect(forward).toBeGreaterThan(1.5);
-    expect(forward).toBeLessThan(2.3);
+    // With about the speed of the ridge.
+    const forwardMps = inAir.reduce((sum, values) => sum + values[4]!, 0) / inAir.length;
+    expect(forwardMps).toBeGreaterThan(1);
+    expect(forwardMps).toBeLessThan(3);
   });
 
-  it("throw more, smaller and slower drops in narrow water", () => {
-    const ofNarrow = (sizeRatio: number): [count: number, widestM: number] => {
-      const made = { ...births(200_000), sizeRatio };
-      addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(0.55, -0.5));
-      const radiiM = Array.from({ length: made.particles.count }, (_, n) => valuesOf(made.particles, n)).filter(([, , , kind]) => Math.floor(kind!) === kinds.spray).map((values) => values[7]!);
-      return [radiiM.length, Math.max(...radiiM)];
-    };
+  it("throw as many however long the steps are", () => {
+    const once = births();
+    addCrests(once, ridge(0.6, 2), 0.2);
+    const ratio = once.particles.count / thrownBy(ridge(0.6, 2)).length;
+    expect(ratio).toBeGreaterThan(0.9);
+    expect(ratio).toBeLessThan(1.1);
+  });
+
+  it("throw as many in water of a quarter of the size, a quarter as large", () => {
     expect([0.5, 1, 3, 6, 40].map(sizeRatioOf)).toEqual([0.25, 0.25, 0.5, 1, 1]);
-    const [seaCount, seaM] = ofNarrow(1);
-    const [narrowCount, narrowM] = ofNarrow(0.5);
-    expect(seaM).toBeGreaterThan(0.3);
-    expect(narrowM).toBeLessThan(0.19);
-    expect(narrowCount).toBeGreaterThan(4 * seaCount);
+    // Froude's law: lengths a quarter, times and speeds a half.
+    const small = (frame: SurfaceFrame): SurfaceFrame => ({ ...frame, timeS: frame.timeS / 2, sideM: kSideM / 4, widthM: kSideM / 4, quantumM: frame.quantumM / 4 });
+    const at = (topM: number) => (xM: number): number => 0.6 * Math.exp(-(((xM - topM) / 0.7) ** 2));
+    const surface = new MovingSurface({ before: undefined, from: small(surfaceFrame(0, at(-0.2))), to: small(surfaceFrame(0.1, at(0))), after: undefined, mix: 1 });
+    const inAir = (born: readonly number[][]): number[][] => born.filter((values) => kindOf(values) !== kinds.bubble);
+    const [sea, narrow] = [inAir(thrownBy(ridge(0.6, 2))), inAir(thrownBy(surface, { sizeRatio: 0.25 }, 0.01))];
+    const widestM = (born: readonly number[][]): number => Math.max(...born.map((values) => values[7]!));
+    expect(narrow.length / sea.length).toBeGreaterThan(0.85);
+    expect(narrow.length / sea.length).toBeLessThan(1.15);
+    expect(widestM(narrow) / widestM(sea)).toBeGreaterThan(0.2);
+    expect(widestM(narrow) / widestM(sea)).toBeLessThan(0.3);
   });
 
-  it("do nothing where the foam fades, the surface falls, or two sizes of frames meet", () => {
-    const made = births();
-    addCrests(made, foamFrame(0, 255), foamFrame(0.1, 0), moving(1));
-    addCrests(made, { ...foamFrame(0, 0), resolutionCount: 8, countZ: 8 }, foamFrame(0.1, 255), moving(1));
-    expect(made.particles.count).toBe(0);
-    addCrests(made, foamFrame(0, 0), foamFrame(0.1, 255), moving(-1));
-    expect(made.particles.countOf(kinds.spray)).toBe(0);
+  it("do nothing where the water is round, falls, or stands still", () => {
+    expect(thrownBy(ridge(0.6, 2, 5))).toEqual([]);
+    expect(thrownBy(moving(-1))).toEqual([]);
+    expect(thrownBy(ridge(0.6, 0))).toEqual([]);
+    expect(thrownBy(restingSurface(kSideM, kSideM))).toEqual([]);
   });
 });
 
@@ -249,17 +263,18 @@ describe("the water lines of obstacles", () => {
     });
   });
 
-  it("throw drops up and outward where the surface rises fast, and none where it falls", () => {
+  it("throw drops and puffs up and outward where the surface rises fast, and none where it falls", () => {
     const calm = births();
     addRims(calm, rim, moving(-2), 0.1);
     addRims(calm, rim, moving(0.2), 0.1);
     expect(calm.particles.count).toBe(0);
     const made = births();
     addRims(made, rim, moving(2), 0.1);
-    expect(made.particles.countOf(kinds.spray)).toBeGreaterThan(200);
+    expect(made.particles.countOf(kinds.spray)).toBeGreaterThan(100);
+    expect(made.particles.countOf(kinds.puff)).toBeGreaterThan(100);
     for (let n = 0; n < made.particles.count; ++n) {
       const values = valuesOf(made.particles, n);
-      if (Math.floor(values[3]!) === kinds.spray) expect(values[5]).toBeGreaterThan(2);
+      if (Math.floor(values[3]!) !== kinds.foam) expect(values[5]).toBeGreaterThan(2);
     }
   });
 

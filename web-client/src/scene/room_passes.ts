@@ -100,7 +100,7 @@ export function makeBase(greeting: GreetingInfo, { frames, sky, noise, quality, 
 
 export function makeNaturalWater(greeting: GreetingInfo, { field, foam, solids }: RoomBase, { frames, sky, noise, quality, warmUp }: RoomTools): RoomWater {
   const { glass } = solids.surroundings;
-  const white = field || (greeting.hasBoats && !quality.plain) ? makeWhitewaterPasses(greeting, frames, solids, sky, quality.whitewater) : undefined;
+  const white = field || (greeting.hasBoats && !quality.plain) ? makeWhitewaterPasses(greeting, frames, solids, sky, noise, quality.whitewater) : undefined;
   const { ringTexelsCount, streaksCount } = quality.rain;
   const isRainedOn = field !== undefined && greeting.wind !== undefined;
   const rings = isRainedOn && ringTexelsCount > 0 ? new RainRingsPass(greeting, ringTexelsCount) : undefined;

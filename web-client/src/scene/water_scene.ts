@@ -243,10 +243,10 @@ export class WaterScene {
     return this.base?.solids.drawnFloaters() ?? [];
   }
 
-  /** Returns how many drops, patches of foam and bubbles the page has added to the streamed water. */
+  /** Returns how many drops, patches of foam, bubbles and puffs of spray the page has added to the streamed water. */
   whitewaterCounts(): Record<keyof typeof kinds, number> {
     const of = (kind: keyof typeof kinds): number => this.water?.white?.countOf(kinds[kind]) ?? 0;
-    return { spray: of("spray"), foam: of("foam"), bubble: of("bubble") };
+    return { spray: of("spray"), foam: of("foam"), bubble: of("bubble"), puff: of("puff") };
   }
 
   /** Returns the box that a view shows: the water with room for waves, or the bounds of the newest particles; a scene's first view is that of resting water. */

@@ -2,9 +2,10 @@
 import type { FoamFrame, ParticleFrame } from "../net/messages";
 import { kWordsPerParticle } from "../scene/frames/particle_values";
 import { ramp } from "../scene/maths/interpolate";
-import { kNewFoam } from "../scene/whitewater/sources";
 import type { AreaTiles } from "./area_tiles";
 
+/** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
+const kNewFoam = 24;
 /** Foam that became white within this time is heard. */
 const kHeardS = 1;
 /** Samples looked at along an axis, and particles of a frame. */

@@ -27,8 +27,9 @@ export class FluidDropsPass implements Pass {
     private readonly dropsCount: number,
     isOverWave: boolean,
     froth?: Texture,
+    noise?: Texture,
   ) {
-    const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth }, u_froth: { value: froth } };
+    const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth }, u_froth: { value: froth }, u_noise: { value: noise } };
     const uniforms = { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own };
     const blended = { blending: NormalBlending, transparent: true, depthWrite: false };
     this.material = makeMaterial(isOverWave ? "fluidSpray" : "fluidDrop", uniforms, { defines: { ...(volume && { VOLUME: 1 }), ...(froth && { FROTH: 1 }) }, ...blended });

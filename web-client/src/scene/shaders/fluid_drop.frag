@@ -1,11 +1,14 @@
-// A drop in a tank: a lens that shows the sky upside down, bright where it mirrors the light from above; with air in it white.
+// A drop in a tank: a lens that shows the sky upside down, bright where it mirrors the light from above; with air in it white. Or a puff
+// of spray.
 #include <sky>
 
 flat in vec3 v_flight;
-flat in vec2 v_strength_white;  // white: 0..1 of a drop, 2 of mist
+flat in vec2 v_strength_white;  // white: 0..1
+flat in vec4 v_puff;
 uniform mat4 u_camera_world;
 uniform vec2 u_target_px;
 uniform sampler2D u_behind_depth;
+#include <puff>
 layout(location = 0) out vec4 color;
 
 const vec3 kFroth = vec3(0.84, 1.0, 1.14);
@@ -16,8 +19,8 @@ void main() {
   float away2 = dot(local, local);
   if (away2 > 1.0) discard;
   if (texture(u_behind_depth, gl_FragCoord.xy / u_target_px).r < gl_FragCoord.z) discard;
-  if (v_strength_white.y > 1.0) {
-    color = vec4(toDisplay(kFroth * (0.4 * u_sun_light + u_ambient_up)), v_strength_white.x * (1.0 - away2) * (1.0 - away2));
+  if (v_puff.x >= 0.0) {
+    color = vec4(toDisplay(kFroth * (0.6 * u_sun_light + u_ambient_up)), v_strength_white.x * puffAt(at, v_flight.xy, v_puff));
     return;
   }
   vec2 screen = v_flight.xy * local.x + vec2(-v_flight.y, v_flight.x) * local.y;

@@ -59,6 +59,7 @@ import presentBelowFrag from "./present_below.frag?raw";
 import mirror from "./mirror.glsl?raw";
 import side from "./side.glsl?raw";
 import presentFrag from "./present.frag?raw";
+import puff from "./puff.glsl?raw";
 import rainRingFrag from "./rain_ring.frag?raw";
 import rainRingVert from "./rain_ring.vert?raw";
 import rainStreakFrag from "./rain_streak.frag?raw";
@@ -81,6 +82,7 @@ import solidFrag from "./solid.frag?raw";
 import solidPlain from "./solid_plain.glsl?raw";
 import solidPlainFrag from "./solid_plain.frag?raw";
 import solidVert from "./solid.vert?raw";
+import sprayVert from "./spray.vert?raw";
 import tilesFrag from "./tiles.frag?raw";
 import waterBelowFrag from "./water_below.frag?raw";
 import waterFrag from "./water.frag?raw";
@@ -127,7 +129,7 @@ const kPrograms = {
   skyPlain: [skyPlainVert, skyPlainFrag],
   solid: [solidVert, solidFrag],
   solidPlain: [solidVert, solidPlainFrag],
-  spray: [whitewaterVert, dropFrag],
+  spray: [sprayVert, dropFrag],
   tiles: [solidVert, tilesFrag],
   water: [waterVert, waterFrag],
   waterPlain: [waterVert, waterPlainFrag],
@@ -156,6 +158,7 @@ const kShared: Record<string, string> = {
   instance,
   look_map: lookMap,
   mirror,
+  puff,
   ripples,
   sea_blend: seaBlend,
   shadow,

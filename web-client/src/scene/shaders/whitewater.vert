@@ -1,18 +1,15 @@
-// One point per drop, patch of foam or bubble (whitewater/diffuse_particles.ts). Draws those of one kind:
-// SPRAY: drops, stretched along their flight, and mist. BUBBLES: below the surface. FROTH: foam, seen from above, and what is around hulls.
+// One point per patch of foam or bubble (whitewater/diffuse_particles.ts). Draws those of one kind:
+// BUBBLES: below the surface. FROTH: foam, seen from above, and what is around hulls.
 in vec4 position;  // position (m), kind + share of its life that has passed; of a hull its speed (m/s) instead of its height
 in vec4 a_motion;  // velocity (m/s), radius (m); of a hull: course x, beam (m), course z, length (m)
 
-#ifdef SPRAY
-#include <drop>
-const int kKind = 0;
-#elif defined(FROTH)
+#ifdef FROTH
 uniform vec2 u_extent_m;  // length and width of the water
 uniform float u_target_px;
 flat out float v_strength;
 flat out vec4 v_hull;  // course, half of length and beam (m); length 0: a patch of foam
 flat out float v_radius_m;
-const int kKind = 1, kHull = 3;
+const int kKind = 1, kHull = 4;
 const float kAroundHullM = 0.5;  // reach of foam and shade
 const float kAtRest = 0.5, kFullFroude = 0.5;  // foam around a hull at rest, and the Froude number at which it is white
 const float kPatch = 0.36;  // foam in the middle of a patch that begins
@@ -23,7 +20,6 @@ uniform vec2 u_target_px;
 const int kKind = 2;
 #endif
 
-const float kMistRadiusM = 0.025;  // larger drops are puffs of mist
 const float kLeastBubblePx = 1.5;
 const float kMostBubbleShare = 0.0015;  // of their distance
 
@@ -39,9 +35,7 @@ void main() {
   float age = fract(position.w);
   gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 1.0;
-#ifdef SPRAY
-  noDrop();
-#elif defined(FROTH)
+#ifdef FROTH
   v_strength = 0.0;
   v_hull = vec4(0.0);
   v_radius_m = 0.0;
@@ -55,12 +49,7 @@ void main() {
   }
 #endif
   if (int(position.w) != kKind) return;
-#ifdef SPRAY
-  bool is_mist = a_motion.w > kMistRadiusM;
-  // Mist that hangs in the air is too thin to be seen.
-  float strength = is_mist ? 0.09 * (1.0 - age) * (1.0 - age) * smoothstep(0.0, 0.08, age) * smoothstep(0.6, 2.5, length(a_motion.xyz)) : 0.65 * (1.0 - age * age);
-  drawDrop(position.xyz, a_motion.xyz, is_mist ? a_motion.w * (1.0 + 1.5 * age) : a_motion.w, is_mist, strength, 0.6);
-#elif defined(FROTH)
+#ifdef FROTH
   // Foam spreads and fades; patches add up where many begin.
   float spread = 1.0 + 2.0 * age;
   float radius_m = a_motion.w * spread;

@@ -1,12 +1,12 @@
-// White water that is not simulated by the server: drops in the air, foam on the surface, bubbles below it (the three classes of Ihmsen,
-// Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the water or on
+// White water that is not simulated by the server: drops and puffs of fine ones in the air, foam on the surface, bubbles below it (the three
+// classes of Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the water or on
 // each other. Of the drops that fall into the water a share becomes foam, which spreads and fades; a bubble bursts at the surface. Pure: no renderer.
 
 import { kBoatsMax } from "../frames/bodies";
 
-export const kinds = { spray: 0, foam: 1, bubble: 2 } as const;
+export const kinds = { spray: 0, foam: 1, bubble: 2, puff: 3 } as const;
 /** Kind of a hull among the points that are drawn (whitewater_pass.ts). */
-export const kHullPoint = 3;
+export const kHullPoint = 4;
 export type Kind = (typeof kinds)[keyof typeof kinds];
 
 /** What the particles move through. */
@@ -49,6 +49,8 @@ const kLandedRadii = 10;
 const kMostLandedM = 0.08;
 /** Longest step: a drop that falls into the water at 10 m/s is found at most 0.3 m below it. */
 export const kMaxStepS = 1 / 30;
+
+const isInAir = (kind: number): boolean => kind === kinds.spray || kind === kinds.puff;
 
 export class DiffuseParticles {
   /** kFloatsPerParticle of each particle, the first `count` of which are alive, and room for kBoatsMax more points: hulls (whitewater_pass.ts). */
@@ -114,7 +116,7 @@ export class DiffuseParticles {
     const { values } = this;
     const at = n * kFloatsPerParticle;
     const kind = this.kindOf[n]!;
-    if (kind === kinds.spray) {
+    if (isInAir(kind)) {
       const [rx, ry, rz] = [values[at + 4]! - windMps.x, values[at + 5]!, values[at + 6]! - windMps.z];
       const perS = kDragPerM * Math.hypot(rx, ry, rz) * (kDragRadiusM / Math.max(values[at + 7]!, 1e-3));
       const kept = 1 / (1 + perS * stepS);

@@ -2,22 +2,24 @@
 import type { SurfaceFrame } from "../../net/messages";
 import type { Between } from "../frames/frame_ring";
 
-interface SurfaceMotion {
+export interface SurfaceMotion {
   elevationM: number;
   /** Vertical speed of the surface. */
   riseMps: number;
   slopeX: number;
   slopeZ: number;
+  /** 1/m, below 0 on crests. */
+  curvaturePerM: number;
 }
 
 /** What white water has to know of the surface. */
-export type Surface = Pick<MovingSurface, "elevationAtM" | "motionAt">;
+export type Surface = Pick<MovingSurface, "cellM" | "elevationAtM" | "motionAt" | "visitAbove">;
 
 /** Returns the surface of a room without a wave: particles have no level of their own, and boats swim at the resting one. */
 export function restingSurface(sideM: number, widthM: number): Surface {
   const elevationAtM = (xM: number, zM: number): number | undefined => (Math.abs(xM) < sideM / 2 && Math.abs(zM) < widthM / 2 ? 0 : undefined);
-  const motion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0 };
-  return { elevationAtM, motionAt: (xM, zM) => (elevationAtM(xM, zM) === undefined ? undefined : motion) };
+  const motion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0, curvaturePerM: 0 };
+  return { elevationAtM, cellM: 1, visitAbove: () => undefined, motionAt: (xM, zM) => (elevationAtM(xM, zM) === undefined ? undefined : motion) };
 }
 
 export class MovingSurface {
@@ -31,7 +33,7 @@ export class MovingSurface {
   private readonly mix: number;
   private readonly intervalS: number;
   // Overwritten by every call: thousands run per picture.
-  private readonly motion: SurfaceMotion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0 };
+  private readonly motion: SurfaceMotion = { elevationM: 0, riseMps: 0, slopeX: 0, slopeZ: 0, curvaturePerM: 0 };
 
   constructor({ from, to, mix }: Readonly<Between<SurfaceFrame>>) {
     const earlier = from.resolutionCount === to.resolutionCount && from.countZ === to.countZ ? from : to;
@@ -60,7 +62,18 @@ export class MovingSurface {
   /** Returns how the surface moves at the nearest sample; undefined outside the water. The next call overwrites the result. */
   motionAt(xM: number, zM: number): Readonly<SurfaceMotion> | undefined {
     const at = this.sampleAt(xM, zM);
-    if (at < 0) return undefined;
+    return at < 0 ? undefined : this.motionOf(at);
+  }
+
+  /** Calls `visit` at each sample that is higher than `leastM`. */
+  visitAbove(leastM: number, visit: (xM: number, zM: number, motion: Readonly<SurfaceMotion>) => void): void {
+    const [n, cellM, cellZM] = [this.resolutionCount, this.cellM, this.widthM / this.countZ];
+    const least = leastM / this.quantaM[1];
+    for (let at = 0; at < this.to.length; ++at)
+      if (this.to[at]! > least) visit(((at % n) + 0.5) * cellM - this.sideM / 2, (Math.floor(at / n) + 0.5) * cellZM - this.widthM / 2, this.motionOf(at));
+  }
+
+  private motionOf(at: number): Readonly<SurfaceMotion> {
     const n = this.resolutionCount;
     const { motion, to, from, quantaM } = this;
     const [i, k] = [at % n, Math.floor(at / n)];
@@ -70,6 +83,7 @@ export class MovingSurface {
     motion.riseMps = this.intervalS > 0 ? (to[at]! * quantaM[1] - from[at]! * quantaM[0]) / this.intervalS : 0;
     motion.slopeX = ((to[k * n + right]! - to[k * n + left]!) * quantaM[1]) / (Math.max(right - left, 1) * this.cellM);
     motion.slopeZ = ((to[front * n + i]! - to[back * n + i]!) * quantaM[1]) / (Math.max(front - back, 1) * this.cellM);
+    motion.curvaturePerM = ((to[k * n + right]! + to[k * n + left]! + to[front * n + i]! + to[back * n + i]! - 4 * to[at]!) * quantaM[1]) / this.cellM ** 2;
     return motion;
   }
 

@@ -1,13 +1,12 @@
-// Where white water begins, from what the server streams: at breaking crests (new foam), at hulls, and where the surface rises against rocks
+// Where white water begins, from what the server streams: at breaking crests, at hulls, and where the surface rises against rocks
 // and breakwaters. Every source adds a mean number per second and area or length, so that the picture does not depend on the rates of
 // frames and pictures. Pure: no renderer.
 import type { BoatDetail } from "../../../client/codec/greeting";
 import type { ObstacleInfo } from "../../../client/codec/scene_info";
-import type { FoamFrame } from "../../net/messages";
 import type { BodyPose } from "../../../client/codec/bodies";
 import { clamp, mix, ramp } from "../maths/interpolate";
 import { kinds, type Birth, type DiffuseParticles } from "./diffuse_particles";
-import type { Surface } from "./moving_surface";
+import type { Surface, SurfaceMotion } from "./moving_surface";
 
 /** What the sources add to. */
 export interface Births {
@@ -36,29 +35,23 @@ function countOf(expected: number, random: () => number): number {
 
 const spread = (random: () => number, by: number): number => by * (2 * random() - 1);
 
-/** Mist among drops: share of the drops, radii of the puffs [m], and how long they last if not as long as drops [s]. */
-interface Mist {
+/** Puffs of fine drops among large ones: their share, radii [m], and how long they last until they have come apart [s]. */
+interface Puffs {
   share: number;
   radiiM: readonly [number, number];
-  livesS?: readonly [number, number];
+  livesS: readonly [number, number];
 }
 
-/** Where water meets rock or falls over. */
-const kBreakerMist: Mist = { share: 0.2, radiiM: [0.12, 0.37] };
-/** Sheets of the finest drops. */
-const kBowMist: Mist = { share: 0.35, radiiM: [0.026, 0.06], livesS: [0.2, 0.5] };
+/** Where water breaks, or meets rock. */
+const kBreakerPuffs: Puffs = { share: 0.5, radiiM: [0.05, 0.29], livesS: [0.4, 1] };
+const kBowPuffs: Puffs = { share: 0.2, radiiM: [0.045, 0.1], livesS: [0.2, 0.5] };
 
-/** Few drops are large: radii from 4 mm to 2 cm. */
-function drop(random: () => number, xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number): Birth {
-  return { kind: kinds.spray, xM, yM, zM, vxMps, vyMps, vzMps, radiusM: 0.004 + 0.016 * random() ** 3, lifeS: 1 + 1.5 * random() };
-}
+type Motion = Pick<Birth, "xM" | "yM" | "zM" | "vxMps" | "vyMps" | "vzMps">;
 
-/** Puffs cost by the pixel: where fewer drops are wanted, fewer of them are mist. */
-function dropOrMist({ random, scale, sizeRatio }: Births, { share, radiiM, livesS }: Mist, ...motion: [xM: number, yM: number, zM: number, vxMps: number, vyMps: number, vzMps: number]): Birth {
-  const flying = drop(random, ...motion);
-  if (random() >= share * scale) return { ...flying, radiusM: sizeRatio * flying.radiusM };
-  const radiusM = sizeRatio * mix(...radiiM, random());
-  return { ...flying, radiusM, ...(livesS && { lifeS: mix(...livesS, random()) }) };
+/** Few drops are large: radii from 4 mm to 2 cm. Puffs cost by the pixel: they become fewer faster than drops do. */
+function thrown({ random, scale, sizeRatio }: Births, { share, radiiM, livesS }: Puffs, motion: Motion): Birth {
+  if (random() < share * Math.min(scale * scale, 1)) return { ...motion, kind: kinds.puff, radiusM: sizeRatio * mix(...radiiM, random() ** 2), lifeS: mix(...livesS, random()) };
+  return { ...motion, kind: kinds.spray, radiusM: sizeRatio * (0.004 + 0.016 * random() ** 3), lifeS: 1 + 1.5 * random() };
 }
 
 function bubble(random: () => number, xM: number, yM: number, zM: number): Birth {
@@ -69,45 +62,52 @@ function froth(random: () => number, xM: number, yM: number, zM: number, vxMps: 
   return { kind: kinds.foam, xM, yM, zM, vxMps, vyMps: 0, vzMps, radiusM: 0.1 + 0.15 * random(), lifeS: 2 + 3 * random() };
 }
 
-/** Foam that grows by this much (of 255) between frames is new: the water breaks there. */
-export const kNewFoam = 24;
-/** Per m^2 of water whose foam grows from none to white. */
-const kCrestDropsPerM2 = 90;
-const kCrestBubblesPerM2 = 12;
+/** Per s and m^2 of a crest that curls over and rises fast. */
+const kCrestDropsPerM2S = 1100;
+const kCrestBubblesPerM2S = 12;
+/** Elevations [m] and curvatures [1/m] between which a crest begins to curl over and is all foam (sea_blend.glsl). */
+const kCurledM = [0.15, 0.45] as const;
+const kCurledPerM = [0.45, 1.8] as const;
 const kCrestSpeedsMps = [0.25, 1.2] as const;
-const kMostCrestMps = 6;
+const kMostCrestMps = 3.5;
+/** Its front is so many times as long as it is high there; flatter water has none. */
+const kFrontHeights = 1.3;
+const kLeastSlope = 0.05;
+/** Its lip falls ahead of it, by so much per square of its height. */
+const kLipPerM = 0.8;
 
-/** Breaking crests: foam that grew from one frame to the next. */
-export function addCrests(births: Births, from: FoamFrame, to: FoamFrame, surface: Surface): void {
-  const n = to.resolutionCount;
-  if (from.resolutionCount !== n || from.countZ !== to.countZ) return;
+/** The front of a crest that breaks: where the surface rises, below water that curls over. */
+export function addCrests(births: Births, surface: Surface, stepS: number): void {
   const { particles, random, scale, sizeRatio } = births;
   const speedRatio = Math.sqrt(sizeRatio);
-  const [before, after] = [new Uint8Array(from.buffer), new Uint8Array(to.buffer)];
-  const cellM = to.sideM / n;
-  for (let at = 0; at < n * to.countZ; ++at) {
-    const grown = after[at]! - before[at]!;
-    if (grown < kNewFoam) continue;
-    const xM = ((at % n) + 0.5) * cellM - to.sideM / 2;
-    const zM = (Math.floor(at / n) + 0.5) * (to.widthM / to.countZ) - to.widthM / 2;
-    const motion = surface.motionAt(xM, zM);
-    if (!motion) continue;
-    const { elevationM, riseMps, slopeX, slopeZ } = motion;
-    const fresh = (grown / 255) * cellM * cellM * scale;
-    for (let left = countOf(kCrestBubblesPerM2 * fresh, random); left > 0; --left)
-      particles.add(bubble(random, xM + spread(random, cellM / 2), elevationM, zM + spread(random, cellM / 2)));
-    // A crest's front rises: it travels down its slope with the speed rise / slope.
+  const areaM2 = surface.cellM ** 2;
+  const around = (atM: number): number => atM + spread(random, surface.cellM / 2);
+  const curledAt = ({ elevationM, curvaturePerM }: Readonly<SurfaceMotion>): number => ramp(...kCurledM, elevationM / sizeRatio) * ramp(...kCurledPerM, -curvaturePerM * sizeRatio);
+  surface.visitAbove(kCurledM[0] * sizeRatio, (xM, zM, own) => {
+    const { elevationM, riseMps, slopeX, slopeZ } = own;
+    const rising = ramp(...kCrestSpeedsMps, riseMps / speedRatio);
     const slope = Math.hypot(slopeX, slopeZ);
-    const alongMps = slope > 0.02 ? Math.min(Math.max(riseMps, 0) / slope, kMostCrestMps) : 0;
-    const [dx, dz] = slope > 0 ? [-slopeX / slope, -slopeZ / slope] : [0, 0];
-    const drops = countOf((kCrestDropsPerM2 / sizeRatio ** 2) * fresh * ramp(...kCrestSpeedsMps, riseMps / speedRatio), random);
-    for (let left = drops; left > 0; --left) {
-      const speedMps = alongMps * (0.7 + 0.5 * random());
-      const upMps = 0.4 * speedRatio + 1.3 * riseMps * (0.4 + random());
+    if (rising <= 0 || slope < kLeastSlope) return;
+    const [dx, dz] = [-slopeX / slope, -slopeZ / slope];
+    const curledHere = curledAt(own);
+    const frontM = kFrontHeights * elevationM;
+    const crest = surface.motionAt(xM - dx * frontM, zM - dz * frontM);
+    const expected = Math.max(curledHere, crest ? curledAt(crest) : 0) * rising * areaM2 * stepS * scale;
+    for (let left = countOf(kCrestBubblesPerM2S * expected, random); left > 0; --left) particles.add(bubble(random, around(xM), elevationM, around(zM)));
+    // It travels down its slope with the speed rise / slope.
+    const alongMps = Math.min(riseMps / slope, kMostCrestMps * speedRatio);
+    const lipM = (kLipPerM / sizeRatio) * elevationM ** 2;
+    for (let left = countOf((kCrestDropsPerM2S / sizeRatio ** 2.5) * expected, random); left > 0; --left) {
+      const speedMps = alongMps * (0.3 + 0.7 * random());
+      const upMps = 0.3 * speedRatio + riseMps * (0.2 + random() ** 2);
       const asideMps = 0.4 * speedRatio;
-      particles.add(dropOrMist(births, kBreakerMist, xM + spread(random, cellM / 2), elevationM + 0.03 * sizeRatio, zM + spread(random, cellM / 2), dx * speedMps + spread(random, asideMps), upMps, dz * speedMps + spread(random, asideMps)));
+      const motion = {
+        xM: around(xM + dx * lipM), yM: elevationM + 0.03 * sizeRatio, zM: around(zM + dz * lipM),
+        vxMps: dx * speedMps + spread(random, asideMps), vyMps: upMps, vzMps: dz * speedMps + spread(random, asideMps),
+      };
+      particles.add(thrown(births, kBreakerPuffs, motion));
     }
-  }
+  });
 }
 
 /** A hull throws spray above this speed, over sqrt(g L). */
@@ -141,7 +141,7 @@ export function addHulls(births: Births, poses: readonly BodyPose[], hulls: Read
       const outMps = side * speedMps * (0.15 + 0.25 * random());
       const alongMps = speedMps * (0.45 + 0.4 * random());
       const upMps = speedMps * (0.12 + 0.25 * random());
-      particles.add(dropOrMist(births, kBowMist, px, elevationM + 0.03, pz, fx * alongMps - fz * outMps, upMps, fz * alongMps + fx * outMps));
+      particles.add(thrown(births, kBowPuffs, { xM: px, yM: elevationM + 0.03, zM: pz, vxMps: fx * alongMps - fz * outMps, vyMps: upMps, vzMps: fz * alongMps + fx * outMps }));
     }
     const wake = ramp(0.1, 0.6, froude) * lengthM * stepS * scale;
     // Foam begins all along the way of this step, or it would lie in heaps.
@@ -213,7 +213,7 @@ export function rimOf(obstacles: readonly ObstacleInfo[]): RimPoint[] {
 }
 
 /** Drops per s and m of water line where the surface rises by 1 m/s more than the first of these speeds. */
-const kRimDropsPerMS = 160;
+const kRimDropsPerMS = 260;
 const kRimSpeedsMps = [0.3, 1.3] as const;
 
 /** Water that rises against rocks and breakwaters. */
@@ -229,7 +229,7 @@ export function addRims(births: Births, rim: readonly RimPoint[], surface: Surfa
       const along = spread(random, lengthM / 2);
       const outMps = riseMps * (0.1 + 0.5 * random());
       const upMps = riseMps * (1 + 1.6 * random()) + 0.4;
-      particles.add(dropOrMist(births, kBreakerMist, xM - normalZ * along, elevationM, zM + normalX * along, normalX * outMps + spread(random, 0.3), upMps, normalZ * outMps + spread(random, 0.3)));
+      particles.add(thrown(births, kBreakerPuffs, { xM: xM - normalZ * along, yM: elevationM, zM: zM + normalX * along, vxMps: normalX * outMps + spread(random, 0.3), vyMps: upMps, vzMps: normalZ * outMps + spread(random, 0.3) }));
       if (random() < 0.3) particles.add(froth(random, xM, elevationM, zM, 0.3 * normalX, 0.3 * normalZ));
     }
   }

@@ -1,5 +1,5 @@
-// Drops and mist in the air, over the picture. Reads the white water, the solids' depth and the canvas. Writes the canvas.
-import { NormalBlending, Vector2, type RawShaderMaterial } from "three";
+// Drops and puffs of spray in the air, over the picture. Reads the white water, the solids' depth and the canvas. Writes the canvas.
+import { NormalBlending, Vector2, type RawShaderMaterial, type Texture } from "three";
 
 import type { Pass, Picture } from "../drawing/pass";
 import type { Sky } from "../light/sky";
@@ -17,11 +17,12 @@ export class SprayPass implements Pass {
     private readonly points: WhitePoints,
     solids: SolidsPass,
     sky: Sky,
+    noise: Texture,
   ) {
     this.material = makeMaterial(
       "spray",
-      { ...sky.uniforms, u_target_px: { value: new Vector2(1, 1) }, u_behind_depth: { value: solids.textures.depth } },
-      { defines: { SPRAY: 1 }, blending: NormalBlending, transparent: true, depthWrite: false },
+      { ...sky.uniforms, u_target_px: { value: new Vector2(1, 1) }, u_behind_depth: { value: solids.textures.depth }, u_noise: { value: noise } },
+      { blending: NormalBlending, transparent: true, depthWrite: false },
     );
   }
 

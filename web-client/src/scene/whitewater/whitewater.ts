@@ -3,6 +3,8 @@
 //   froth       foam -> texture over the square, which the water shows
 //   bubbles     bubbles -> solids, before the water
 //   spray       drops -> canvas, after the water
+import type { Texture } from "three";
+
 import type { GreetingInfo } from "../../../client/codec/greeting";
 import type { Pass } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";
@@ -25,9 +27,9 @@ interface WhitewaterPasses {
 }
 
 /** For a room with a wave, or with boats among particles, which have bubbles of their own. */
-export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFrames, solids: SolidsPass, sky: Sky, quality: WhitewaterQuality): WhitewaterPasses {
+export function makeWhitewaterPasses(greeting: GreetingInfo, frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, quality: WhitewaterQuality): WhitewaterPasses {
   const whitewater = new WhitewaterPass(greeting, frames, solids, quality);
   const { points } = whitewater;
   const froth = new FrothPass(points, greeting, quality.frothTexelsCount);
-  return { before: [whitewater, froth, ...(greeting.wave ? [new BubblesPass(points, solids, sky)] : [])], after: [new SprayPass(points, solids, sky)], froth, particles: whitewater.particles };
+  return { before: [whitewater, froth, ...(greeting.wave ? [new BubblesPass(points, solids, sky)] : [])], after: [new SprayPass(points, solids, sky, noise)], froth, particles: whitewater.particles };
 }

@@ -1,7 +1,6 @@
 // Drops, foam and bubbles of the time shown: lets them begin (sources.ts), moves them (diffuse_particles.ts) and uploads them.
 // Reads the frames and the boats as drawn. Writes the white water: points for the passes of white_points.ts.
 import type { GreetingInfo } from "../../../client/codec/greeting";
-import type { FoamFrame } from "../../net/messages";
 import type { Pass, Picture } from "../drawing/pass";
 import type { WhitewaterQuality } from "../drawing/quality";
 import { kBoatsMax } from "../frames/bodies";
@@ -27,7 +26,6 @@ export class WhitewaterPass implements Pass {
   private readonly births: Births;
   private readonly rim: readonly RimPoint[];
   private lastS: number | undefined;
-  private lastFoam: FoamFrame | undefined;
 
   /** `greeting` is read in every picture, because its boats and its wind change. */
   constructor(
@@ -61,7 +59,7 @@ export class WhitewaterPass implements Pass {
     const stepS = shownS - (this.lastS ?? shownS);
     this.lastS = shownS;
     if (stepS < 0 || stepS > kGapS) this.particles.clear();
-    else if (stepS > 0) this.advance(shownS, Math.min(stepS, kLongestS), surfaces ? new MovingSurface(surfaces) : restingSurface(sideM, widthM));
+    else if (stepS > 0) this.advance(Math.min(stepS, kLongestS), surfaces ? new MovingSurface(surfaces) : restingSurface(sideM, widthM));
   }
 
   /** Writes the boats behind the particles, for the foam and the shade around their hulls (whitewater.vert). Returns how many. */
@@ -80,14 +78,10 @@ export class WhitewaterPass implements Pass {
     this.points.dispose();
   }
 
-  private advance(shownS: number, stepS: number, surface: Surface): void {
-    const { births, frames, greeting } = this;
+  private advance(stepS: number, surface: Surface): void {
+    const { births, greeting } = this;
     const gravityMps2 = greeting.wind?.gravityMps2 ?? 9.81;
-    const foam = frames.foam.around(shownS);
-    if (foam && foam.to !== this.lastFoam) {
-      if (foam.from !== foam.to) addCrests(births, foam.from, foam.to, surface);
-      this.lastFoam = foam.to;
-    }
+    addCrests(births, surface, stepS);
     const hulls = new Map(greeting.boats.map((boat) => [boat.boatId, boat]));
     addHulls(births, this.solids.drawnBoats(), hulls, surface, gravityMps2, stepS);
     addRims(births, this.rim, surface, stepS);
