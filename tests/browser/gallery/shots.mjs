@@ -25,7 +25,7 @@ const kShots = {
   breaking_wave: { tick: 111 },
   breaking_wave_particles: { tick: 90 },
   breaking_wave_wave: { tick: 105 },
-  dam_break: { tick: 112 },
+  dam_break: { tick: 100 },
   flume: { tick: 918 },
   flotsam: { tick: 300 },
   harbor: { tick: 1410 },

@@ -26,7 +26,7 @@ interface FluidSurfaceInputs {
 }
 
 /** Size of one tile of the foam's lace. */
-const kLaceM = 0.6;
+const kLaceM = 1.1;
 
 export class FluidSurfacePass implements Pass {
   readonly name = "fluid surface";
@@ -69,7 +69,7 @@ export class FluidSurfacePass implements Pass {
         u_froth: { value: froth },
         u_lace_m: { value: kLaceM },
       },
-      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "cut" && { GLASS: 1 }), ...(froth && { FROTH: 1 }) }, transparent: true },
+      { defines: { ...(floorUniforms ? !plain && { AGAIN: 1 } : { WAVE: 1 }), ...(ripples && { RIPPLES: 1 }), ...(edge.kind === "cut" && { GLASS: 1 }), ...(froth && { FROTH: 1, HEAPED: 1 }) }, transparent: true },
     );
     if (scale === 1) return;
     const target = new WebGLRenderTarget(1, 1);

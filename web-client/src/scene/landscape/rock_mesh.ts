@@ -67,7 +67,7 @@ function addBoulder(builder: MeshBuilder, rock: RockInfo, bottomM: number, seed:
     const highM = rows[row]![column]![1];
     const stone = overgrown(shaded(kStone, uneven), highM, weedM * (0.7 + 0.6 * hash(row >> 1, column >> 1, seed + 3)));
     // What grows on the foot is dark; sand lies on its lowest part.
-    return mixPaint(shaded(stone, 1 - 0.35 * smoothstep(0, 0.15, highM / bottomM)), bedPaint(bottomM, -bottomM), smoothstep(0.3, 0.95, highM / bottomM));
+    return mixPaint(shaded(stone, 1 - 0.35 * smoothstep(0, 0.15, highM / bottomM)), bedPaint(bottomM, -bottomM), smoothstep(0.85, 1, highM / bottomM));
   });
 }
 

@@ -42,6 +42,7 @@ const float kMapped = 0.485;   // share of the map without the rim, which hides 
 uniform sampler2D u_froth;
 uniform float u_lace_m;        // size of one tile of the foam's lace
 #include <foam>
+const float kFrothCover = 0.72;  // the lace of a pool's froth is never closed
 #endif
 #include <fluid_liquid>
 layout(location = 0) out vec4 color;
@@ -339,7 +340,7 @@ void main() {
   if (!is_pane) {
     vec2 foam_shade = textureLod(u_froth, surface.xz / (u_volume_max_m.xz - u_volume_min_m.xz) + 0.5, 0.0).rg;
     light *= 1.0 - foam_shade.g;
-    if (foam_shade.r > 0.01) light = withFoam(light, surface.xz, foam_shade.r, 1.0, normal, 1.0);
+    if (foam_shade.r > 0.01) light = withFoam(light, surface.xz, kFrothCover * foam_shade.r, 1.0, normal, 1.0);
   }
 #endif
   color = vec4(toDisplay(mix(light, froth, mist)), alpha);

@@ -12,6 +12,7 @@
 #include <bicubic>
 
 in vec3 v_world;
+in vec2 v_level_m;
 in float v_view_z;
 in float v_top_m;
 #ifdef SKIRT
@@ -40,7 +41,6 @@ uniform float u_lift_m;  // by which thin water may lie below the ground that is
 #include <sea_blend>
 in vec2 v_share_away;
 #ifdef UNEVEN
-in vec2 v_unleaned_m;
 in vec2 v_shoreward;
 #endif
 uniform float u_haze_m;
@@ -157,17 +157,20 @@ void main() {
 #ifdef SKIRT
   vec3 normal = v_side_normal;
 #else
-#ifdef OPEN_SEA
 #ifdef UNEVEN
-  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, unevenAt(v_unleaned_m) / u_extent_m + 0.5) : vec4(0.0);
-  field *= unevenHeight(v_unleaned_m, field.r);
+  vec2 place = unevenAt(v_level_m) / u_extent_m + 0.5;
+#else
+  vec2 place = v_level_m / u_extent_m + 0.5;
+#endif
+#ifdef OPEN_SEA
+  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, place) : vec4(0.0);
+#else
+  vec4 field = smoothTexel(u_field, place);
+#endif
+#ifdef UNEVEN
+  field *= unevenHeight(v_level_m, field.r);
   // The face of a crest that leans is steeper, and its back is flatter.
   field.gb /= max(1.0 + leanPerRise(field.r) * dot(field.gb, v_shoreward), 0.25);
-#else
-  vec4 field = v_share_away.x > 0.0 ? smoothTexel(u_field, v_world.xz / u_extent_m + 0.5) : vec4(0.0);
-#endif
-#else
-  vec4 field = smoothTexel(u_field, v_world.xz / u_extent_m + 0.5);
 #endif
   float variance = 0.0;
 #ifdef OPEN_SEA
@@ -332,11 +335,6 @@ void main() {
 #ifdef GLITTER
   if (u_sun_sharp > 0.0) water += (u_sun_sharp * sunlit_share * edge) * mirroredSun(ray, level_slopes, pixel_slopes, kSunSpread * lost_variance, facing);
 #endif
-#ifdef UNEVEN
-  vec2 place = unevenAt(v_unleaned_m) / u_extent_m + 0.5;
-#else
-  vec2 place = v_world.xz / u_extent_m + 0.5;
-#endif
 #if !defined(OPEN_SEA) && !defined(GLASS)
   float foam = 0.0;
   water = mix(water, meniscusLight(), climbingShare(solid_m));
@@ -375,7 +373,7 @@ void main() {
 #endif
 #endif
   if (foam > 0.01) {
-    vec2 at = placeOfFoam(v_world.xz, foam_slopes, v_top_m);
+    vec2 at = placeOfFoam(v_level_m, foam_slopes, v_top_m);
     vec3 foam_normal = normalize(vec3(-level_slopes.x, 1.0, -level_slopes.y));
 #if defined(OPEN_SEA) && !defined(UNEVEN)
     // Steep waves draw out the foam of a breaker; ripples tear that of wakes and shores.

@@ -31,10 +31,10 @@ out vec2 v_share_away;  // of the simulated water; distance from the square (m)
 #endif
 
 #ifdef UNEVEN
-out vec2 v_unleaned_m;
 out vec2 v_shoreward;  // direction toward shallower water; 0 over a level bed
 #endif
 out vec3 v_world;
+out vec2 v_level_m;  // where it lies before it leans and is raised in heaps
 out float v_view_z;
 out float v_top_m;
 #ifdef HEAPED
@@ -52,7 +52,7 @@ uniform float u_foam_mix;
 const float kHeap = 0.14;
 out float v_heap_m;
 #else
-const float kHeap = 0.05;
+const float kHeap = 0.09;
 #endif
 // The wash along hulls is lower.
 const float kAlongHulls = 0.75;
@@ -89,8 +89,8 @@ void main() {
   depth_m = bedDepth(position.xz * u_extent_m, u_extent_m, u_depth_m);
 #endif
   v_world = vec3(position.x * u_extent_m.x, mix(-depth_m, max(v_top_m, -depth_m), position.y), position.z * u_extent_m.y);
+  v_level_m = v_world.xz;
 #ifdef UNEVEN
-  v_unleaned_m = v_world.xz;
   v_shoreward = vec2(0.0);
 #ifdef BEACH
   const vec2 kStepM = vec2(0.5, 0.0);
@@ -113,9 +113,9 @@ void main() {
   // Thin water ends on the ground.
   foam *= smoothstep(0.02, 0.2, (v_top_m + depth_m) / u_lace_m);
 #endif
-  float heap_m = kHeap * u_lace_m * heapedShare(foam) * billowsAt(placeOfFoam(v_world.xz, field.gb, v_top_m));
+  float most_m = kHeap * u_lace_m * heapedShare(foam), heap_m = most_m * billowsAt(placeOfFoam(v_level_m, field.gb, v_top_m));
 #ifdef GLASS
-  v_heap_m = heap_m;
+  v_heap_m = 0.75 * most_m;
   v_world.y += heap_m * position.y;
 #else
   v_world += heap_m * normalize(vec3(-field.g, 1.0, -field.b));

@@ -31,9 +31,10 @@ const kPlinth = 5;
 const kTileShare = 1 / 44;
 const kTrayTileShare = 1 / 20;
 /** The walls end at this share of the glass that stands over the resting water. In a channel of particles, whose waves shall be seen
- * against the sky, they have this share of the height of the glass. */
+ * against the sky, they have this share of the height of the glass, and at most one of its length: a tall tank is of glass. */
 const kWallFreeboard = 0.25;
 const kChannelWallHeight = 0.5;
+const kChannelWallLength = 0.16;
 /** What is kept free around a tank, from its middle and beside it. */
 const kFreeHalfM = 3;
 const kFreeBesideM = 1.6;
@@ -86,7 +87,7 @@ export function tankSize(greeting: Pick<GreetingInfo, "sideM" | "widthM" | "wate
   const isChannel = isChannelOfParticles(greeting);
   const freeboardM = Math.max(kFreeboardDepths * depthM, (isChannel ? kParticlesFreeboardSides : kFreeboardSides) * sizeM({ sideM, widthM }));
   const heightM = depthM + freeboardM;
-  return { sideM, widthM, heightM, wallM: isChannel ? kChannelWallHeight * heightM : depthM + kWallFreeboard * freeboardM };
+  return { sideM, widthM, heightM, wallM: isChannel ? Math.min(kChannelWallHeight * heightM, kChannelWallLength * Math.max(sideM, widthM)) : depthM + kWallFreeboard * freeboardM };
 }
 
 /** Four panes between four edges, with a rim. The floor of the tank is at y = 0. */
