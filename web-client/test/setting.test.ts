@@ -122,9 +122,11 @@ describe("the walls of a tank", () => {
     }
   });
 
-  it("are half as high as the glass of a channel of particles", () => {
-    const { wallM, heightM } = tankSize({ sideM: 4, widthM: 0.8, waterExtents: { sideM: 4, longM: 4, depthM: 2 }, wave: undefined });
-    expect(wallM).toBeCloseTo(heightM / 2, 9);
+  it("of a channel of particles are half as high as the glass, and lower in a short one: a tall tank is of glass", () => {
+    const channel = (sideM: number, depthM: number) => tankSize({ sideM, widthM: 0.8, waterExtents: { sideM, longM: sideM, depthM }, wave: undefined });
+    const long = channel(9, 1);
+    expect(long.wallM).toBeCloseTo(long.heightM / 2, 9);
+    expect(channel(4, 2).wallM).toBeCloseTo(0.16 * 4, 9);
   });
 });
 

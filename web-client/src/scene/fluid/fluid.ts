@@ -37,7 +37,7 @@ const kSparingDropsCount = 3;
 export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky: Sky, noise: Texture, field: Texture | undefined, froth: Texture | undefined, greeting: GreetingInfo, { texelType, plain, fluid: quality }: Pick<Quality, "fluid" | "plain" | "texelType">): FluidPasses {
   const particles = new FluidParticles(frames.particles, frames.clock, field, greeting);
   // The wave shows most of the water.
-  if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, kSparingDropsCount, true, undefined, noise)] };
+  if (field && !quality) return { before: [particles], after: [new FluidDropsPass(particles, undefined, solids, sky, noise, kSparingDropsCount, true)] };
   if (!quality) return { before: [particles], after: [new PlainLiquidPass(particles, greeting, solids.surroundings, sky, noise, colourRatio(greeting))] };
   const volume = new FluidVolumePass(particles, greeting, field ? undefined : solids.surroundings, quality.cellsPerSpacing, texelType);
   const tiles = new FluidTilesPass(particles, volume);
@@ -45,7 +45,7 @@ export function makeFluidPasses(frames: StreamedFrames, solids: SolidsPass, sky:
   const floor = field ? undefined : new FluidShadowPass(particles, volume, solids, sky, greeting, { ...quality, texelType, plain });
   const inputs = { tiles, volume, solids, sky, noise, particleUniforms: particles.uniforms, floorUniforms: floor?.uniforms, froth: field ? undefined : froth };
   const surface = new FluidSurfacePass(inputs, field ? 1 : colourRatio(greeting), quality, plain);
-  const drops = new FluidDropsPass(particles, volume, solids, sky, quality.dropsCount, field !== undefined, inputs.froth, noise);
+  const drops = new FluidDropsPass(particles, volume, solids, sky, noise, quality.dropsCount, field !== undefined, inputs.froth);
   const before = [particles, volume, ...(floor ? [floor] : [])];
   return { before, after: [tiles, surface, drops] };
 }

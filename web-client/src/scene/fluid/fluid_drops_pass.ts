@@ -24,10 +24,10 @@ export class FluidDropsPass implements Pass {
     volume: FluidVolumePass | undefined,
     solids: SolidsPass,
     sky: Sky,
+    noise: Texture,
     private readonly dropsCount: number,
     isOverWave: boolean,
     froth?: Texture,
-    noise?: Texture,
   ) {
     const own = { u_target_px: { value: new Vector2(1, 1) }, u_drop: { value: 0 }, u_camera_world: { value: null }, u_behind_depth: { value: solids.textures.depth }, u_froth: { value: froth }, u_noise: { value: noise } };
     const uniforms = { ...sky.uniforms, ...particles.uniforms, ...volume?.uniforms, ...own };

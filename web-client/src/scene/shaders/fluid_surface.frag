@@ -4,7 +4,7 @@
 // Reads the volume, the solids' colour and depth, the map of the floor. Blends over the picture; writes the surface's depth.
 // WAVE: the liquid is one body with the wave, which lies in the picture already. Toward the wave's surface it fades into it. Without it the
 // volume is a pool, or with GLASS a tank. AGAIN: a ray that has left the liquid may enter it again. RIPPLES: the
-// surface mirrors with waves too short for particles. FROTH: boats leave foam.
+// surface mirrors with waves too short for particles. FROTH: boats leave foam (HEAPED: foam.glsl).
 #include <sky>
 #include <water_optics>
 #include <fluid_volume>

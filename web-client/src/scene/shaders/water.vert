@@ -52,10 +52,10 @@ uniform float u_foam_mix;
 const float kHeap = 0.14;
 out float v_heap_m;
 #else
-const float kHeap = 0.09;
+const float kHeap = 0.07;
 #endif
 // The wash along hulls is lower.
-const float kAlongHulls = 0.75;
+const float kAlongHulls = 0.66;
 #endif
 #if defined(VERTEX_LIT) && !defined(SKIRT)
 #include <water_plain>

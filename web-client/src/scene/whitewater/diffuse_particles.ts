@@ -1,6 +1,7 @@
 // White water that is not simulated by the server: drops and puffs of fine ones in the air, foam on the surface, bubbles below it (the three
-// classes of Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the water or on
-// each other. Of the drops that fall into the water a share becomes foam, which spreads and fades; a bubble bursts at the surface. Pure: no renderer.
+// classes of Ihmsen, Akinci, Akinci & Teschner 2012, "Unified spray, foam and air bubbles for particle-based fluids"). They do not act on the
+// water or on each other. Of the drops that fall into the water a share becomes foam, which spreads and fades; a bubble bursts at the surface.
+// Pure: no renderer.
 
 import { kBoatsMax } from "../frames/bodies";
 
