@@ -6,7 +6,7 @@ import { describe, expect, it } from "vitest";
 import { kSideNames, type SideKind, type SideName, type WaveInfo, type WindInfo } from "../client/codec/scene_info";
 import { coastHeightM, makeCoastGeometry, quayHeightM } from "../src/scene/landscape/coast";
 import { blendOf } from "../src/scene/sea/open_sea";
-import { makeRipples, rippleSlope } from "../src/scene/sea/ripples";
+import { makeRipples, rippleSlope, tornByWind } from "../src/scene/sea/ripples";
 import { fitToTile, slopeVariance } from "../src/scene/sea/sea_tile";
 import { seaStateOf, waveFrequencyRadps } from "../src/scene/sea/sea_state";
 import { gridLines } from "../src/scene/water/water_grid";
@@ -72,8 +72,14 @@ describe("ripples", () => {
   it("become steeper with the storm", () => {
     const slopeAt = (levelRatio: number) => rippleSlope({ levelRatio, waveHeightM: 0.3 });
     expect(slopeAt(0)).toBe(rippleSlope(undefined));
-    expect(slopeAt(1)).toBeGreaterThan(2 * slopeAt(0));
+    expect(slopeAt(1)).toBeGreaterThan(1.5 * slopeAt(0));
     expect(slopeAt(5)).toBe(slopeAt(1));
+  });
+
+  it("tell how far wind tears crests: not without, at once in a storm", () => {
+    expect(tornByWind(rippleSlope({ levelRatio: 1, waveHeightM: 0 }))).toBe(1);
+    expect(tornByWind(rippleSlope(undefined))).toBeLessThan(1.3);
+    expect(tornByWind(rippleSlope({ levelRatio: 0.5, waveHeightM: 0.3 }))).toBe(2);
   });
 
   it("are hardly there in rain without wind", () => {

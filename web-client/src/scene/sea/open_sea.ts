@@ -7,7 +7,7 @@ import { kSideNames, type SideName, type WaveInfo, type WindInfo } from "../../.
 import type { Pass, Picture } from "../drawing/pass";
 import type { Quality } from "../drawing/quality";
 import type { Uniforms } from "../shaders/materials";
-import { makeRipples, rippleSlope } from "./ripples";
+import { makeRipples, rippleSlope, tornByWind } from "./ripples";
 import { seaStateOf, withParameter, type PlaneWave, type SeaWater } from "./sea_state";
 import { SeaTile, slopeVariance } from "./sea_tile";
 
@@ -19,7 +19,9 @@ const kSwellTileSides = { plain: 2, full: 4 };
 const kLongestRippleCells = 8;
 const kRippleRange = 5;
 const kRippleTileLengths = 9;
-const kRippleCount = { plain: 20, full: 40 };
+/** How many waves, how sharp their crests are (sea_tile.frag), and which share of the slope is drawn. In the plain tiers a sharp tile
+ * takes too long, and with all of the slope the sun's image, which only drawn ripples widen, would break up. */
+const kRipples = { plain: { count: 20, chop: 0, share: 0.6 }, full: { count: 40, chop: 3, share: 1 } };
 /** Water outside periodic sides repeats the simulated water and fades within this share of the side. */
 const kPeriodicFadeSides = 0.3;
 /** Blending at an open side without a layer. */
@@ -51,6 +53,7 @@ export class OpenSea implements Pass {
   private readonly swell: SeaTile;
   private readonly ripples: SeaTile;
   private readonly rippleWaves: PlaneWave[];
+  private readonly rippleShare: number;
   private readonly variances = new Vector2();
   private wave: SeaWater;
   private wind: WindInfo | undefined;
@@ -64,16 +67,19 @@ export class OpenSea implements Pass {
     this.wave = wave;
     this.wind = wind;
     const kind = plain ? "plain" : "full";
+    const { count, chop, share } = kRipples[kind];
     const longestM = (kLongestRippleCells * wave.sideM) / wave.resolutionCount;
-    this.swell = new SeaTile(kSwellTileSides[kind] * Math.max(wave.sideM, wave.widthM), seaTexelsCount, !plain, texelType);
-    this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain, texelType);
-    this.rippleWaves = makeRipples(kRippleCount[kind], longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
+    this.swell = new SeaTile(kSwellTileSides[kind] * Math.max(wave.sideM, wave.widthM), seaTexelsCount, !plain, texelType, 0);
+    this.ripples = new SeaTile(kRippleTileLengths * longestM, seaTexelsCount, !plain, texelType, chop);
+    this.rippleWaves = makeRipples(count, longestM / kRippleRange, longestM, wind?.directionDeg ?? 30, wind?.gravityMps2 ?? 9.81);
+    this.rippleShare = share;
     const { beyondM, widthM } = blendOf(wave);
     this.uniforms = {
       u_swell: { value: this.swell.texture },
       u_ripples: { value: this.ripples.texture },
       u_tiles_m: { value: new Vector2(this.swell.tileM, this.ripples.tileM) },
       u_slope_variances: { value: this.variances },
+      u_torn_by_wind: { value: 1 },
       u_blend_beyond_m: { value: new Vector4(...beyondM) },
       u_blend_width_m: { value: new Vector4(...widthM) },
     };
@@ -121,8 +127,10 @@ export class OpenSea implements Pass {
     const [from, to] = [Math.cos(angle), Math.sin(angle)];
     this.swell.render(renderer, shownS, [{ waves: this.shown, share: from }, { waves: this.next?.waves ?? [], share: to }]);
     const slope = this.shownSlope + ((this.next?.slope ?? 0) - this.shownSlope) * (this.next ? faded : 0);
-    this.ripples.render(renderer, shownS, [{ waves: this.rippleWaves, share: slope }]);
-    this.variances.set(from ** 2 * slopeVariance(this.shown) + to ** 2 * slopeVariance(this.next?.waves ?? []), slope ** 2);
+    const drawnSlope = this.rippleShare * slope;
+    this.ripples.render(renderer, shownS, [{ waves: this.rippleWaves, share: drawnSlope }]);
+    this.variances.set(from ** 2 * slopeVariance(this.shown) + to ** 2 * slopeVariance(this.next?.waves ?? []), drawnSlope ** 2);
+    this.uniforms["u_torn_by_wind"]!.value = tornByWind(slope);
   }
 
   dispose(): void {

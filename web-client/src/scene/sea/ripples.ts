@@ -1,15 +1,16 @@
 // Ripples: waves too short for the simulation's grid, as the second cascade of the open sea. They change the normals only, inside and
 // outside the simulated square alike. Pure.
 import type { WindInfo } from "../../../client/codec/scene_info";
-import { clamp } from "../maths/interpolate";
+import { clamp, smoothstep } from "../maths/interpolate";
 import { makeRandom, type PlaneWave } from "./sea_state";
 
 /** Surface tension over density, m^3/s^2. */
 const kSurfaceTension = 7.3e-5;
 const kSpreadRad = 1.25;
-/** Root mean square slope without wind, and what a full storm adds (half of what Cox & Munk 1954 give for 15 m/s: the rest is in the longer waves). */
-const kCalmSlope = 0.07;
-const kStormSlope = 0.11;
+/** Root mean square slope in a light breeze of 4 m/s, which blows without a storm, too, and what a full storm adds: three quarters of the
+ * slopes that Cox & Munk (1954) give for 15 m/s, the rest is in the longer waves. */
+const kCalmSlope = 0.15;
+const kStormSlope = 0.09;
 /** Where a storm brings rain without wind, so that one sees the rings. */
 const kWindlessSlope = 0.012;
 
@@ -17,6 +18,11 @@ const kWindlessSlope = 0.012;
 export function rippleSlope(wind: Pick<WindInfo, "levelRatio" | "waveHeightM"> | undefined): number {
   if (!wind) return kCalmSlope;
   return wind.waveHeightM === 0 ? kWindlessSlope : kCalmSlope + kStormSlope * clamp(wind.levelRatio, 0, 1);
+}
+
+/** Returns the factor on the curvature of crests that foam, in wind that raises ripples of that slope: 2 from a third of a storm on. */
+export function tornByWind(slope: number): number {
+  return 1 + smoothstep(kCalmSlope - 0.01, kCalmSlope + 0.35 * kStormSlope, slope);
 }
 
 /**

@@ -42,8 +42,9 @@ export class SeaTile {
   private readonly pass: FullscreenPass;
   private readonly values = Array.from({ length: kMaxTileWaves }, () => new Vector4());
 
-  /** `smooth`: with mip levels; too slow for software renderers, whose shader fades the waves smaller than a pixel itself. */
-  constructor(readonly tileM: number, texelsCount: number, smooth: boolean, texelType: TexelType) {
+  /** `smooth`: with mip levels; too slow for software renderers, whose shader fades the waves smaller than a pixel itself. `chop`: how
+   * sharp the crests are, 0 for sines (sea_tile.frag). */
+  constructor(readonly tileM: number, texelsCount: number, smooth: boolean, texelType: TexelType, chop: number) {
     this.target = new WebGLRenderTarget(texelsCount, texelsCount, {
       type: texelType,
       minFilter: smooth ? LinearMipmapLinearFilter : LinearFilter,
@@ -54,7 +55,7 @@ export class SeaTile {
     });
     this.texture = this.target.texture;
     this.pass = new FullscreenPass(
-      makeMaterial("seaTile", { u_waves: { value: this.values }, u_count: { value: 0 }, u_tile_m: { value: tileM } }, { depthTest: false, depthWrite: false }),
+      makeMaterial("seaTile", { u_waves: { value: this.values }, u_count: { value: 0 }, u_tile_m: { value: tileM }, u_chop: { value: chop } }, { depthTest: false, depthWrite: false }),
     );
   }
 

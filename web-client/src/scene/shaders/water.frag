@@ -358,7 +358,7 @@ void main() {
     // It spills down both sides of the crest, which lies uphill, and thins out. Wind tears it from crests which do not break yet.
     vec2 uphill = kSpillM * field.gb / (max(length(field.gb), 0.1) * u_extent_m);
     vec4 near_crest = textureLod(u_field, place + 0.5 * uphill, 0.0), far_crest = textureLod(u_field, place + uphill, 0.0);
-    float curled = crestFoam(v_top_m, field.a * (1.0 + smoothstep(0.003, 0.012, u_slope_variances.y)));
+    float curled = crestFoam(v_top_m, u_torn_by_wind * field.a);
     broken = max(max(broken, curled), max(0.8 * crestFoam(near_crest.r, near_crest.a), 0.5 * crestFoam(far_crest.r, far_crest.a)));
     foam = max(foam, broken);
     foam *= v_share_away.x;

@@ -28,8 +28,7 @@ uniform sampler2D u_behind_depth;
 uniform vec2 u_resolution;
 #endif
 #ifdef OPEN_SEA
-uniform sampler2D u_ripples;
-uniform vec2 u_tiles_m;
+#include <ripples>
 #endif
 uniform vec3 u_displayed_sky[3];  // zenith, middle, horizon
 uniform vec3 u_displayed_sun;
@@ -72,7 +71,10 @@ void main() {
 #endif
   vec2 slope = v_slopes.xy;
 #ifdef OPEN_SEA
-  slope += v_slopes.z * textureLod(u_ripples, v_at / u_tiles_m.y, 0.0).gb;
+  vec2 ripples_at = v_at / u_tiles_m.y;
+  slope += v_slopes.z * textureLod(u_ripples, ripples_at, 0.0).gb;
+  // The finer copy of ripples.glsl, near the camera.
+  slope += max(3.0 * v_slopes.z - 2.0, 0.0) * (textureLod(u_ripples, kTurnedRipples * ripples_at * kFinerRipples, 0.0).gb * kTurnedRipples);
 #endif
   vec3 normal = vec3(-slope.x, 1.0, -slope.y) * inversesqrt(1.0 + dot(slope, slope));
   float along = dot(normal, v_ray);

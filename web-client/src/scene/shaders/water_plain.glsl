@@ -52,9 +52,8 @@ void preparePlain(vec2 slope, float curvature, float bed_m) {
 #endif
 #ifdef OPEN_SEA
   // It spills down from the crest, which lies uphill, and wind makes more of it (water.frag).
-  float by_wind = 1.0 + smoothstep(0.003, 0.012, u_slope_variances.y);
   vec4 crest = textureLod(u_field, place + kSpillM * slope / (max(length(slope), 0.1) * u_extent_m), 0.0);
-  foam_shade.r = max(foam_shade.r, max(crestFoam(v_top_m, by_wind * curvature), 0.75 * crestFoam(crest.r, by_wind * crest.a)));
+  foam_shade.r = max(foam_shade.r, max(crestFoam(v_top_m, u_torn_by_wind * curvature), 0.75 * crestFoam(crest.r, u_torn_by_wind * crest.a)));
 #endif
 #ifdef OPEN_SEA
   // Waves smaller than a pixel widen the reflection instead of tilting it.
