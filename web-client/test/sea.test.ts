@@ -76,7 +76,7 @@ describe("ripples", () => {
     expect(slopeAt(5)).toBe(slopeAt(1));
   });
 
-  it("tell how far wind tears crests: not without, at once in a storm", () => {
+  it("let crests foam more easily in wind, twice as much from half a storm on", () => {
     expect(tornByWind(rippleSlope({ levelRatio: 1, waveHeightM: 0 }))).toBe(1);
     expect(tornByWind(rippleSlope(undefined))).toBeLessThan(1.3);
     expect(tornByWind(rippleSlope({ levelRatio: 0.5, waveHeightM: 0.3 }))).toBe(2);

@@ -20,7 +20,8 @@ export function rippleSlope(wind: Pick<WindInfo, "levelRatio" | "waveHeightM"> |
   return wind.waveHeightM === 0 ? kWindlessSlope : kCalmSlope + kStormSlope * clamp(wind.levelRatio, 0, 1);
 }
 
-/** Returns the factor on the curvature of crests that foam, in wind that raises ripples of that slope: 2 from a third of a storm on. */
+/** Returns how many times as much crests seem to be curved where it is decided whether they foam, in the wind that raises ripples of this
+ * slope: 1 without wind, 2 from a third of a storm on. */
 export function tornByWind(slope: number): number {
   return 1 + smoothstep(kCalmSlope - 0.01, kCalmSlope + 0.35 * kStormSlope, slope);
 }

@@ -42,7 +42,7 @@ float leanM(float top_m) { return kLeanPerM * max(top_m, 0.0) * max(top_m, 0.0);
 float leanPerRise(float top_m) { return 2.0 * kLeanPerM * max(top_m, 0.0); }
 #endif
 
-uniform float u_torn_by_wind;  // factor on the curvature of a crest whose foam wind raises
+uniform float u_torn_by_wind;  // crests foam as if they were curved this many times as much (tornByWind of ripples.ts)
 
 // Foam of crests that curl over (curvature in 1/m).
 float crestFoam(float top_m, float curvature) { return smoothstep(0.15, 0.45, top_m) * smoothstep(0.45, 1.8, -curvature); }

@@ -54,7 +54,7 @@ out float v_heap_m;
 #else
 const float kHeap = 0.07;
 #endif
-// The wash along hulls is lower.
+// Share of the foam along hulls that raises heaps: their wash is lower than a breaker.
 const float kAlongHulls = 0.66;
 #endif
 #if defined(VERTEX_LIT) && !defined(SKIRT)
@@ -115,6 +115,7 @@ void main() {
 #endif
   float most_m = kHeap * u_lace_m * heapedShare(foam), heap_m = most_m * billowsAt(placeOfFoam(v_level_m, field.gb, v_top_m));
 #ifdef GLASS
+  // Its mean over the billows: the edge at the glass would have their teeth.
   v_heap_m = 0.75 * most_m;
   v_world.y += heap_m * position.y;
 #else
