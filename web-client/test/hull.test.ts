@@ -4,7 +4,7 @@ import { describe, expect, it } from "vitest";
 
 import type { BoatDetail } from "../client/codec/greeting";
 import { addShell, makeBoatParts } from "../src/scene/boats/boat_geometry";
-import { HullLines, hullKind } from "../src/scene/boats/lines";
+import { hullKind, HullLines, sunkM } from "../src/scene/boats/lines";
 import { liveryOf, paintOf } from "../src/scene/boats/livery";
 import { MeshBuilder } from "../src/scene/meshes/mesh_builder";
 
@@ -89,7 +89,9 @@ describe.each(Object.entries(kBoats))("the hull of %s", (_, boat) => {
     expect(min.y / heightM).toBeCloseTo(-0.5, 4);
     const decks = Array.from({ length: 101 }, (_, n) => lines.deckM(n / 100));
     expect(Math.min(...decks) / heightM).toBeCloseTo(0.5, 3);
-    expect(lines.waterlineM).toBeCloseTo(-heightM / 2 + draughtM, 9);
+    // Drawn with a draught of at least 0.42 of its height.
+    expect(lines.waterlineM).toBeCloseTo(heightM * Math.max(-0.08, draughtM / heightM - 0.5), 9);
+    expect(lines.waterlineM - sunkM(boat)).toBeCloseTo(-heightM / 2 + draughtM, 9);
   });
 
   it.each([false, true])("has no open edge and encloses its planking only (plain: %s)", (plain) => {

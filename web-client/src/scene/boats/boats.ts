@@ -12,6 +12,7 @@ import { makeBoatParts } from "./boat_geometry";
 import { addBoatLamps } from "./boat_lamps";
 import type { HullPlan } from "./buoys";
 import type { BoatLamp } from "./fittings";
+import { sunkM } from "./lines";
 import type { BoatColors } from "./livery";
 
 /** A boat as it is drawn. */
@@ -22,9 +23,6 @@ interface DrawnBoat {
   geometries: BufferGeometry[];
   lamps: BoatLamp[];
 }
-
-/** Hulls are drawn deeper by this share of their height: on a swell, light ones show their forefoot and their transom down to the keel. */
-const kSunkHeights = 0.06;
 
 export class Boats {
   private readonly boats = new Map<number, DrawnBoat>();
@@ -67,7 +65,7 @@ export class Boats {
       if (!boat) continue;
       const { group, detail } = boat;
       group.visible = true;
-      group.position.set(pose.xM, pose.yM - kSunkHeights * detail.heightM, pose.zM);
+      group.position.set(pose.xM, pose.yM - sunkM(detail), pose.zM);
       group.rotation.set(pose.rollRad, -pose.headingRad, pose.pitchRad, "YZX");
     }
   }

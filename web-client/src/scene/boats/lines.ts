@@ -36,9 +36,9 @@ interface HullForm {
 }
 
 const kForms: Record<HullKind, HullForm> = {
-  dinghy: { widestAt: 0.44, transom: 0.7, entry: 1.85, stemRake: 0.1, sternRake: 0.03, forefootFrom: 0.4, forefootRise: 0.4, rocker: 0.16, bilge: 2.5, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0 },
-  launch: { widestAt: 0.4, transom: 0.86, entry: 1.9, stemRake: 0.16, sternRake: 0.02, forefootFrom: 0.5, forefootRise: 0.3, rocker: 0.04, bilge: 3, bowSheer: 0.3, sternSheer: 0.02, bulwark: 0 },
-  cutter: { widestAt: 0.46, transom: 0.74, entry: 2.2, stemRake: 0.05, sternRake: 0.05, forefootFrom: 0.7, forefootRise: 0.32, rocker: 0.12, bilge: 2.8, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0.14 },
+  dinghy: { widestAt: 0.44, transom: 0.7, entry: 1.85, stemRake: 0.1, sternRake: 0.03, forefootFrom: 0.4, forefootRise: 0.28, rocker: 0.16, bilge: 2.5, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0 },
+  launch: { widestAt: 0.4, transom: 0.86, entry: 1.9, stemRake: 0.16, sternRake: 0.02, forefootFrom: 0.5, forefootRise: 0.12, rocker: 0.04, bilge: 3, bowSheer: 0.3, sternSheer: 0.02, bulwark: 0 },
+  cutter: { widestAt: 0.46, transom: 0.74, entry: 2.2, stemRake: 0.05, sternRake: 0.05, forefootFrom: 0.7, forefootRise: 0.16, rocker: 0.12, bilge: 2.8, bowSheer: 0.34, sternSheer: 0.1, bulwark: 0.14 },
 };
 
 /** The rubbing strake stands out by this share of the beam. */
@@ -47,16 +47,23 @@ const kStrakeBeams = 0.014;
 const kSideBeams = 0.034;
 /** Position of the deck's and the keel's lowest points. */
 export const kLowestAt = 0.36;
+/** Least draught of a hull that is drawn, in heights. */
+const kLeastDrawnDraught = 0.42;
 
 export function hullKind({ lengthM }: Pick<BoatDetail, "lengthM">): HullKind {
   return lengthM < kLaunchFromM ? "dinghy" : lengthM < kCutterFromM ? "launch" : "cutter";
+}
+
+/** By how much deeper than it floats a boat is drawn: a light one would show its keel, as if it stood on the water. */
+export function sunkM({ heightM, draughtM }: Pick<BoatDetail, "heightM" | "draughtM">): number {
+  return Math.max(kLeastDrawnDraught * heightM - draughtM, 0);
 }
 
 export class HullLines {
   readonly kind: HullKind;
   readonly strakeM: number;
   readonly sideM: number;
-  /** Height of the still water's level over the hull's middle. */
+  /** Height of the still water over the middle of the hull that is drawn. */
   readonly waterlineM: number;
   readonly widestAt: number;
   private readonly form: HullForm;
@@ -66,7 +73,7 @@ export class HullLines {
     this.form = kForms[this.kind];
     this.strakeM = kStrakeBeams * boat.beamM;
     this.sideM = kSideBeams * boat.beamM;
-    this.waterlineM = -boat.heightM / 2 + boat.draughtM;
+    this.waterlineM = -boat.heightM / 2 + boat.draughtM + sunkM(boat);
     this.widestAt = this.form.widestAt;
   }
 

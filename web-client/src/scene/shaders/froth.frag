@@ -5,8 +5,10 @@ flat in vec4 v_hull;
 flat in float v_radius_m;
 layout(location = 0) out vec4 froth;
 
-// Reach of foam and shade around a hull, m, and the light that is missing at its side.
-const float kFoamM = 0.3, kShadeM = 0.45, kShade = 0.55;
+// Reach of foam from a hull's side at its stem and at its transom, in halves of the beam: it is thrown out at the bow and spreads on the way
+// aft. Reach of the shade, m, and the light that is missing at the side.
+const vec2 kFoamBeams = vec2(0.2, 0.9);
+const float kShadeM = 0.45, kShade = 0.55;
 // The wash astern of a fast hull: where it begins to fade and ends, m behind the transom, and to each side, in halves of the beam; it
 // begins so far before the transom, m.
 const vec2 kWashM = vec2(0.15, 0.5), kWashBeams = vec2(0.5, 1.1);
@@ -28,7 +30,9 @@ void main() {
     vec2 along_m = vec2(dot(at_m, v_hull.xy), abs(dot(at_m, vec2(-v_hull.y, v_hull.x))));
     float outside_m = outsideHull(along_m), astern_m = -along_m.x - v_hull.z;
     float wash = v_strength * v_strength * step(-kUnderM, astern_m) * (1.0 - smoothstep(kWashM.x, kWashM.y, astern_m)) * (1.0 - smoothstep(kWashBeams.x, kWashBeams.y, along_m.y / v_hull.w));
-    froth = vec4(max(v_strength * (1.0 - smoothstep(0.0, kFoamM, outside_m)), wash), kShade * (1.0 - smoothstep(-0.1, kShadeM, outside_m)), 0.0, 1.0);
+    float foam_m = v_strength * v_hull.w * mix(kFoamBeams.y, kFoamBeams.x, clamp(0.5 + 0.5 * along_m.x / v_hull.z, 0.0, 1.0));
+    float near = clamp(1.0 - outside_m / foam_m, 0.0, 1.0);
+    froth = vec4(max(v_strength * near * near, wash), kShade * (1.0 - smoothstep(-0.1, kShadeM, outside_m)), 0.0, 1.0);
     return;
   }
   float away = dot(at, at);

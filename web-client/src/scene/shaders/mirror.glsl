@@ -66,12 +66,11 @@ vec3 mirroredLight(vec3 from, vec3 direction, vec3 sky) {
 #endif
   // Of what stands on the screen, whose back is not seen.
   float thick_m = min(1.0, 0.2 * min(u_extent_m.x, u_extent_m.y));
-  float jitter = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
   float before_m = 0.0;
   vec2 uv;
   for (int i = 1; i <= kMirrorSteps; ++i) {
     // Steps grow with the distance: near a hull they have to be short.
-    float share = (float(i) - 0.7 * jitter) / float(kMirrorSteps);
+    float share = (float(i) - 0.35) / float(kMirrorSteps);
     float along_m = reach_m * share * share;
     float deep_m = behindScreen(from + direction * along_m, uv);
     if (deep_m > 0.0 && deep_m < thick_m + 1.5 * (along_m - before_m)) {

@@ -47,7 +47,7 @@ const float kLawnGrain = 1.05, kLeavesShadeM = 0.3;
 const vec3 kScrub = vec3(0.17, 0.19, 0.08);
 const float kSharper = -3.0;  // mip levels: hills are seen at a low angle
 // Farthest that paint mirrors the waves beside it, m; slopes of their ripples, and the size of those, m.
-const float kMirrorsM = 6.0, kMirroredSlope = 0.22, kMirroredM = 1.7;
+const float kMirrorsM = 6.0, kMirroredSlope = 0.13, kMirroredM = 1.7;
 layout(location = 0) out vec4 color;
 
 void main() {

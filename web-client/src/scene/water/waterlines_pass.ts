@@ -14,8 +14,6 @@ const kVectors = 3;
 const kCellsLeast = 1.5;
 /** Its pressure in the middle over that of the same water in a box. */
 const kPeak = 1 / 0.9064 ** 2;
-/** Boats lie deeper than their draught by this share of their height: light hulls seemed to stand on the water. */
-const kDeeperHeights = 0.15;
 /** Height of the bow wave: this share of that at which water of the hull's speed comes to rest, U^2 / 2g, and at most so many draughts. */
 const kBowShare = 0.18;
 const kMostBowDraughts = 1.2;
@@ -64,6 +62,6 @@ export class WaterlinesPass implements Pass {
     this.hulls.value[at + 1]!.set(halfLengthM, halfBeamM, (kPeak * draughtM * lengthM * beamM) / (4 * halfLengthM * halfBeamM), draughtM);
     const headM = speedMps ** 2 / (2 * Math.max(this.greeting.gravityMps2, kLeastGravityMps2));
     const bowM = Math.min(kBowShare * headM, kMostBowDraughts * draughtM);
-    this.hulls.value[at + 2]!.set(yM - heightM / 2 + draughtM + kDeeperHeights * heightM, Math.tan(pitchRad), -Math.tan(rollRad), bowM);
+    this.hulls.value[at + 2]!.set(yM - heightM / 2 + draughtM, Math.tan(pitchRad), -Math.tan(rollRad), bowM);
   }
 }
