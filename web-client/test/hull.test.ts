@@ -89,8 +89,8 @@ describe.each(Object.entries(kBoats))("the hull of %s", (_, boat) => {
     expect(min.y / heightM).toBeCloseTo(-0.5, 4);
     const decks = Array.from({ length: 101 }, (_, n) => lines.deckM(n / 100));
     expect(Math.min(...decks) / heightM).toBeCloseTo(0.5, 3);
-    // Drawn with a draught of at least 0.42 of its height.
-    expect(lines.waterlineM).toBeCloseTo(heightM * Math.max(-0.08, draughtM / heightM - 0.5), 9);
+    // Of its freeboard three fifths are drawn.
+    expect(heightM / 2 - lines.waterlineM).toBeCloseTo(0.6 * (heightM - draughtM), 9);
     expect(lines.waterlineM - sunkM(boat)).toBeCloseTo(-heightM / 2 + draughtM, 9);
   });
 

@@ -47,8 +47,8 @@ const kStrakeBeams = 0.014;
 const kSideBeams = 0.034;
 /** Position of the deck's and the keel's lowest points. */
 export const kLowestAt = 0.36;
-/** Least draught of a hull that is drawn, in heights. */
-const kLeastDrawnDraught = 0.42;
+/** Hulls are drawn deeper by this share of their freeboard. */
+const kSunkShare = 0.4;
 
 export function hullKind({ lengthM }: Pick<BoatDetail, "lengthM">): HullKind {
   return lengthM < kLaunchFromM ? "dinghy" : lengthM < kCutterFromM ? "launch" : "cutter";
@@ -56,7 +56,7 @@ export function hullKind({ lengthM }: Pick<BoatDetail, "lengthM">): HullKind {
 
 /** By how much deeper than it floats a boat is drawn: a light one would show its keel, as if it stood on the water. */
 export function sunkM({ heightM, draughtM }: Pick<BoatDetail, "heightM" | "draughtM">): number {
-  return Math.max(kLeastDrawnDraught * heightM - draughtM, 0);
+  return kSunkShare * Math.max(heightM - draughtM, 0);
 }
 
 export class HullLines {

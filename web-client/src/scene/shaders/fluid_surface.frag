@@ -69,7 +69,7 @@ const float kLitRadii = 26.0;  // height over the floor above which water is lit
 const float kWhiteness = 0.9;  // of broken water at a pane
 const float kLongestWaySides = 1.2;  // longest way through water that counts for its colour, in shorter sides of the tank
 #elif defined(AGAIN)
-const float kWhiteness = 0.035;  // of two sheets
+const float kWhiteness = 0.012;  // of two sheets
 #else
 const float kWhiteness = 0.1;
 #endif

@@ -7,8 +7,8 @@ layout(location = 0) out vec4 froth;
 
 // Reach of foam from a hull's side at its stem and at its transom, in halves of the beam: it is thrown out at the bow and spreads on the way
 // aft. Reach of the shade, m, and the light that is missing at the side.
-const vec2 kFoamBeams = vec2(0.2, 0.9);
-const float kShadeM = 0.45, kShade = 0.55;
+const vec2 kFoamBeams = vec2(0.45, 0.9);
+const float kShadeM = 0.3, kShade = 0.45;
 // The wash astern of a fast hull: where it begins to fade and ends, m behind the transom, and to each side, in halves of the beam; it
 // begins so far before the transom, m.
 const vec2 kWashM = vec2(0.15, 0.5), kWashBeams = vec2(0.5, 1.1);
